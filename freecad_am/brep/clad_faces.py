@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faces to be covered with layers of beads: exact surfaces and a mesh over what of them runs on smoothly."""
+"""Faces to be covered with layers of beads: exact surfaces and a mesh over their smooth regions."""
 
 from __future__ import annotations
 
@@ -29,36 +29,37 @@ OF_RADIUS, OF_SPACING, FINEST = (
     0.25,
     0.5,
     0.1,
-)  # edges: of the smallest radius, of the bead spacing, at least
+)  # edges: shares of the smallest radius and the bead spacing; lower bound, mm
 MOST_NAMED = 8  # faces named in a message
 
 
 def clad_faces(
     shape: Any, names: Sequence[str], spacing: float, back: bool, height: float, label: str
 ) -> CladFaces:
-    """The faces named of a Part.Shape, all of one without solids, for beads `spacing` mm apart in layers up to `height` mm
-    above them. back: their other side is meant.
+    """The named faces of a Part.Shape (all faces of a shape without solids) for beads `spacing` mm
+    apart in layers up to `height` mm above them. back: cover their other side.
 
-    InputError NO_FACES, UNKNOWN_FACE, SEVERAL_BODIES, BACK_OF_SOLID, BRANCHING_FACES, and those of `sheet`.
+    InputError NO_FACES, UNKNOWN_FACE, SEVERAL_BODIES, BACK_OF_SOLID, BRANCHING_FACES, and the
+    errors of `sheet`.
     """
     with reported(label, shape):
-        known = faces_by_name(shape, names, label)
+        faces_of_names = faces_by_name(shape, names, label)
         if not names and shape.Solids:
             raise InputError(
                 "NO_FACES",
                 label,
                 "it is a solid with {} face(s), and none is chosen; name those to cover: part.faces of a "
                 "job, or select them",
-                len(known),
+                len(faces_of_names),
             )
-        named = [(name, known[name]) for name in dict.fromkeys(names or known)]
+        named = [(name, faces_of_names[name]) for name in dict.fromkeys(names or faces_of_names)]
         _refuse_several(shape, named, back, label)
         radius = float(smallest_radii(sound(named, label))[0].min())
         edge = float(np.clip(OF_RADIUS * radius, FINEST * spacing, OF_SPACING * spacing))
-        whole = sheet(named, edge, label)
+        wall = sheet(named, edge, label)
         if back:
-            whole = _turned(whole)
-        sheets, issues = _smooth(whole, height, label)
+            wall = _flip(wall)
+        sheets, issues = _smooth(wall, height, label)
     return CladFaces(label, tuple(name for name, _ in named), sheets, (), issues)
 
 
@@ -66,18 +67,18 @@ def _refuse_several(shape: Any, named: Sequence[tuple[str, Any]], back: bool, la
     """InputError SEVERAL_BODIES for faces of several solids, BACK_OF_SOLID for the inside of one."""
     owners = {}
     for number, solid in enumerate(shape.Solids):
-        held = {face.hashCode() for face in solid.Faces}
-        owners.update({name: number for name, face in named if face.hashCode() in held})
+        codes = {face.hashCode() for face in solid.Faces}
+        owners.update({name: number for name, face in named if face.hashCode() in codes})
     if len(set(owners.values())) > 1:
-        one = next(iter(owners))
-        other = next(name for name, number in owners.items() if number != owners[one])
+        face_name = next(iter(owners))
+        other_name = next(name for name, number in owners.items() if number != owners[face_name])
         raise InputError(
             "SEVERAL_BODIES",
             label,
             "{} and {} are faces of different solids; cover each solid as a feature of its own, or "
             "fuse them first",
-            one,
-            other,
+            face_name,
+            other_name,
         )
     if back and owners:
         raise InputError(
@@ -89,7 +90,7 @@ def _refuse_several(shape: Any, named: Sequence[tuple[str, Any]], back: bool, la
         )
 
 
-def _turned(wall: PatchWall) -> PatchWall:
+def _flip(wall: PatchWall) -> PatchWall:
     return replace(
         wall,
         triangles=wall.triangles[:, ::-1].copy(),
@@ -101,16 +102,18 @@ def _turned(wall: PatchWall) -> PatchWall:
 def _smooth(
     wall: PatchWall, height: float, label: str
 ) -> tuple[tuple[PatchWall, ...], tuple[Issue, ...]]:
-    """What of the wall hangs together without a crease, each as one; warnings where layers gape or overlap at creases."""
+    """The regions of the wall that connect without a crease, and warnings where layers gape or
+    overlap at creases.
+    """
     edges = Edges(wall.triangles)
     if (edges.count > 2).any():
-        at = wall.vertices[edges.ends[int(np.argmax(edges.count > 2))]].mean(axis=0)
+        point = wall.vertices[edges.ends[int(np.argmax(edges.count > 2))]].mean(axis=0)
         raise InputError(
             "BRANCHING_FACES",
             label,
             "more than two faces meet in one edge at {}; leave one of them out, or cover it as a "
             "feature of its own",
-            place(at),
+            place(point),
         )
     two = np.flatnonzero(edges.count == 2)
     pair = edges.faces[two]
@@ -118,25 +121,30 @@ def _smooth(
     crease = turn > CREASE
     n = len(wall.triangles)
     links = coo_matrix((np.ones((~crease).sum()), pair[~crease].T), shape=(n, n))
-    count, part = connected_components(links, directed=False)
-    sheets = tuple(_part(wall, part == k) for k in range(count))
+    count, component = connected_components(links, directed=False)
+    sheets = tuple(_part(wall, component == k) for k in range(count))
     return sheets, _crease_issues(
         wall, edges.ends[two], pair, turn, inward, height
     ) if height > 0.0 and crease.any() else ()
 
 
 def _turns(wall: PatchWall, ends: Index, pair: Index) -> tuple[Array, Mask]:
-    """The angles (k,) rad by which the normals of two patches differ at edges between them, 0 within one; and whether the
-    faces meet in a hollow there."""
+    """The angles (k,) rad by which the normals of two patches differ at edges between them, 0
+    within one; and whether the faces form a hollow there.
+    """
     turn, inward = np.zeros(len(ends)), np.zeros(len(ends), dtype=bool)
-    for one, other in np.unique(pair[pair[:, 0] != pair[:, 1]], axis=0):
-        mine = np.flatnonzero((pair == (one, other)).all(axis=1))
-        at = wall.vertices[ends[mine]].reshape(-1, 3)
-        first, second = (wall.patches[k].at(wall.patches[k].inverse(at))[1] for k in (one, other))
-        angle = np.arctan2(np.linalg.norm(np.cross(first, second), axis=1), dot(first, second))
-        turn[mine] = angle.reshape(-1, 2).max(axis=1)
-        apart = _middle(wall, other) - _middle(wall, one)
-        inward[mine] = dot((first - second).reshape(-1, 2, 3).sum(axis=1), apart) > 0.0
+    for patch, other_patch in np.unique(pair[pair[:, 0] != pair[:, 1]], axis=0):
+        members = np.flatnonzero((pair == (patch, other_patch)).all(axis=1))
+        points = wall.vertices[ends[members]].reshape(-1, 3)
+        normals, other_normals = (
+            wall.patches[k].at(wall.patches[k].inverse(points))[1] for k in (patch, other_patch)
+        )
+        angle = np.arctan2(
+            np.linalg.norm(np.cross(normals, other_normals), axis=1), dot(normals, other_normals)
+        )
+        turn[members] = angle.reshape(-1, 2).max(axis=1)
+        offset = _middle(wall, other_patch) - _middle(wall, patch)
+        inward[members] = dot((normals - other_normals).reshape(-1, 2, 3).sum(axis=1), offset) > 0.0
     return turn, inward
 
 
@@ -145,15 +153,15 @@ def _middle(wall: PatchWall, patch: int) -> Array:
     return middle
 
 
-def _part(wall: PatchWall, chosen: Mask) -> PatchWall:
-    """Some triangles (m,) of a wall alone."""
-    used, index = np.unique(wall.triangles[chosen], return_inverse=True)
-    patches, patch = np.unique(wall.patch[chosen], return_inverse=True)
+def _part(wall: PatchWall, mask: Mask) -> PatchWall:
+    """The wall of a selection (m,) of its triangles."""
+    used, index = np.unique(wall.triangles[mask], return_inverse=True)
+    patches, patch = np.unique(wall.patch[mask], return_inverse=True)
     return PatchWall(
         wall.vertices[used],
         np.ravel(index).reshape(-1, 3).astype(np.intp),
         np.ravel(patch).astype(np.intp),
-        wall.uv[chosen],
+        wall.uv[mask],
         tuple(wall.patches[k] for k in patches),
         (),
         np.zeros(len(used), dtype=bool),
@@ -166,28 +174,28 @@ def _part(wall: PatchWall, chosen: Mask) -> PatchWall:
 def _crease_issues(
     wall: PatchWall, ends: Index, pair: Index, turn: Array, inward: Mask, height: float
 ) -> tuple[Issue, ...]:
-    found = []
+    issues = []
     for hollow in (False, True):
-        mine = np.where((inward == hollow) & (turn > CREASE), turn, 0.0)
-        at = int(np.argmax(mine))
-        if mine[at] == 0.0:
+        angles = np.where((inward == hollow) & (turn > CREASE), turn, 0.0)
+        sharpest = int(np.argmax(angles))
+        if angles[sharpest] == 0.0:
             continue
-        one, other = (wall.faces[k] for k in wall.patch[pair[at]])
+        face, other_face = (wall.faces[k] for k in wall.patch[pair[sharpest]])
         what = "into one another" if hollow else "apart, with a wedge left open between them"
-        found.append(
+        issues.append(
             Issue(
                 WARNING,
                 "CREASE",
                 Text(
                     "{} and {} meet at an angle of {:.3g} deg at {}: layers above the first grow {}, up to "
                     "{:.3g} mm above the faces; round the edge, or cover the faces one after the other",
-                    one,
-                    other,
-                    np.degrees(mine[at]),
-                    place(wall.vertices[ends[at]].mean(axis=0)),
+                    face,
+                    other_face,
+                    np.degrees(angles[sharpest]),
+                    place(wall.vertices[ends[sharpest]].mean(axis=0)),
                     Word(what),
                     height,
                 ),
             )
         )
-    return tuple(found)
+    return tuple(issues)

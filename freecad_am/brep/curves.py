@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves to be laid as beads from edges of a shape, and the normals of faces that they lie on."""
+"""Bead curves from edges of a shape, with the normals of the faces that carry them."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from ..core.geometry.formatting import place
 from ..core.geometry.step_count import step_count
 from ..core.issues import InputError
 
-SHORTEST = 1e-4  # mm; shorter edges are none
-ON_FACE = 0.01  # mm that a curve may be off the faces that it lies on
+MIN_EDGE_MM = 1e-4  # mm; shorter edges are none
+ON_FACE = 0.01  # mm that a curve may be off its faces
 STEP = 2.0  # mm from point to point at most where normals are taken
 
 
@@ -27,33 +27,36 @@ def curves_of(
 ) -> list[BeadCurve]:
     """The chains that named edges form, all edges of the shape without names, as points within the chord error. faces: whose
     normals are the directions. InputError UNKNOWN_EDGE, UNKNOWN_FACE, NO_CURVES, OFF_FACE."""
-    known = {f"Edge{number + 1}": edge for number, edge in enumerate(shape.Edges)}
-    owned = {f"Face{number + 1}": face for number, face in enumerate(shape.Faces)}
-    for names, there, kind in ((edges, known, "Edge"), (faces, owned, "Face")):
-        wrong = [name for name in names if name not in there]
+    edges_by_name = {f"Edge{number + 1}": edge for number, edge in enumerate(shape.Edges)}
+    faces_by_name = {f"Face{number + 1}": face for number, face in enumerate(shape.Faces)}
+    for names, available, kind in ((edges, edges_by_name, "Edge"), (faces, faces_by_name, "Face")):
+        wrong = [name for name in names if name not in available]
         if wrong:
             raise InputError(
                 f"UNKNOWN_{kind.upper()}",
                 label,
                 "it has no {}, but {} {}(s); name others, from {}1 on",
                 ", ".join(wrong),
-                len(there),
+                len(available),
                 kind.lower(),
                 kind,
             )
-    chosen = [
+    selected_edges = [
         edge
-        for edge in ([known[name] for name in dict.fromkeys(edges)] or shape.Edges)
-        if edge.Length > SHORTEST
+        for edge in ([edges_by_name[name] for name in dict.fromkeys(edges)] or shape.Edges)
+        if edge.Length > MIN_EDGE_MM
     ]
-    if not chosen:
+    if not selected_edges:
         raise InputError(
             "NO_CURVES", label, "it has no edges to lay as beads; choose edges, a wire or a sketch"
         )
-    found = [_polyline(chain, chord_error, bool(faces)) for chain in Part.sortEdges(chosen)]
-    owners = [owned[name] for name in faces]
+    polylines = [
+        _polyline(chain, chord_error, bool(faces)) for chain in Part.sortEdges(selected_edges)
+    ]
+    owners = [faces_by_name[name] for name in faces]
     return [
-        BeadCurve(points, _normals(points, owners, label) if owners else None) for points in found
+        BeadCurve(points, _normals(points, owners, label) if owners else None)
+        for points in polylines
     ]
 
 
@@ -78,26 +81,30 @@ def _polyline(chain: Sequence[Any], chord_error: float, dense: bool) -> Array:
                 points[0] - rows[k - 1][-1]
             )
         rows[k] = points[::-1] if turned else points
-    whole = np.vstack([rows[0], *(points[1:] for points in rows[1:])])
-    return np.asarray(whole[np.r_[True, np.linalg.norm(np.diff(whole, axis=0), axis=1) > SHORTEST]])
+    chain_points = np.vstack([rows[0], *(points[1:] for points in rows[1:])])
+    return np.asarray(
+        chain_points[
+            np.r_[True, np.linalg.norm(np.diff(chain_points, axis=0), axis=1) > MIN_EDGE_MM]
+        ]
+    )
 
 
 def _normals(points: Array, faces: Sequence[Any], label: str) -> Array:
     """Unit normals (n, 3) of the faces nearest to points. InputError OFF_FACE."""
-    found = np.empty_like(points)
+    normals = np.empty_like(points)
     for k, point in enumerate(points.tolist()):
         vertex = Part.Vertex(*point)
-        apart = [face.distToShape(vertex)[0] for face in faces]
-        nearest = int(np.argmin(apart))
-        if apart[nearest] > ON_FACE:
+        distances = [face.distToShape(vertex)[0] for face in faces]
+        nearest = int(np.argmin(distances))
+        if distances[nearest] > ON_FACE:
             raise InputError(
                 "OFF_FACE",
                 label,
                 "a curve is {:.3g} mm off the faces whose normals it is to have, at {}; choose the faces "
                 "that it lies on, or give strategy.direction",
-                apart[nearest],
+                distances[nearest],
                 place(point),
             )
         face = faces[nearest]
-        found[k] = tuple(face.normalAt(*face.Surface.parameter(FreeCAD.Vector(*point))))
-    return np.asarray(found / np.linalg.norm(found, axis=1, keepdims=True))
+        normals[k] = tuple(face.normalAt(*face.Surface.parameter(FreeCAD.Vector(*point))))
+    return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))

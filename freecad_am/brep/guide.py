@@ -13,34 +13,35 @@ from freecad_am.core.types import Array
 from ..core.issues import InputError
 from .walls.start_edges import sampled
 
-LEAST = 1e-3  # mm; shorter edges are none
+MIN_EDGE_MM = 1e-3  # mm; shorter edges are none
 
 
 def edges_of(shape: Any, names: Sequence[str], label: str) -> list[tuple[Array, Array]]:
-    """Points and unit tangents (n, 3) of named edges of a shape, of all of them without names. InputError UNKNOWN_EDGE,
-    GUIDE_OPEN."""
-    known = {f"Edge{number + 1}": edge for number, edge in enumerate(shape.Edges)}
-    wrong = [name for name in names if name not in known]
+    """Points and unit tangents (n, 3) of named edges of a shape; of every edge without names.
+    InputError UNKNOWN_EDGE, GUIDE_OPEN.
+    """
+    edges_by_name = {f"Edge{number + 1}": edge for number, edge in enumerate(shape.Edges)}
+    wrong = [name for name in names if name not in edges_by_name]
     if wrong:
         raise InputError(
             "UNKNOWN_EDGE",
             label,
             "it has no {}; choose from Edge1 to Edge{}",
             ", ".join(wrong),
-            len(known),
+            len(edges_by_name),
         )
     if not names and shape.Faces:
         raise InputError(
             "GUIDE_OPEN",
             label,
             "it has {} edges, of which a guide takes some; name them, as in edges: [Edge1]",
-            len(known),
+            len(edges_by_name),
         )
-    edges = [known[name] for name in dict.fromkeys(names)] or list(shape.Edges)
-    return [_nodes(edge) for edge in edges if edge.Length > LEAST]
+    edges = [edges_by_name[name] for name in dict.fromkeys(names)] or list(shape.Edges)
+    return [_nodes(edge) for edge in edges if edge.Length > MIN_EDGE_MM]
 
 
 def _nodes(edge: Any) -> tuple[Array, Array]:
     points, tangents = sampled(edge, max(edge.Length / 16.0, 0.1))
-    apart = np.r_[True, np.linalg.norm(np.diff(points, axis=0), axis=1) > 1e-9]
-    return points[apart], tangents[apart]
+    distinct = np.r_[True, np.linalg.norm(np.diff(points, axis=0), axis=1) > 1e-9]
+    return points[distinct], tangents[distinct]

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The solids on a hub and the cylinders and cones that they stand on: chosen faces, a given surface, or found."""
+"""The solids on a hub and the cylinders and cones that carry them: chosen faces, a given surface,
+or detected.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,7 @@ from .kernel.limits import refuse_bare
 from .revolution.axis import from_normals
 from .shapes.no_solid import no_solid
 from .shapes.tessellate import WELDED
-from .whole_mesh import whole
+from .whole_mesh import complete_mesh
 
 SHARE = 0.4  # of the chord error, between solids and their triangles
 CROSSED = (
@@ -34,15 +36,15 @@ CROSSED = (
 )
 TOLERANCE = 1e-6  # relative; surfaces of faces that differ less are one
 FITTED = 1e-3  # mm that a spline may be off the cylinder or cone it is taken for
-ALONG_EDGE = 361  # points of an edge, that may go round
-NARROWEST = math.radians(
+EDGE_SAMPLES = 361  # points of an edge, that may go round
+MIN_GAP_RAD = math.radians(
     3.0
 )  # a gap narrower than this, as a keyway or between such points, is none
 KNOWN = ("Part::GeomPlane", "Part::GeomSphere", "Part::GeomToroid")
 
 
 class Bodies(NamedTuple):
-    """Solids as triangles, and what was repaired."""
+    """Solids as triangles, and notes on repairs."""
 
     bodies: tuple[Body, ...]
     issues: tuple[Issue, ...]
@@ -54,38 +56,38 @@ def bodies_of(
     """The solids of a Part.Shape, or the pieces of a mesh (a Mesh.Mesh, or a Body), in part coordinates.
     mend: the largest hole of a mesh that is closed, mm. touching: a solid may touch itself along edges, and cut itself.
 
-    InputError NO_SOLID, SELF_CROSSING, and those of `mesh_repair.repaired`.
+    InputError NO_SOLID, SELF_CROSSING, and the errors of `mesh_repair.repaired`.
     """
     if isinstance(source, Body) or hasattr(source, "Topology"):
         if isinstance(source, Body):
             points, triangles = source.vertices, source.triangles
         else:
             points, triangles = (np.array([tuple(row) for row in rows]) for rows in source.Topology)
-        found = repair_mesh(
+        result = repair_mesh(
             np.asarray(points, dtype=np.float64),
             np.asarray(triangles, dtype=np.intp),
             label,
             mend,
             touching,
         )
-        return Bodies(_named(found.solids, label), found.issues)
+        return Bodies(_named(result.solids, label), result.issues)
     if source is None or source.isNull() or not source.Solids:
         raise no_solid(source, label, Text("choose solids or closed meshes to deposit"))
-    made: list[tuple[Any, tuple[SolidMesh, ...]]] = []
+    meshed: list[tuple[Any, tuple[SolidMesh, ...]]] = []
     crossing: list[str] = []
     issues: list[Issue] = []
     for solid in source.Solids:
-        first = next((entry for entry in made if entry[0].isPartner(solid)), None)
-        if first is not None:
-            made.append((solid, tuple(_placed(first[0], mesh, solid) for mesh in first[1])))
+        twin = next((entry for entry in meshed if entry[0].isPartner(solid)), None)
+        if twin is not None:
+            meshed.append((solid, tuple(_move_mesh(twin[0], mesh, solid) for mesh in twin[1])))
             continue
-        found = _meshed(solid, source, chord_error, label, mend, touching)
-        made.append((solid, found.solids))
-        issues += found.issues
-        if touching and not found.issues:
-            crossing += crossing_messages(found.solids[0], CROSSED * chord_error)
+        result = _meshed(solid, source, chord_error, label, mend, touching)
+        meshed.append((solid, result.solids))
+        issues += result.issues
+        if touching and not result.issues:
+            crossing += crossing_messages(result.solids[0], CROSSED * chord_error)
     return Bodies(
-        _named([mesh for _, meshes in made for mesh in meshes], label),
+        _named([mesh for _, meshes in meshed for mesh in meshes], label),
         (*issues, *_loose(source, label), *mended_issues(label, crossing)),
     )
 
@@ -110,21 +112,21 @@ def _loose(source: Any, label: str) -> tuple[Issue, ...]:
 def _meshed(
     solid: Any, source: Any, chord_error: float, label: str, mend: float, touching: bool
 ) -> Repaired:
-    """The mesh of a solid; of one whose faces do not meet, what mending its triangles makes of it."""
-    made, issues = whole(solid, SHARE * chord_error, label)
-    vertices, corners = made.vertices, made.triangles
-    if len(np.unique(made.owner)) < len(solid.Faces):
+    """The mesh of a solid, repaired if the faces of the solid do not meet."""
+    tessellation, issues = complete_mesh(solid, SHARE * chord_error, label)
+    vertices, corners = tessellation.vertices, tessellation.triangles
+    if len(np.unique(tessellation.owner)) < len(solid.Faces):
         numbers = {face.hashCode(): number for number, face in enumerate(source.Faces, start=1)}
         named = [(f"Face{numbers[face.hashCode()]}", face) for face in solid.Faces]
-        refuse_bare(named, made.owner, label, WELDED)
+        refuse_bare(named, tessellation.owner, label, WELDED)
     mesh = SolidMesh(vertices, corners)
     mesh = dataclasses.replace(mesh, triangles=corners[:, ::-1]) if mesh.volume < 0.0 else mesh
     try:
         mesh.refuse_unsound(label, of_shape=True, touching=touching)
     except InputError as unsound:
         try:
-            found = repair_mesh(vertices, mesh.triangles, label, mend, touching)
-            return found._replace(issues=(*found.issues, *issues))
+            result = repair_mesh(vertices, mesh.triangles, label, mend, touching)
+            return result._replace(issues=(*result.issues, *issues))
         except InputError:
             widest = max(
                 (hole.size for hole in find_holes(separate_vertices(vertices, mesh.triangles))),
@@ -146,10 +148,14 @@ def _meshed(
     return Repaired((mesh,), issues)
 
 
-def _placed(first: Any, mesh: SolidMesh, solid: Any) -> SolidMesh:
-    """The mesh of a solid that differs from another by its place alone."""
-    way = np.array(solid.Placement.multiply(first.Placement.inverse()).toMatrix().A).reshape(4, 4)
-    return dataclasses.replace(mesh, vertices=mesh.vertices @ way[:3, :3].T + way[:3, 3])
+def _move_mesh(source_solid: Any, mesh: SolidMesh, solid: Any) -> SolidMesh:
+    """The mesh of a solid that differs from another only by its placement."""
+    transform = np.array(
+        solid.Placement.multiply(source_solid.Placement.inverse()).toMatrix().A
+    ).reshape(4, 4)
+    return dataclasses.replace(
+        mesh, vertices=mesh.vertices @ transform[:3, :3].T + transform[:3, 3]
+    )
 
 
 def _named(solids: Sequence[SolidMesh], label: str) -> tuple[Body, ...]:
@@ -164,9 +170,11 @@ def _named(solids: Sequence[SolidMesh], label: str) -> tuple[Body, ...]:
     )
 
 
-def given(radius: float, height: float, point: Sequence[float], way: Sequence[float]) -> Seat:
+def seat_of_numbers(
+    radius: float, height: float, point: Sequence[float], direction: Sequence[float]
+) -> Seat:
     """A base by its numbers: middle of its base circle and direction of its axis, towards the apex, in the part."""
-    z = np.array(way, dtype=np.float64)
+    z = np.array(direction, dtype=np.float64)
     base = Base(
         "the base",
         Developable(radius, height),
@@ -175,33 +183,33 @@ def given(radius: float, height: float, point: Sequence[float], way: Sequence[fl
     return Seat(base, (Stretch(-math.inf, math.inf),))
 
 
-def seats(faces: Sequence[tuple[str, Any]], chosen: bool) -> list[Seat]:
-    """The cylinders and cones of faces (name, Part.Face), one for faces of the same surface. With `chosen` other faces are
+def seats(faces: Sequence[tuple[str, Any]], selected: bool) -> list[Seat]:
+    """The cylinders and cones of faces (name, Part.Face), one for faces of the same surface. With `selected` other faces are
     refused, else left out: InputError NOT_DEVELOPABLE, INNER_FACE."""
-    found: list[Seat] = []
+    seats_found: list[Seat] = []
     for name, face in faces:
-        seat = _seat(name, face, chosen)
+        seat = _seat(name, face, selected)
         if seat is None:
             continue
-        for k, other in enumerate(found):
-            shift = _shift(other.base, seat.base)
+        for k, known_seat in enumerate(seats_found):
+            shift = _shift(known_seat.base, seat.base)
             if shift is not None:
-                base = dataclasses.replace(other.base, name=f"{other.base.name}, {name}")
-                more = [
+                base = dataclasses.replace(known_seat.base, name=f"{known_seat.base.name}, {name}")
+                new_faces = [
                     face._replace(low=face.low + shift, high=face.high + shift)
                     for face in seat.faces
                 ]
-                found[k] = Seat(base, (*other.faces, *more), chosen)
+                seats_found[k] = Seat(base, (*known_seat.faces, *new_faces), selected)
                 break
         else:
-            found.append(seat)
-    return found
+            seats_found.append(seat)
+    return seats_found
 
 
-def _seat(name: str, face: Any, chosen: bool) -> Seat | None:
+def _seat(name: str, face: Any, selected: bool) -> Seat | None:
     round_one = _round(face)
     if round_one is None:
-        if chosen:
+        if selected:
             raise InputError(
                 "NOT_DEVELOPABLE",
                 name,
@@ -210,13 +218,13 @@ def _seat(name: str, face: Any, chosen: bool) -> Seat | None:
         return None
     origin, z, radius, taper = round_one
     points = np.array(
-        [tuple(point) for edge in face.Edges for point in edge.discretize(ALONG_EDGE)]
+        [tuple(point) for edge in face.Edges for point in edge.discretize(EDGE_SAMPLES)]
     )
     along = (points - origin) @ z
     if along.mean() > 0.0 if taper else downwards(z):
         z, along = -z, -along
     if _faces_inwards(face, origin, z):
-        if chosen:
+        if selected:
             raise InputError(
                 "INNER_FACE",
                 name,
@@ -228,11 +236,11 @@ def _seat(name: str, face: Any, chosen: bool) -> Seat | None:
     base = Base(name, shape, upright(origin + low * z, z))
     x, y = base.inside(points)[:, :2].T
     start, span = sector(np.arctan2(y, x)[np.hypot(x, y) > TOLERANCE * shape.radius])
-    whole = span > TURN - NARROWEST
+    full_turn = span > TURN - MIN_GAP_RAD
     return Seat(
         base,
-        (Stretch(0.0, high - low) if whole else Stretch(0.0, high - low, start, span),),
-        chosen,
+        (Stretch(0.0, high - low) if full_turn else Stretch(0.0, high - low, start, span),),
+        selected,
     )
 
 
@@ -260,13 +268,13 @@ def _round(face: Any) -> tuple[Array, Array, float, float] | None:
         return None
     origin, z = axis
     u0, u1, v0, v1 = face.ParameterRange
-    places = [
+    parameters = [
         (u, v)
         for u in np.linspace(u0, u1, 25)
         for v in np.linspace(v0, v1, 25)
         if face.isPartOfDomain(u, v)
     ]
-    points = np.array([tuple(surface.value(u, v)) for u, v in places]).reshape(-1, 3)
+    points = np.array([tuple(surface.value(u, v)) for u, v in parameters]).reshape(-1, 3)
     if len(points) < 9 or _flat(points):
         return None
     origin, z = _best_axis(points, origin, z)
@@ -283,7 +291,9 @@ def _round(face: Any) -> tuple[Array, Array, float, float] | None:
 
 
 def _flat(points: Array) -> bool:
-    """Whether points (n, 3) lie in a plane but for rounding: about any axis a fit of theirs goes on for long, in vain."""
+    """Whether points (n, 3) are coplanar up to rounding: an axis fit to such points would run long
+    in vain.
+    """
     spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     return bool(spread[2] <= 1e-9 * spread[0])
 
@@ -297,39 +307,43 @@ def _profile(points: Array, origin: Array, z: Array) -> tuple[Array, Array, floa
 
 
 def _best_axis(points: Array, origin: Array, z: Array) -> tuple[Array, Array]:
-    """The axis near one given about which points (n, 3) lie best on a cylinder or cone."""
+    """The axis near a given one about which points (n, 3) fit a cylinder or cone best."""
     middle = origin + ((points - origin) @ z).mean() * z
     across = np.linalg.svd(z[None])[2][1:]
     size = float(np.abs(points - middle).max())
 
-    def moved(by: Array) -> tuple[Array, Array]:
+    def shift_axis(by: Array) -> tuple[Array, Array]:
         turned = z + by[2:] @ across
         return middle + size * by[:2] @ across, turned / np.linalg.norm(turned)
 
-    def off(by: Array) -> Array:
-        along, rho, slope, at_origin = _profile(points, *moved(by))
+    def residual(by: Array) -> Array:
+        along, rho, slope, at_origin = _profile(points, *shift_axis(by))
         return (rho - slope * along - at_origin) / size
 
-    return moved(least_squares(off, np.zeros(4), xtol=1e-14, ftol=1e-14, gtol=1e-14).x)
+    return shift_axis(least_squares(residual, np.zeros(4), xtol=1e-14, ftol=1e-14, gtol=1e-14).x)
 
 
 def _faces_inwards(face: Any, origin: Array, z: Array) -> bool:
-    low, high, left, right = face.ParameterRange
-    u, v = 0.5 * (low + high), 0.5 * (left + right)
-    away = np.array(tuple(face.valueAt(u, v))) - origin
-    away -= (away @ z) * z
-    return bool(np.array(tuple(face.normalAt(u, v))) @ away < 0.0)
+    low, high, v_min, v_max = face.ParameterRange
+    u, v = 0.5 * (low + high), 0.5 * (v_min + v_max)
+    radial = np.array(tuple(face.valueAt(u, v))) - origin
+    radial -= (radial @ z) * z
+    return bool(np.array(tuple(face.normalAt(u, v))) @ radial < 0.0)
 
 
-def _shift(one: Base, other: Base) -> float | None:
-    """How far the frame of another base is up the axis of this one, where they are the same surface."""
-    away = one.inside(other.frame[:3, 3])
-    size = one.surface.radius
+def _shift(base: Base, other: Base) -> float | None:
+    """The height of the frame of another base along the axis of `base` if both are the same
+    surface, else None.
+    """
+    local_origin = base.inside(other.frame[:3, 3])
+    size = base.surface.radius
     alike = (
-        other.frame[:3, 2] @ one.frame[:3, 2] > 1.0 - TOLERANCE
-        and math.hypot(away[0], away[1]) < TOLERANCE * size
+        other.frame[:3, 2] @ base.frame[:3, 2] > 1.0 - TOLERANCE
+        and math.hypot(local_origin[0], local_origin[1]) < TOLERANCE * size
     )
-    if not alike or abs(one.surface.taper - other.surface.taper) > TOLERANCE:
+    if not alike or abs(base.surface.taper - other.surface.taper) > TOLERANCE:
         return None
-    rest = other.surface.radius - (one.surface.radius - away[2] * math.tan(one.surface.taper))
-    return float(away[2]) if abs(rest) < TOLERANCE * size else None
+    radius_gap = other.surface.radius - (
+        base.surface.radius - local_origin[2] * math.tan(base.surface.taper)
+    )
+    return float(local_origin[2]) if abs(radius_gap) < TOLERANCE * size else None

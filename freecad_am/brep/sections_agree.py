@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Whether triangles enclose what a solid does, by their plane sections.
 
-The kernel integrates the volume of rational faces with too few points: of a cylinder that is stretched to an ellipse it is
-0.86 % too large. Plane sections of the same faces, cut into short chords, do not depend on that integral.
+The kernel integrates the volume of rational faces with too few points: for a cylinder stretched to
+an ellipse it is 0.86 % too large. Plane sections of the same faces, cut into short chords, do not
+depend on that integral.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from .kernel import process
 
 PLANES = 12  # across each axis
 SHARE = 0.4  # of the volume in doubt that the sections may differ by
-# where the planes lie between equal steps, so that none is likely to meet a flat face
+# offset of the planes between equal steps, so that flat faces are unlikely to coincide with one
 OFF_MIDDLE = 0.4142135
 FEWEST_POINTS = 24  # on a loop of a section
 
@@ -25,7 +26,8 @@ FEWEST_POINTS = 24  # on a loop of a section
 def sections_agree(
     solid: Any, vertices: Array, triangles: Index, chord: float, missing: float
 ) -> bool:
-    """Whether the sections of triangles are those of a solid, so that no volume of about `missing` mm3 lacks.
+    """Whether triangles and solid have equal sections, so that no volume of about `missing` mm3
+    lacks.
 
     The difference of the areas in PLANES planes across an axis, times their distance, is about the volume that the
     triangles lack. Along none of the three axes may it be more than SHARE of `missing`.
@@ -45,7 +47,7 @@ def sections_agree(
 
 
 def section_areas(solid: Any, axis: int, heights: Array, chord: float) -> Array | None:
-    """Areas (k,) of the sections of a solid across an axis; None where one has open loops."""
+    """Areas (k,) of the sections of a solid across an axis; or None if a section has open loops."""
     normal = FreeCAD.Vector(*np.eye(3)[axis].tolist())
     areas = []
     for height in heights.tolist():
@@ -55,35 +57,35 @@ def section_areas(solid: Any, axis: int, heights: Array, chord: float) -> Array 
                 return None
             points = [tuple(point) for point in wire.discretize(Deflection=0.25 * chord)]
             if len(points) < FEWEST_POINTS:
-                points = [tuple(p) for edge in wire.OrderedEdges for p in _along(edge)]
+                points = [tuple(p) for edge in wire.OrderedEdges for p in _wire_points(edge)]
             loops.append(_across(np.array(points), axis))
         areas.append(_enclosed(loops))
     return np.array(areas)
 
 
-def _along(edge: Any) -> list[Any]:
+def _wire_points(edge: Any) -> list[Any]:
     """Points of an edge in the order of its wire, without the last."""
     points = edge.discretize(FEWEST_POINTS)
-    first = edge.firstVertex(True).Point
-    if (points[0] - first).Length > (points[-1] - first).Length:
+    start_point = edge.firstVertex(True).Point
+    if (points[0] - start_point).Length > (points[-1] - start_point).Length:
         points.reverse()
     return list(points[:-1])
 
 
 def _across(points: Array, axis: int) -> Array:
-    """The two coordinates (n, 2) beside an axis, so that a turn to the left about it is one to the left."""
+    """The two coordinates (n, 2) across an axis; the sense of rotation about the axis is kept."""
     flat: Array = points[:, [(axis + 1) % 3, (axis + 2) % 3]]
     return flat
 
 
 def _enclosed(loops: list[Array]) -> float:
-    """What loops (n, 2) enclose, those in an odd number of others as holes."""
+    """The area within loops (n, 2); a loop within an odd number of other loops is a hole."""
     areas = [abs(_area(loop)) for loop in loops]
     total = 0.0
     for k, loop in enumerate(loops):
         depth = sum(
-            areas[j] > areas[k] and _is_inside(loop[0], other)
-            for j, other in enumerate(loops)
+            areas[j] > areas[k] and _is_inside(loop[0], outer_loop)
+            for j, outer_loop in enumerate(loops)
             if j != k
         )
         total += areas[k] if depth % 2 == 0 else -areas[k]
@@ -96,13 +98,13 @@ def _area(loop: Array) -> float:
 
 
 def _is_inside(point: Array, loop: Array) -> bool:
-    """Whether a point lies in a loop, by the sides that a ray from it along x meets."""
+    """Whether a point is in a loop, by the sides that a ray from it along x crosses."""
     start, end = loop, np.roll(loop, -1, axis=0)
     rise = end[:, 1] - start[:, 1]
     crosses = (start[:, 1] > point[1]) != (end[:, 1] > point[1])
     share = (point[1] - start[crosses, 1]) / rise[crosses]
-    at = start[crosses, 0] + share * (end[crosses, 0] - start[crosses, 0])
-    return bool((at > point[0]).sum() % 2)
+    crossings = start[crosses, 0] + share * (end[crosses, 0] - start[crosses, 0])
+    return bool((crossings > point[0]).sum() % 2)
 
 
 def _mesh_area(corners: Array, axis: int, height: float) -> float:
@@ -116,9 +118,9 @@ def _mesh_area(corners: Array, axis: int, height: float) -> float:
         side = np.argmax(
             (above != np.roll(above, -1, axis=1)) & (np.roll(above, -1, axis=1) == upward), axis=1
         )
-        row, after = np.arange(len(side)), (side + 1) % 3
-        share = level[row, side] / (level[row, side] - level[row, after])
-        start, end = corners[row, side], corners[row, after]
+        row, next_corner = np.arange(len(side)), (side + 1) % 3
+        share = level[row, side] / (level[row, side] - level[row, next_corner])
+        start, end = corners[row, side], corners[row, next_corner]
         ends.append(_across(start + share[:, None] * (end - start), axis))
     start, end = ends
     return abs(0.5 * float((start[:, 0] * end[:, 1] - end[:, 0] * start[:, 1]).sum()))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faces on which the first layer of a solid lies, as triangles."""
+"""Faces below the first layer of a solid, as triangles."""
 
 from __future__ import annotations
 
@@ -17,10 +17,13 @@ from .walls.wall import faces_by_name
 
 
 def triangles_of_faces(shape: Any, names: Sequence[str], label: str, chord_error: float) -> Array:
-    """Triangles (k, 3, 3) of faces of a shape, all where none are named, as near to them as those of solids are. InputError
-    NO_WALL, UNKNOWN_FACE."""
-    known = faces_by_name(shape, names, label)
-    chosen = Part.makeCompound([known[name].copy(False) for name in dict.fromkeys(names or known)])
-    made = in_kernel_process(fine, chosen, SHARE * chord_error)
-    corners: Array = made[0][made[1]]
+    """Triangles (k, 3, 3) of faces of a shape, all where none are named, with the chord error of
+    solids. InputError NO_WALL, UNKNOWN_FACE.
+    """
+    faces_of_names = faces_by_name(shape, names, label)
+    selection = Part.makeCompound(
+        [faces_of_names[name].copy(False) for name in dict.fromkeys(names or faces_of_names)]
+    )
+    tessellation = in_kernel_process(fine, selection, SHARE * chord_error)
+    corners: Array = tessellation[0][tessellation[1]]
     return corners

@@ -19,21 +19,25 @@ MAX_DEFLECTIONS = (
 )
 
 
-def whole(solid: Any, chord: float, label: str) -> tuple[Tessellation, tuple[Issue, ...]]:
-    """Triangles within about `chord` mm of a Part.Solid, whose volume is that of the solid but for its area times a few
-    chords; a warning MESH_VOLUME where none that are tried are, and their sections are not those of the solid either."""
+def complete_mesh(solid: Any, chord: float, label: str) -> tuple[Tessellation, tuple[Issue, ...]]:
+    """Triangles within about `chord` mm of a Part.Solid, whose volume equals the solid's within its
+    area times a few chords; with a warning MESH_VOLUME if no attempt does and the sections differ
+    from the solid's, too.
+    """
     exact, area = abs(float(solid.Volume)), float(solid.Area)
-    found: list[tuple[float, Tessellation]] = []
+    attempts: list[tuple[float, Tessellation]] = []
     for share in FINER:
-        made = in_kernel_process(fine, solid.copy(), share * chord)
-        volume = abs(SolidMesh(made.vertices, made.triangles).volume)
+        tessellation = in_kernel_process(fine, solid.copy(), share * chord)
+        volume = abs(SolidMesh(tessellation.vertices, tessellation.triangles).volume)
         if abs(volume - exact) <= MAX_DEFLECTIONS * max(share, 1.0) * chord * area:
-            return made, ()
-        found.append((volume, made))
-    volume, made = found[0]
-    if sections_agree(solid, made.vertices, made.triangles, chord, abs(volume - exact)):
-        return made, ()  # it is the kernel's integral of the volume that is off
-    volume, made = min(found, key=lambda one: abs(one[0] - exact))
+            return tessellation, ()
+        attempts.append((volume, tessellation))
+    volume, tessellation = attempts[0]
+    if sections_agree(
+        solid, tessellation.vertices, tessellation.triangles, chord, abs(volume - exact)
+    ):
+        return tessellation, ()  # it is the kernel's integral of the volume that is off
+    volume, tessellation = min(attempts, key=lambda attempt: abs(attempt[0] - exact))
     message = Text(
         "{}: its triangles enclose {:.4g} cm3 and its faces {:.4g} cm3; check and export the part again, or "
         "deposit it from a mesh",
@@ -41,4 +45,4 @@ def whole(solid: Any, chord: float, label: str) -> tuple[Tessellation, tuple[Iss
         1e-3 * volume,
         1e-3 * exact,
     )
-    return made, (Issue(WARNING, "MESH_VOLUME", message),)
+    return tessellation, (Issue(WARNING, "MESH_VOLUME", message),)

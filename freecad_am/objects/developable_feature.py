@@ -8,7 +8,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from ..brep.hub import SHARE, Bodies, bodies_of, given, seats
+from ..brep.hub import SHARE, Bodies, bodies_of, seat_of_numbers, seats
 from ..core.geometry.beyond_hub import volume_beyond
 from ..core.geometry.developable import Developable
 from ..core.geometry.mesh.solid import SolidMesh
@@ -198,7 +198,7 @@ def _bases(
     base = strategy.base
     if base.radius != "auto":
         height = math.inf if base.height == "inf" else float(base.height)
-        return [given(float(base.radius), height, *base.line())], None
+        return [seat_of_numbers(float(base.radius), height, *base.line())], None
     if of.base_faces is not None:
         return seats(_named_faces(*of.base_faces, f"{of.label}.BaseFaces"), True), None
     if of.faces:

@@ -9,7 +9,7 @@ from typing import Any
 import FreeCAD as App
 
 from ..brep.revolution.wall import find_wall
-from ..brep.shapes.part_depths import of_revolved
+from ..brep.shapes.part_depths import revolved_depths
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import RevolutionParameters
@@ -70,7 +70,7 @@ class RevolutionFeature(FeatureStage):
             wall = find_wall(shape, faces, strategy.wall, axis, label)
             large = size.judged(size.of_revolution(wall, strategy), strategy)
             figures = (("WallFaces", list(wall.faces)), ("WallLength", wall.meridian.length))
-            depths = of_revolved(shape, wall, label)
+            depths = revolved_depths(shape, wall, label)
             made = dataclasses.replace(wall, surroundings=bodies(fixtures), depths=depths)
             return Outcome(made, (*wall.issues, *large), figures)
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
-from ..brep.shapes.part_depths import of_faces
+from ..brep.shapes.part_depths import face_depths
 from ..brep.walls.wall_on import wall_on
 from ..core.geometry.walls.patch_wall import PatchWall
 from ..core.issues import InputError
@@ -103,7 +103,7 @@ class SurfaceFeature(FeatureStage):
             depths = (
                 None
                 if part.shape is None
-                else of_faces(part.shape, wall.faces, label, ground[0] if ground else None)
+                else face_depths(part.shape, wall.faces, label, ground[0] if ground else None)
             )
             wall = dataclasses.replace(
                 wall, surroundings=(*ground, *bodies(fixtures)), depths=depths

@@ -45,7 +45,7 @@ def test_a_mesh_of_hundreds_of_thousands_of_triangles(shape, off):
     began = time.process_time()
     vertices, triangles, owner, _ = fine_mesh.fine(shape.copy(), CHORD)
     assert time.process_time() - began < 8.0
-    assert len(triangles) > fine_mesh.SLOW and len(owner) == len(triangles)
+    assert len(triangles) > fine_mesh.SLOW_TRIANGLES and len(owner) == len(triangles)
     assert (Edges(triangles).count == 2).all()
     assert off(vertices).max() < 1e-6
     some = vertices[triangles[::97]]

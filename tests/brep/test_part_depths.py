@@ -11,7 +11,7 @@ import pytest
 from FreeCAD import Vector
 
 from freecad_am.brep.revolution.wall import find_wall
-from freecad_am.brep.shapes.part_depths import of_faces, of_revolved
+from freecad_am.brep.shapes.part_depths import face_depths, revolved_depths
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import InputError
 from freecad_am.core.process.deposit import balance as deposit_balance
@@ -52,7 +52,7 @@ def bracket():
 
 def balance(shape, wall="outer", width=WIDTH, faces=()):
     found = find_wall(shape, faces, wall)
-    return deposit_balance.of_wall(of_revolved(shape, found, "Part"), width)
+    return deposit_balance.of_wall(revolved_depths(shape, found, "Part"), width)
 
 
 def codes(found):
@@ -151,7 +151,7 @@ def test_parts_of_any_size_take_little_memory(radius, height, width):
     found = find_wall(shape)
     tracemalloc.start()
     try:
-        depths = of_revolved(shape, found, "Part")
+        depths = revolved_depths(shape, found, "Part")
         assert tracemalloc.get_traced_memory()[1] < 100e6
     finally:
         tracemalloc.stop()
@@ -168,7 +168,7 @@ def test_what_lies_in_the_substrate_does_not_count():
     ]
     points, corners = Part.makeBox(100, 100, 10, Vector(-50, -50, 0)).tessellate(0.1)
     ground = Body("Plate", np.array([tuple(p) for p in points]), np.array(corners, dtype=np.int64))
-    found = deposit_balance.of_wall(of_faces(shape, skin, "Part", ground), WIDTH)
+    found = deposit_balance.of_wall(face_depths(shape, skin, "Part", ground), WIDTH)
     assert found.part == pytest.approx(0.75 * shape.Volume, rel=0.03)
     assert found.part - found.left_out == pytest.approx(tube(30, 22, 30.0).Volume, rel=0.05)
 

@@ -238,7 +238,7 @@ DEEP = "".join(holder(k + 1, placed("component", k)) for k in range(1, 2000))
 )
 def test_refused_with_what_is_wrong(tmp_path, monkeypatch, text, code, told):
     monkeypatch.setattr(
-        three_mf, "MOST_PLACED", 10_000
+        three_mf, "MAX_PLACED_OBJECTS", 10_000
     )  # to place ten times as many comes near the limit of time
     with pytest.raises(InputError) as refused:
         read_mesh(written(tmp_path, text))
@@ -272,7 +272,7 @@ def test_zips_that_are_none_and_zips_that_grow(tmp_path, monkeypatch):
     path.write_bytes(content)
     with pytest.raises(InputError, match="encrypted"):
         read_mesh(path)
-    monkeypatch.setattr(three_mf, "LARGEST", 1 << 20)
+    monkeypatch.setattr(three_mf, "MAX_UNPACKED_BYTES", 1 << 20)
     with pytest.raises(InputError) as refused:
         read_mesh(written(tmp_path, model(mesh(1) + " " * (1 << 21), placed("item", 1))))
     assert refused.value.code == "UNSUPPORTED_FILE" and "unpacks" in refused.value.message

@@ -66,7 +66,7 @@ def test_what_no_deflection_mends_is_told_with_both_volumes(monkeypatch):
 def test_sound_solids_are_meshed_once(monkeypatch, shape, chord):
     made, asked = cut_short(lambda chord: False)
     monkeypatch.setattr(whole_mesh, "in_kernel_process", made)
-    assert whole_mesh.whole(shape, chord, "it")[1] == () and asked == [chord]
+    assert whole_mesh.complete_mesh(shape, chord, "it")[1] == () and asked == [chord]
 
 
 def stretched(shape, *shares):
@@ -90,7 +90,7 @@ PIPE = Part.makeCylinder(20.0, 30.0).cut(Part.makeCylinder(12.0, 30.0))
 def test_no_warning_where_the_kernel_integrates_its_own_faces_wrongly(shape, volume):
     """The triangles are right, which is known from the formula; the kernel's volume is off by up to 1 %."""
     chord = 0.02
-    made, issues = whole_mesh.whole(shape, chord, "it")
+    made, issues = whole_mesh.complete_mesh(shape, chord, "it")
     assert issues == ()
     enclosed = abs(SolidMesh(made.vertices, made.triangles).volume)
     assert enclosed == pytest.approx(volume, abs=1.5 * chord * shape.Area)
@@ -110,7 +110,9 @@ def test_a_part_that_lacks_is_seen_where_the_kernel_is_wrong_too(monkeypatch, ax
         return right._replace(vertices=bent)
 
     monkeypatch.setattr(whole_mesh, "in_kernel_process", dented)
-    assert [issue.code for issue in whole_mesh.whole(shape, 0.02, "it")[1]] == ["MESH_VOLUME"]
+    assert [issue.code for issue in whole_mesh.complete_mesh(shape, 0.02, "it")[1]] == [
+        "MESH_VOLUME"
+    ]
 
 
 def test_faces_and_edges_beside_solids_are_noted():

@@ -167,9 +167,9 @@ def test_what_is_opened_in_the_window_is_what_the_commands_read(person, tmp_path
 def test_limits_are_told_in_the_window_too(person, monkeypatch, tmp_path, read, says):
     monkeypatch.setattr(apart, "SECONDS", 1.0)
     monkeypatch.setattr(apart, "MEMORY", 100.0)
-    monkeypatch.setattr(apart, "LONGER", 2.0 if read is waiting else 100.0)
+    monkeypatch.setattr(apart, "WALL_CLOCK_FACTOR", 2.0 if read is waiting else 100.0)
     with pytest.raises(InputError) as told:
-        apart.apart(read, tmp_path / "part.step")
+        apart.read_apart(read, tmp_path / "part.step")
     assert (told.value.code, told.value.where) == (
         "BAD_FILE",
         "part.step",

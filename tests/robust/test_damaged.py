@@ -209,8 +209,8 @@ def waiting(_):
 def test_limits_are_told(monkeypatch, tmp_path, read, says):
     monkeypatch.setattr(apart, "SECONDS", 1.0)
     monkeypatch.setattr(apart, "MEMORY", 100.0)
-    monkeypatch.setattr(apart, "LONGER", 2.0 if read is waiting else 100.0)
-    error = refused(apart.apart, read, tmp_path / "part.step")
+    monkeypatch.setattr(apart, "WALL_CLOCK_FACTOR", 2.0 if read is waiting else 100.0)
+    error = refused(apart.read_apart, read, tmp_path / "part.step")
     assert (error.code, error.where) == ("BAD_FILE", "part.step") and says in error.message
     assert "export it again" in error.message
 
@@ -247,7 +247,7 @@ def test_nobody_waits_for_a_copy_whose_process_was_killed(tmp_path):
             (tmp_path / "pid").write_text(str(os.getpid()))
             time.sleep(1000.0)
 
-        apart.apart(read, "any")
+        apart.read_apart(read, "any")
         os._exit(0)
     until = time.monotonic() + 20.0
     while not (tmp_path / "pid").exists() or not (tmp_path / "pid").read_text():

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What was read in another process, handed over in two files: one has what pickles, the other a shape or a mesh in FreeCAD's
-own binary form, where that gives it back to the last digit."""
+"""The result of reading a file in another process, handed over in two files: one holds a pickle,
+the other a shape or a mesh in FreeCAD's own binary form where that form is exact to the last digit.
+"""
 
 from __future__ import annotations
 
@@ -59,16 +60,16 @@ class _Unpickler(pickle.Unpickler):
         return mesh
 
 
-def tell(
+def write_answer(
     answer_file: str,
     geometry: str,
-    read: Callable[..., Any],
+    reader: Callable[..., Any],
     path: str | os.PathLike[str],
-    rest: tuple[Any, ...],
+    arguments: tuple[Any, ...],
 ) -> None:
-    """In the other process: read, and write what was read or the InputError into the files."""
+    """In the other process: run `reader` and write its result or InputError into the files."""
     try:
-        answer: Any = (True, read(path, *rest))
+        answer: Any = (True, reader(path, *arguments))
     except InputError as error:
         answer = (False, (error.code, error.where, error.message))
     text = io.BytesIO()
@@ -80,8 +81,8 @@ def tell(
         stream.write(text.getbuffer())
 
 
-def hear(answer_file: str, geometry: str) -> Any:
-    """What the other process has told; raises its InputError."""
+def read_answer(answer_file: str, geometry: str) -> Any:
+    """Return the result of the other process; raises its InputError."""
     with open(answer_file, "rb") as stream:
         sound, answer = _Unpickler(stream, geometry).load()
     if sound:

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Files from outside, read in a process that may crash, with limits of time and memory.
 
-FreeCAD and the geometry kernel crash on some damaged files, and on others read without end. Without a window the process is
-a copy of this one, made by fork in milliseconds. A fork does not copy threads, though: beside a window, and after the
-geometry kernel of FreeCAD 1.0 or later has started its threads, it is a process of `kernel_process`, which is started once,
-and ended as soon as whoever waits for it is cancelled. What was read comes back as `answers` has it. Where there is neither,
-files are read here.
+FreeCAD and the geometry kernel crash on some damaged files, and on others read without end. Without
+a window it is a fork of the current process, made in milliseconds. A fork does not copy threads,
+though: in a process with a window, and after the geometry kernel of FreeCAD 1.0 or later has
+started its threads, a process of `kernel_process` reads instead. It starts once and ends as soon as
+its caller is cancelled. `answers` transfers the result. Without either, files are read in this
+process.
 """
 
 from __future__ import annotations
@@ -32,55 +33,58 @@ if sys.platform != "win32":
 
 T = TypeVar("T")
 
-SECONDS, SECONDS_A_MB = 4.0, 10.0  # of the processor, for any file and for each MB of it
-MEMORY, MEMORY_A_MB = 600.0, 100.0  # MB, likewise, beside what this process has
-LARGEST = 2000  # MB of a file
-LONGER = 10.0  # times as long on the clock: the processor may have others to serve, but a file that keeps us waiting ends
+SECONDS, SECONDS_A_MB = 4.0, 10.0  # processor time, s, per file and per MB
+MEMORY, MEMORY_A_MB = 600.0, 100.0  # MB, likewise, in addition to the memory of the current process
+MAX_FILE_MB = 2000  # MB of a file
+WALL_CLOCK_FACTOR = 10.0  # wall-clock limit as a multiple of the processor time, as other processes share the processor
 MB = 1e6
 NO_MEMORY = 77  # exit status of a copy that has come to its limit
 
 _is_apart = False  # whether this is such a process
 
 
-def apart(
-    read: Callable[..., T], path: str | os.PathLike[str], *rest: Any, patience: float = 1.0
+def read_apart(
+    reader: Callable[..., T], path: str | os.PathLike[str], *arguments: Any, patience: float = 1.0
 ) -> T:
-    """What `read(path, *rest)` returns or raises: a shape, a mesh, what pickles. `read` is a function of a module. patience:
-    times the limit of time.
+    """What `reader(path, *arguments)` returns or raises: a shape, a mesh, or a picklable value.
+    `reader` is a function of a module. patience: factor on the time limit.
 
     Raises InputError BAD_FILE, naming the file, where reading crashes or takes more time or memory than a file of its size
     may, and for one larger than LARGEST.
     """
     size = _size(path) / MB
     where = os.path.basename(os.fspath(path)) or os.fspath(path)
-    if size > LARGEST:
+    if size > MAX_FILE_MB:
         message = Text(
-            "the file is larger than {} MB, the most that is read; is it the right one?", LARGEST
+            "the file is larger than {} MB, the most that is read; is it the right one?",
+            MAX_FILE_MB,
         )
         raise InputError("BAD_FILE", where, message)
     if _is_apart or not (FreeCAD.GuiUp or sys.platform.startswith("linux")):
-        return read(path, *rest)
+        return reader(path, *arguments)
     limits = _limits(size, patience)
     if not (FreeCAD.GuiUp or _has_kernel_threads()):
-        with _Reading(read, path, rest, *limits) as copy:
-            ended, used = copy.wait()
-            if ended:
-                raise _refused(where, ended, used, *limits)
-            found = answers.hear(*copy.files)
+        with _Reading(reader, path, arguments, *limits) as copy:
+            exit_code, used = copy.wait()
+            if exit_code:
+                raise _refused(where, exit_code, used, *limits)
+            result = answers.read_answer(*copy.files)
     else:
         with _answer_files() as files:
-            question = (*files, read.__module__, read.__qualname__, path, rest, *limits)
-            how = kernel_process.limited(answer, question, LONGER * limits[0])
+            question = (*files, reader.__module__, reader.__qualname__, path, arguments, *limits)
+            how = kernel_process.limited(answer, question, WALL_CLOCK_FACTOR * limits[0])
             if how is None:  # there is no other process
-                return read(path, *rest)
+                return reader(path, *arguments)
             if how[0]:
                 raise _refused(where, *how, *limits)
-            found = answers.hear(*files)
-    return read(path, *rest) if isinstance(found, str) and found == answers.AGAIN else found
+            result = answers.read_answer(*files)
+    return (
+        reader(path, *arguments) if isinstance(result, str) and result == answers.AGAIN else result
+    )
 
 
 def _limits(size: float, patience: float) -> tuple[float, float]:
-    """s of the processor and MB of memory that reading a file of so many MB may take."""
+    """Limits of processor time, s, and memory, MB, for reading a file of `size` MB."""
     return patience * (SECONDS + SECONDS_A_MB * size), patience**0.5 * (MEMORY + MEMORY_A_MB * size)
 
 
@@ -106,22 +110,22 @@ def answer(
     module: str,
     function: str,
     path: Any,
-    rest: tuple[Any, ...],
+    arguments: tuple[Any, ...],
     seconds: float,
     memory: float,
 ) -> None:
-    """In a process of `kernel_process`: read within limits, and tell."""
+    """In a process of `kernel_process`: read within limits and write the answer."""
     global _is_apart
     import importlib
 
     _is_apart = True
-    read = getattr(importlib.import_module(module), function)
+    reader = getattr(importlib.import_module(module), function)
     if sys.platform == "win32":
-        answers.tell(answer_file, geometry, read, path, rest)
+        answers.write_answer(answer_file, geometry, reader, path, arguments)
         return
     copies.take_no_signals()
     spent = resource.getrusage(resource.RUSAGE_SELF)
-    with contextlib.ExitStack() as before:
+    with contextlib.ExitStack() as cleanup:
         limits = [
             (resource.RLIMIT_CPU, round(spent.ru_utime + spent.ru_stime + seconds)),
             (resource.RLIMIT_CORE, 0),
@@ -130,11 +134,11 @@ def answer(
             limits.append((resource.RLIMIT_AS, _pages(0) + round(memory * MB)))
         for kind, value in limits:
             soft, hard = resource.getrlimit(kind)
-            before.callback(resource.setrlimit, kind, (soft, hard))
+            cleanup.callback(resource.setrlimit, kind, (soft, hard))
             resource.setrlimit(
                 kind, (value if hard == resource.RLIM_INFINITY else min(value, hard), hard)
             )
-        answers.tell(answer_file, geometry, read, path, rest)
+        answers.write_answer(answer_file, geometry, reader, path, arguments)
 
 
 def _size(path: str | os.PathLike[str]) -> float:
@@ -145,17 +149,17 @@ def _size(path: str | os.PathLike[str]) -> float:
 
 
 class _Reading:
-    """A copy of this process that reads a file within limits; nothing is left of it once this is closed."""
+    """A fork of the current process that reads a file within limits; `close` removes it completely."""
 
     def __init__(
         self,
-        read: Callable[..., object],
+        reader: Callable[..., object],
         path: Any,
-        rest: tuple[Any, ...],
+        arguments: tuple[Any, ...],
         seconds: float,
         memory: float,
     ) -> None:
-        self._before, self._longest, self._pid = _pages(1), LONGER * seconds, 0
+        self._before, self._longest, self._pid = _pages(1), WALL_CLOCK_FACTOR * seconds, 0
         self._over, theirs = os.pipe()
         self._descriptors = [self._over, os.memfd_create("told"), os.memfd_create("geometry")]
         text, geometry = self._descriptors[1:]
@@ -165,7 +169,7 @@ class _Reading:
         )  # that this process and its copies have
         try:
             self._pid = copies.begun(
-                lambda: _limited(seconds, memory, *self.files, read, path, rest)
+                lambda: _limited(seconds, memory, *self.files, reader, path, arguments)
             )
         except BaseException:
             self.close()
@@ -180,7 +184,9 @@ class _Reading:
         self.close()
 
     def wait(self) -> tuple[int, float]:
-        """How it ended, as Popen tells it, and the memory, MB, that it used beside what this process has."""
+        """The exit code as Popen gives it, and the memory, MB, used in addition to the current
+        process's.
+        """
         until = time.monotonic() + self._longest
         while (
             not (over := bool(select.select([self._over], [], [], 0.5)[0]))
@@ -207,20 +213,20 @@ class _Reading:
 
 
 def _limited(seconds: float, memory: float, *what: Any) -> None:
-    """In the copy: read, and tell."""
+    """In the fork: read, and write the answer."""
     global _is_apart
     _is_apart = True
     _limit(resource.RLIMIT_CORE, 0)
     _limit(resource.RLIMIT_CPU, round(seconds))
     _limit(resource.RLIMIT_AS, _pages(0) + round(memory * MB))
     try:
-        answers.tell(*what)
+        answers.write_answer(*what)
     except MemoryError:
         os._exit(NO_MEMORY)
 
 
 def _pages(column: int) -> int:
-    """Bytes of this process, all of them (0) or those in memory (1)."""
+    """Memory of the current process, bytes: total (0) or resident (1)."""
     with open("/proc/self/statm", encoding="ascii") as stream:
         return int(stream.read().split()[column]) * resource.getpagesize()
 
@@ -230,13 +236,13 @@ def _limit(kind: int, value: int) -> None:
     resource.setrlimit(kind, (value if hard == resource.RLIM_INFINITY else min(value, hard), hard))
 
 
-def _refused(where: str, ended: int, used: float, seconds: float, memory: float) -> InputError:
-    if ended == -signal.SIGXCPU:
+def _refused(where: str, exit_code: int, used: float, seconds: float, memory: float) -> InputError:
+    if exit_code == -signal.SIGXCPU:
         why = Text(
             "it takes more than {:.0f} s of the processor to read, the limit of a file of its size",
             seconds,
         )
-    elif ended == NO_MEMORY or used > 0.8 * memory:
+    elif exit_code == NO_MEMORY or used > 0.8 * memory:
         why = Text(
             "it takes more than {:.0f} MB of memory to read, the limit of a file of its size",
             memory,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Files of shapes as triangles, to be looked at."""
+"""Shape files as triangles for display."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from freecad_am.core.types import Array, Integers
 
 from ...core.geometry.located import locate
 from ...core.geometry.mesh.file_unit import MESHES
-from .apart import apart
+from .apart import read_apart
 from .read import read_mesh, read_shape
 
 # how far triangles may be off a shape's surface, as a share of its size
@@ -29,16 +29,16 @@ def triangles(path: Path) -> tuple[Array, Integers]:
     try:
         now = path.stat()
     except OSError:
-        return _triangles(path)  # which tells what is wrong
+        return _triangles(path)  # raises the reason
     return _known(path, now.st_mtime_ns, now.st_size)
 
 
 @lru_cache(maxsize=64)
 def _known(path: Path, changed: int, size: int) -> tuple[Array, Integers]:
-    found = apart(_triangles, path)
-    for array in found:
+    arrays = read_apart(_triangles, path)
+    for array in arrays:
         array.flags.writeable = False
-    return found
+    return arrays
 
 
 def _triangles(path: Path) -> tuple[Array, Integers]:

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Faces that close on the axis and come out of a STEP file without extent.
 
-The geometry kernel writes a dome revolved from a circle or an ellipse with its rim as the only edge, and on reading
-takes the rim for the whole face: area 0. The surface is still exact, and the sense of the rim tells on which side of it
-the face lies. Of a dome that is part of a turn, OpenCASCADE 7.8 and later lose the point on the axis alike, and take
-the whole surface for the face; there the edges that lead to the axis are the meridian.
+The geometry kernel writes a dome revolved from a circle or an ellipse with its rim as the only
+edge, and on reading takes the rim for the whole face: area 0. The surface is still exact, and the
+sense of the rim gives the side of the face. For a dome that is part of a turn, OpenCASCADE 7.8 and
+later also lose the point on the axis and take the whole surface for the face; there the edges that
+lead to the axis are the meridian.
 """
 
 from __future__ import annotations
@@ -41,8 +42,10 @@ def edges_of(face: Any) -> list[Any]:
     )
 
 
-def restored(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
-    """The meridian from the rim to the axis as samples (points (n, 2), tangents (n, 2)), None where it cannot be told."""
+def restore_meridian(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
+    """The meridian from the rim to the axis as samples (points (n, 2), tangents (n, 2)), or None if
+    it is undetermined.
+    """
     meridian = _to_axis(face)
     if meridian is not None:
         return pieces_of(meridian.Curve, frame, *meridian.ParameterRange)
@@ -50,7 +53,7 @@ def restored(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
 
 
 def _to_axis(face: Any) -> Any:
-    """An edge that leads to the axis of a surface of revolution and ends on it; None where there is none."""
+    """An edge that leads to the axis of a surface of revolution and ends on it, or None."""
     surface = face.Surface
     if surface.TypeId != "Part::GeomSurfaceOfRevolution":
         return None
@@ -58,11 +61,11 @@ def _to_axis(face: Any) -> Any:
 
 
 def _leads_to_axis(edge: Any, surface: Any) -> bool:
-    away = [
+    distances = [
         (vertex.Point - surface.Location).cross(surface.Direction).Length
         for vertex in edge.Vertexes
     ]
-    return bool(away and min(away) < ON_AXIS < max(away))
+    return bool(distances and min(distances) < ON_AXIS < max(distances))
 
 
 def _from_rim(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
@@ -70,10 +73,10 @@ def _from_rim(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
     if surface.TypeId != "Part::GeomSurfaceOfRevolution":
         return None
     edge = next(edge for edge in face.Edges if not edge.Degenerated)
-    first, last = edge.ParameterRange
-    at = first + np.array([0.25, 0.26]) * (last - first)
-    (u, start), (next_u, _) = (surface.parameter(edge.valueAt(t)) for t in at.tolist())
-    # seen in the surface's parameters the face lies left of its rim
+    t_start, t_end = edge.ParameterRange
+    parameters = t_start + np.array([0.25, 0.26]) * (t_end - t_start)
+    (u, start), (next_u, _) = (surface.parameter(edge.valueAt(t)) for t in parameters.tolist())
+    # in the surface's parameters the face is left of its rim
     rising = (np.mod(next_u - u + np.pi, 2.0 * np.pi) - np.pi) > 0.0
     sense = 1.0 if rising == (edge.Orientation == face.Orientation) else -1.0
     curve = surface.uIso(u)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """One small mesh less another, cut by the geometry kernel as solids with flat faces.
 
-FreeCAD's own difference of meshes is of no use here: of a box less a cylinder it returns other volumes without a message.
+FreeCAD's own difference of meshes is unusable here: for a box less a cylinder it returns wrong
+volumes without a message.
 """
 
 from __future__ import annotations
@@ -25,25 +26,26 @@ EXACT = 1e-6  # of a volume
 def difference(
     points: Array, corners: Index, tool_points: Array, tool_corners: Index
 ) -> tuple[Array, Index] | None:
-    """Points (n, 3) and corners (m, 3) of a closed mesh less a closed tool; no triangles where the tool takes all of it.
+    """Points (n, 3) and corners (m, 3) of a closed mesh less a closed tool; no triangles where the
+    tool removes the whole mesh.
 
-    None where the kernel finds one of them unsound (it then returns too small a common part of some, and a difference that
-    agrees with that), or what it returns is not closed, or its volume and that of what is common to both are not together
-    that of the mesh.
+    None if the kernel finds a solid unsound (it may then return too small a common part and a
+    matching difference), if its result is not closed, or if the volumes of difference and common
+    part do not add up to the volume of the mesh.
     """
     try:
-        part, tool = _solid(points, corners), _solid(tool_points, tool_corners)
-        if part.Volume <= 0.0 or tool.Volume <= 0.0 or not (part.isValid() and tool.isValid()):
+        solid, tool = _solid(points, corners), _solid(tool_points, tool_corners)
+        if solid.Volume <= 0.0 or tool.Volume <= 0.0 or not (solid.isValid() and tool.isValid()):
             return None
-        rest, common = part.cut(tool), part.common(tool)
-        whole = SolidMesh(points, corners).volume
-        if abs(rest.Volume + common.Volume - whole) > EXACT * whole:
+        remainder, common = solid.cut(tool), solid.common(tool)
+        volume = SolidMesh(points, corners).volume
+        if abs(remainder.Volume + common.Volume - volume) > EXACT * volume:
             return None
-        if rest.Volume <= EXACT * whole:
+        if remainder.Volume <= EXACT * volume:
             return np.zeros((0, 3)), np.zeros((0, 3), dtype=np.intp)
-        if not rest.isValid():
+        if not remainder.isValid():
             return None
-        return _triangles(rest, whole)
+        return _triangles(remainder, volume)
     except (RuntimeError, ValueError, Part.OCCError):
         return None
 
@@ -55,19 +57,24 @@ def _solid(points: Array, corners: Index) -> Any:
     return Part.makeSolid(shape)
 
 
-def _triangles(shape: Any, whole: float) -> tuple[Array, Index] | None:
-    """Triangles of the solids of a shape with flat faces; None where they do not close or enclose another volume."""
+def _triangles(shape: Any, full_volume: float) -> tuple[Array, Index] | None:
+    """Triangles of the solids of a shape with flat faces; or None if they do not close or enclose
+    another volume.
+    """
     points: list[Array] = []
     corners: list[Index] = []
     count = 0
     for solid in shape.Solids:
         vertices, faces = solid.tessellate(1.0)
-        own, some = np.array([tuple(v) for v in vertices]), np.array(faces, dtype=np.intp)
-        if (Edges(some).count != 2).any():
+        vertex_array, face_array = (
+            np.array([tuple(v) for v in vertices]),
+            np.array(faces, dtype=np.intp),
+        )
+        if (Edges(face_array).count != 2).any():
             return None
-        if abs(SolidMesh(own, some).volume - solid.Volume) > EXACT * whole:
+        if abs(SolidMesh(vertex_array, face_array).volume - solid.Volume) > EXACT * full_volume:
             return None
-        points.append(own)
-        corners.append(some + count)
-        count += len(own)
+        points.append(vertex_array)
+        corners.append(face_array + count)
+        count += len(vertex_array)
     return np.vstack(points), np.vstack(corners)

@@ -64,7 +64,7 @@ CALLS = ("call", "csh")
 
 
 class ObjMesh:
-    """points (n, 3) and corners (m, 3) in units of the file, of which points that no face has are left out.
+    """points (n, 3) and corners (m, 3) in units of the file, without points that no face uses.
 
     is_mixed: whether it has faces of more than four corners.
     """
@@ -84,8 +84,8 @@ class ObjMesh:
         """A note on the lines, points and curves that were left out."""
         if not self.left_out:
             return ()
-        parts = ", ".join(f"{count} x {name}" for name, count in self.left_out.items())
-        text = Text("{}: left out, as they bound no shape: {}", self.where, parts)
+        counts = ", ".join(f"{count} x {name}" for name, count in self.left_out.items())
+        text = Text("{}: left out, as they bound no shape: {}", self.where, counts)
         return (Issue(NOTE, CONTENT, text),)
 
     def _read(self, line: bytes, number: int) -> None:
@@ -153,9 +153,9 @@ class ObjMesh:
             corners.append(number - 1 if number > 0 else count + number)
         if len(corners) < 3:
             raise ValueError
-        kept = [corner for k, corner in enumerate(corners) if corner != corners[k - 1]]
-        if len(kept) > 2:  # else it has no area
-            self._faces.append(kept)
+        distinct_corners = [corner for k, corner in enumerate(corners) if corner != corners[k - 1]]
+        if len(distinct_corners) > 2:  # else it has no area
+            self._faces.append(distinct_corners)
 
     def _triangles(self) -> tuple[Array, Index]:
         vertices = np.array(self._vertices, dtype=np.float64).reshape(-1, 3)

@@ -23,13 +23,13 @@ from . import apart
 
 STEP, IGES = (".step", ".stp"), (".iges", ".igs")
 READABLE = (*STEP, *IGES, ".brep", ".brp")
-FARTHEST = (
+MAX_COORDINATE_MM = (
     1e7  # mm; what reaches farther has a damaged coordinate, on which the kernel works without end
 )
 
 
 class FileContent(NamedTuple):
-    """shape: the Part.Shape or Mesh.Mesh of a file. issues: notes on what of the file was left out."""
+    """shape: the Part.Shape or Mesh.Mesh of a file. issues: notes on content that was left out."""
 
     shape: Any
     issues: tuple[Issue, ...]
@@ -76,7 +76,7 @@ def shape_content(path: str | os.PathLike[str]) -> FileContent:
         ) from error
     if size == 0:
         raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
-    return FileContent(*apart.apart(_shape, file, where))
+    return FileContent(*apart.read_apart(_shape, file, where))
 
 
 def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
@@ -85,23 +85,27 @@ def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
 
 
 def mesh_content(path: str | os.PathLike[str], scale: float = 1.0) -> FileContent:
-    """The Mesh.Mesh of an STL, OBJ or 3MF file, in the file's coordinates, mm. scale: mm of one unit of an STL or OBJ file,
-    which tells none; a 3MF file tells its own. InputErrors as `read_shape`."""
+    """The Mesh.Mesh of an STL, OBJ or 3MF file, in the file's coordinates, mm. scale: mm of one
+    unit of an STL or OBJ file, which states none; a 3MF file states its own. InputErrors as
+    `read_shape`.
+    """
     file = locate(path)
     where = file.name or str(path)
     if not file.is_file():
         raise InputError("NO_FILE", where, "there is no such file; check the name and the folder")
     if file.stat().st_size == 0:
         raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
-    return FileContent(*apart.apart(_mesh, file, where, scale))
+    return FileContent(*apart.read_apart(_mesh, file, where, scale))
 
 
 def placed_mesh(mesh: Any, matrix: Any) -> Any:
-    """A Mesh.Mesh where its own placement, and a matrix after that, put it; it has none left itself."""
-    found = Mesh.Mesh()
-    found.addFacets(mesh.Topology)
-    found.transform(matrix)
-    return found
+    """A copy of a Mesh.Mesh moved by its own placement and then by a matrix; the copy has no
+    placement.
+    """
+    copy = Mesh.Mesh()
+    copy.addFacets(mesh.Topology)
+    copy.transform(matrix)
+    return copy
 
 
 def _mesh(file: Path, where: str, scale: float) -> tuple[Any, tuple[Issue, ...]]:
@@ -115,10 +119,10 @@ def _mesh(file: Path, where: str, scale: float) -> tuple[Any, tuple[Issue, ...]]
         _add_triangles(mesh, points, corners)
         return mesh, issues
     if file.suffix.lower() == ".obj":
-        read = obj_mesh.ObjMesh(file, where)
-        issues = read.issues()
-        _add_triangles(mesh, read.points, read.corners)
-        if read.is_mixed:
+        obj = obj_mesh.ObjMesh(file, where)
+        issues = obj.issues()
+        _add_triangles(mesh, obj.points, obj.corners)
+        if obj.is_mixed:
             mesh.removeDuplicatedPoints()
     else:
         corners, issues = stl_check.stl_triangles(file, where)
@@ -134,7 +138,9 @@ def _mesh(file: Path, where: str, scale: float) -> tuple[Any, tuple[Issue, ...]]
 
 
 def _read_stl(mesh: Any, file: Path, corners: Array) -> None:
-    """Read an STL file by FreeCAD, or from its triangles (m, 3, 3) where FreeCAD reads another number of them."""
+    """Read an STL file by FreeCAD, or from its triangles (m, 3, 3) if FreeCAD reads a different
+    number.
+    """
     with suppress(Exception), _quiet():
         mesh.read(str(file))
     if mesh.CountFacets != len(corners):
@@ -194,7 +200,7 @@ def _read_shape(file: Path, where: str) -> Any:
 
 
 def _refuse_bare(shape: Any, where: str) -> None:
-    """InputError UNSUPPORTED_FILE where a face has triangles alone and no surface."""
+    """InputError UNSUPPORTED_FILE if a face has triangles but no surface."""
     bare = sum(not _has_surface(face) for face in shape.Faces)
     if bare:
         raise InputError(
@@ -219,14 +225,14 @@ def _reach(box: Any) -> float:
 
 
 def _refuse_far(reach: float, where: str) -> None:
-    if not reach <= FARTHEST:
+    if not reach <= MAX_COORDINATE_MM:
         raise InputError(
             "BAD_FILE",
             where,
             "it reaches to {:.3g} mm, farther than {:.3g} mm; a coordinate is damaged, or its unit is "
             "wrong; export the part again",
             reach,
-            FARTHEST,
+            MAX_COORDINATE_MM,
         )
 
 
@@ -234,10 +240,10 @@ def _refuse_far(reach: float, where: str) -> None:
 def _quiet() -> Iterator[None]:
     """Sends what the geometry kernel prints on the process's standard output to standard error."""
     sys.stdout.flush()
-    kept = os.dup(1)
+    stdout_copy = os.dup(1)
     try:
         os.dup2(2, 1)
         yield
     finally:
-        os.dup2(kept, 1)
-        os.close(kept)
+        os.dup2(stdout_copy, 1)
+        os.close(stdout_copy)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a STEP or IGES file holds beside what the geometry kernel reads of it.
+"""The content of a STEP or IGES file that the geometry kernel skips.
 
-The kernel leaves out what it cannot read without a message: solids by constructive geometry, triangles without surfaces,
+The kernel skips without a message: solids by constructive geometry, triangles without surfaces,
 parts in other files. The text of the file names them.
 """
 
@@ -35,7 +35,7 @@ CAD_FILES = (
 )
 SOLIDS = ("MANIFOLD_SOLID_BREP", "BREP_WITH_VOIDS", "FACETED_BREP")
 FACES = ("ADVANCED_FACE", "FACE_SURFACE")
-# kinds of geometry of which at least one is in any file with a shape
+# every file with a shape has at least one of these kinds
 GEOMETRY = (
     *SOLIDS,
     *FACES,
@@ -102,13 +102,13 @@ class StepContent:
         self.kinds: Counter[str] = Counter()
         self._representations: list[int] = []  # where their texts begin
         self._solids: set[bytes] = set()
-        for found in TYPE.finditer(self.data):
-            kind = found.group(2).decode("ascii")
+        for match in TYPE.finditer(self.data):
+            kind = match.group(2).decode("ascii")
             self.kinds[kind] += 1
             if kind in SOLIDS:
-                self._solids.add(found.group(1))
+                self._solids.add(match.group(1))
             elif kind.endswith("SHAPE_REPRESENTATION"):
-                self._representations.append(found.end())
+                self._representations.append(match.end())
 
     @property
     def is_whole(self) -> bool:
@@ -133,22 +133,22 @@ class StepContent:
                 PLAIN,
             )
         names = [name.decode("utf-8", "replace") for name in DOCUMENT_FILE.findall(self.data)]
-        others = [name for name in names if name.lower().endswith(CAD_FILES)]
-        if others:
+        references = [name for name in names if name.lower().endswith(CAD_FILES)]
+        if references:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
                 "parts of it are in other files ({}), which are not read; export the assembly as one file",
-                ", ".join(dict.fromkeys(others)),
+                ", ".join(dict.fromkeys(references)),
             )
 
     def _refuse_triangles(self) -> None:
-        """InputError for tessellated solids, shells and sets that stand for no exact ones."""
+        """InputError for tessellated solids, shells and sets without an exact counterpart."""
         loose = sum(
-            _last_argument(self.data, found.end()) == b"$"
-            for found in TESSELLATED.finditer(self.data)
+            _last_argument(self.data, match.end()) == b"$"
+            for match in TESSELLATED.finditer(self.data)
         )
-        if not self.has_geometry:  # whatever they are linked to is not there
+        if not self.has_geometry:  # their linked geometry is missing
             loose += len(TESSELLATED.findall(self.data)) + len(FACE_SETS.findall(self.data))
             loose += self.kinds["TRIANGULATED_FACE"] + self.kinds["COMPLEX_TRIANGULATED_FACE"]
         if loose:
@@ -161,7 +161,9 @@ class StepContent:
             )
 
     def compare(self, shape: Any) -> list[Issue]:
-        """Notes and warnings on what of the file is not in its shape. InputError BAD_FILE where solids are lost."""
+        """Notes and warnings on file content that is missing in its shape. InputError BAD_FILE
+        where solids are lost.
+        """
         issues = []
         solids, faces = len(self._represented()), sum(self.kinds[kind] for kind in FACES)
         lost_solids, lost_faces = solids - len(shape.Solids), faces - len(shape.Faces)
@@ -232,27 +234,28 @@ class StepContent:
 
 
 def _last_argument(data: bytes, start: int) -> bytes:
-    """The last argument of a list of them that begins at `start`, after its bracket."""
-    depth, at, begin = 1, start, start
-    while at < len(data) and depth:
-        sign = data[at : at + 1]
+    """The last argument of an argument list that begins at `start`, after its bracket."""
+    depth, index, begin = 1, start, start
+    while index < len(data) and depth:
+        sign = data[index : index + 1]
         if sign == b"'":
-            at = data.find(b"'", at + 1)
-            if at < 0:
+            index = data.find(b"'", index + 1)
+            if index < 0:
                 break
         elif sign == b"(":
             depth += 1
         elif sign == b")":
             depth -= 1
         elif sign == b"," and depth == 1:
-            begin = at + 1
-        at += 1
-    return data[begin : at - 1].strip()
+            begin = index + 1
+        index += 1
+    return data[begin : index - 1].strip()
 
 
 def refuse_iges(file: Path, where: str) -> list[Issue]:
-    """Notes on what of an IGES file is not read. InputError UNSUPPORTED_FILE for constructed solids and references to other
-    files, EMPTY_FILE where no entity is a shape."""
+    """Notes on IGES content that is not read. InputError UNSUPPORTED_FILE for constructed solids
+    and references to other files, EMPTY_FILE where no entity is a shape.
+    """
     kinds, blanked, visible = _iges_kinds(file)
     constructed = [name for kind, name in IGES_CONSTRUCTED.items() if kinds[kind]]
     if constructed:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The triangles of an STL file, each of which is accounted for.
+"""The triangles of an STL file, all accounted for.
 
-FreeCAD's own reader drops triangles with a number that it cannot read, what follows the last one, and the rest of a file
-that is cut off, without a message.
+FreeCAD's own reader drops triangles with a number that it cannot read, anything after the last one,
+and the rest of a truncated file, without a message.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ BETWEEN = ("outer", "endfacet", "end", "color")
 
 
 def stl_triangles(file: Path, where: str) -> tuple[Array, tuple[Issue, ...]]:
-    """Corners (m, 3, 3) of all triangles of an STL file, of all its solids, and a note on what follows them.
+    """Corners (m, 3, 3) of the triangles of every solid in an STL file, and a note on bytes after
+    them.
 
     InputError BAD_FILE where it is cut off, or has anything else than triangles.
     """
@@ -46,36 +47,36 @@ def _is_text(data: bytes) -> bool:
 
 
 def _binary(data: bytes, count: int, where: str) -> tuple[Array, tuple[Issue, ...]]:
-    there = (len(data) - HEAD) // RECORD
-    if there < count:
+    available = (len(data) - HEAD) // RECORD
+    if available < count:
         raise InputError(
             "BAD_FILE",
             where,
             "it is cut off, or is no STL file: it says that it has {:,} triangles, and has room for {:,}; export the "
             "part again",
             count,
-            there,
+            available,
         )
-    rest = data[HEAD + RECORD * count :]
-    if len(rest.strip(b"\0 \t\r\n")) >= RECORD:
+    trailing = data[HEAD + RECORD * count :]
+    if len(trailing.strip(b"\0 \t\r\n")) >= RECORD:
         raise InputError(
             "BAD_FILE",
             where,
             "{:,} bytes follow its {:,} triangles, which may be further ones; export the part again, as one solid",
-            len(rest),
+            len(trailing),
             count,
         )
     issues: tuple[Issue, ...] = ()
-    if rest.strip(b"\0 \t\r\n"):
-        message = Text("{}: {} bytes after its triangles are not read", where, len(rest))
+    if trailing.strip(b"\0 \t\r\n"):
+        message = Text("{}: {} bytes after its triangles are not read", where, len(trailing))
         issues = (Issue(NOTE, CONTENT, message),)
-    read = np.frombuffer(data, TRIANGLE, count, HEAD)
-    return read["corners"].astype(np.float64), issues
+    records = np.frombuffer(data, TRIANGLE, count, HEAD)
+    return records["corners"].astype(np.float64), issues
 
 
 def _ascii(data: bytes, where: str) -> Array:
     corners: list[tuple[float, float, float]] = []
-    in_loop = -1  # corners of the loop so far, -1 outside of any
+    in_loop = -1  # corners of the current loop, -1 outside loops
     is_open = False  # a solid
     for number, line in enumerate(data.decode("latin-1").splitlines(), start=1):
         words = line.split()

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Triangles of a 3MF file, which FreeCAD reads since 0.21 only (decision 0011).
 
-3MF core specification 1.3: a zip with an XML model of objects - a mesh, or components: other objects, moved - and of
-what is to be built, items: objects, moved. The production extension puts objects into further files of the zip. Roles
-that slicers give to objects are in `three_mf_roles`. What an extension adds to an object changes its shape, unless the
-extension is known to be harmless: such an object is rejected when it is built.
+3MF core specification 1.3: a zip with an XML model of objects - a mesh, or components: other
+objects, moved - and of items to build: objects, moved. The production extension puts objects into
+further files of the zip. Roles that slicers give to objects are in `three_mf_roles`. What an
+extension adds to an object changes its shape, unless the extension is known to be harmless: such an
+object is rejected when it is built.
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ SLIC3R = (
     "http://schemas.slic3r.org/3mf/2017/06",
     "http://schemas.slic3r.org/3mf/2017/06/",
 )
-# of programs whose elements inside objects hold settings, but for the roles that are read
+# programs whose elements inside objects hold settings, except the roles that are read
 PROGRAMS = (
     CURA,
     *SLIC3R,
@@ -76,11 +77,11 @@ CORE_IN_OBJECTS = (
 CORE_ELSEWHERE = ("metadata", "metadatagroup", "resources", "build", "basematerials", "base")
 DEPOSITED = ("model", "surface")  # types of objects that are part
 NOT_DEPOSITED = {"support": roles.SUPPORT, "solidsupport": roles.SUPPORT, "other": "other"}
-LARGEST = 1 << 29  # bytes of a file of the zip, unpacked
-MAX_TRIANGLES = 20_000_000  # triangles of all items together
-MOST_PLACED, DEEPEST = 100_000, 100  # objects of all items together, and one inside the other
+MAX_UNPACKED_BYTES = 1 << 29  # bytes of a file of the zip, unpacked
+MAX_TRIANGLES = 20_000_000  # triangles, total over items
+MAX_PLACED_OBJECTS, MAX_NESTING = 100_000, 100  # objects, total over items, and levels of nesting
 CHUNK = 1 << 20
-LONGEST = 4 << 20  # bytes of one element
+MAX_ELEMENT_BYTES = 4 << 20  # bytes of one element
 MAX_CUT = 4000  # triangles that take part in all subtractions of negative volumes
 MAX_NAMED = 5  # pieces that a note names
 CONTENT = "FILE_CONTENT"
@@ -91,7 +92,7 @@ HARMLESS = re.compile(
     r"|cura/.*|docprops/.*|auxiliaries/.*|3d/textures?/.*|thumbnails?/.*|.*/",
     re.IGNORECASE,
 )
-# files in Metadata that are known to hold settings alone: of PrusaSlicer, SuperSlicer, Bambu Studio and OrcaSlicer
+# settings files in Metadata: PrusaSlicer, SuperSlicer, Bambu Studio and OrcaSlicer
 SETTINGS = re.compile(
     r"metadata/((slic3r(_pe)?|prusaslicer|superslicer)\.config|(slic3r|prusa|superslicer|slic3r_pe|prusa_slicer)_("
     r"layer_heights_profile|layer_config_ranges|sla_support_points|sla_drain_holes|custom_gcode_per_print_z|"
@@ -110,10 +111,10 @@ class _Object:
     name: str = ""
     points: list[tuple[float, float, float]] = field(default_factory=list)
     triangles: list[tuple[int, int, int]] = field(default_factory=list)
-    parts: list[tuple[Key, Array]] = field(default_factory=list)
+    components: list[tuple[Key, Array]] = field(default_factory=list)
     role: str = PART
     volumes: list[Volume] = field(default_factory=list)  # ranges of its triangles
-    unread: str = ""  # what of it changes its shape and is not read
+    unread: str = ""  # unread content that changes its shape
     laid: list[str] = field(default_factory=list)  # settings by which a slicer lays it otherwise
 
 
@@ -134,7 +135,9 @@ class _Piece(NamedTuple):
 
 
 class Content(NamedTuple):
-    """points (n, 3) mm and corners (m, 3) of all that a file builds, and notes on what of it was left out."""
+    """points (n, 3) mm and corners (m, 3) of everything that a file builds, and notes on omitted
+    content.
+    """
 
     points: Array
     corners: Index
@@ -142,7 +145,7 @@ class Content(NamedTuple):
 
 
 def triangles(path: Path) -> tuple[Array, Index]:
-    """Points (n, 3) mm and corners (m, 3) of all that a 3MF file builds, as `content`."""
+    """Points (n, 3) mm and corners (m, 3) of everything that a 3MF file builds, as `content`."""
     return content(path)[:2]
 
 
@@ -171,7 +174,7 @@ class _Package:
         self.archive, self.where = archive, where
         self.objects: dict[Key, _Object] = {}
         self.items: list[_Item] = []
-        self.read: dict[str, float] = {}  # files read, and their units in mm
+        self.units: dict[str, float] = {}  # files read, and their units in mm
         self.count = self.placed = 0  # triangles and objects built so far
         self.points = 0
         self.start = ""
@@ -190,14 +193,14 @@ class _Package:
         self._load(self.start)
         self._read_roles()
         for number, item in enumerate(self.items):
-            made = self.objects.get(item.key)
-            if made is not None:  # settings of an item are those of what it places
-                made = replace(
-                    made, unread=item.unread or made.unread, laid=[*made.laid, *item.laid]
+            model = self.objects.get(item.key)
+            if model is not None:  # settings of an item are those of what it places
+                model = replace(
+                    model, unread=item.unread or model.unread, laid=[*model.laid, *item.laid]
                 )
-            self._add(item.key, item.moved, item.role, (), number, made)
+            self._add(item.key, item.moved, item.role, (), number, model)
         self._read_profiles()
-        points, corners = self._joined()
+        points, corners = self._merge_pieces()
         if not len(corners):
             raise InputError(
                 "EMPTY_FILE",
@@ -207,7 +210,7 @@ class _Package:
             )
         return Content(points, corners, tuple(self._notes()))
 
-    def _joined(self) -> tuple[Array, Index]:
+    def _merge_pieces(self) -> tuple[Array, Index]:
         """The parts, with the negative volumes of the same item subtracted."""
         negatives = [piece for piece in self.pieces if piece.role == NEGATIVE]
         points: list[Array] = [np.zeros((0, 3))]
@@ -216,13 +219,13 @@ class _Package:
         for piece in self.pieces:
             if piece.role != PART:
                 continue
-            own, faces = piece.points, piece.corners
+            vertices, faces = piece.points, piece.corners
             for negative in negatives:
                 if negative.item == piece.item:
-                    own, faces = self._subtracted(own, faces, negative)
-            points.append(own)
+                    vertices, faces = self._subtracted(vertices, faces, negative)
+            points.append(vertices)
             corners.append(faces + count)
-            count += len(own)
+            count += len(vertices)
         return np.vstack(points), np.vstack(corners)
 
     def _subtracted(self, points: Array, corners: Index, tool: _Piece) -> tuple[Array, Index]:
@@ -230,19 +233,19 @@ class _Package:
             return points, corners
         count = len(corners) + len(tool.corners)
         self.cut += count
-        most = mesh_difference.MAX_TRIANGLES
-        if count > most or self.cut > MAX_CUT:
+        max_triangles = mesh_difference.MAX_TRIANGLES
+        if count > max_triangles or self.cut > MAX_CUT:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
                 "{!r} is a negative volume, and cannot be subtracted from the part here: {} triangles take part, and at most "
                 "{} are cut; subtract it where the part was drawn, or remove it in the slicer, and export again",
                 tool.name,
-                count if count > most else self.cut,
-                most if count > most else MAX_CUT,
+                count if count > max_triangles else self.cut,
+                max_triangles if count > max_triangles else MAX_CUT,
             )
-        found = mesh_difference.difference(points, corners, tool.points, tool.corners)
-        if found is None:
+        remainder = mesh_difference.difference(points, corners, tool.points, tool.corners)
+        if remainder is None:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
@@ -252,7 +255,7 @@ class _Package:
                 tool.name,
             )
         self.subtracted.append((tool.name, NEGATIVE))
-        return found
+        return remainder
 
     def _names_left_out(self) -> str:
         if not self.left_out:
@@ -286,25 +289,27 @@ class _Package:
                 ", ".join(list(self.spaces)[:MAX_NAMED]),
             )
             notes.append(Issue(NOTE, CONTENT, message))
-        read = {name.lower() for name in self.read}
-        others = [
+        read_names = {name.lower() for name in self.units}
+        unused = [
             name
             for name in self.archive.namelist()
-            if name.lower() not in read
+            if name.lower() not in read_names
             and not (HARMLESS.fullmatch(name) or SETTINGS.fullmatch(name) or roles.is_config(name))
         ]
-        if others:
+        if unused:
             message = Text(
                 "{}: files in it that are not read, as nothing that is built uses them: {}",
                 self.where,
-                ", ".join(others[:MAX_NAMED]),
+                ", ".join(unused[:MAX_NAMED]),
             )
             notes.append(Issue(NOTE, CONTENT, message))
         return notes
 
     def _named(self, name: str) -> str | None:
         """The file of the zip with that name, whatever its case."""
-        return next((one for one in self.archive.namelist() if one.lower() == name.lower()), None)
+        return next(
+            (entry for entry in self.archive.namelist() if entry.lower() == name.lower()), None
+        )
 
     def _read_keystore(self) -> None:
         """Learn which files of the zip the extension for secure content encrypts."""
@@ -349,7 +354,7 @@ class _Package:
             )
 
     def _read_profiles(self) -> None:
-        """Note settings of all objects, in the profiles that Cura saves with a project."""
+        """Note the objects' settings in the profiles that Cura saves with a project."""
         for name in filter(roles.CURA_PROFILE.fullmatch, self.archive.namelist()):
             with self.archive.open(name) as stream:
                 text = stream.read(CHUNK).decode("utf-8", "replace")
@@ -358,48 +363,50 @@ class _Package:
                     self.laid[Text("{!r}: {} = {}", name, key, value)] = None
 
     def _give_roles(self, number: int, volumes: list[Volume]) -> None:
-        made = self.objects.get((self.start, number))
-        if made is None:
+        model = self.objects.get((self.start, number))
+        if model is None:
             return
-        ranges = [volume for volume in volumes if volume.first is not None]
-        if made.triangles and ranges:
-            made.volumes = ranges
+        ranges = [volume for volume in volumes if volume.start is not None]
+        if model.triangles and ranges:
+            model.volumes = ranges
             return
-        self.parts[number] = {volume.part: volume for volume in volumes if volume.part is not None}
-        if made.triangles and len(volumes) == 1:
-            made.role = volumes[0].role if made.role == PART else made.role
-            made.name = volumes[0].name or made.name
+        self.parts[number] = {
+            volume.component: volume for volume in volumes if volume.component is not None
+        }
+        if model.triangles and len(volumes) == 1:
+            model.role = volumes[0].role if model.role == PART else model.role
+            model.name = volumes[0].name or model.name
 
     def _start(self) -> str:
         """The file of the zip that holds the model."""
         names = {name.lower(): name for name in self.archive.namelist()}
         if "_rels/.rels" in names:
-            found: list[str] = []
+            targets: list[str] = []
 
             def relation(name: str, values: dict[str, str]) -> None:
                 if name.endswith(" Relationship") and values.get("Type") == MODEL_RELATION:
-                    found.append(values.get("Target", "").lstrip("/"))
+                    targets.append(values.get("Target", "").lstrip("/"))
 
             self._parse(names["_rels/.rels"], relation)
-            if found and found[0].lower() in names:
-                return names[found[0].lower()]
+            if targets and targets[0].lower() in names:
+                return names[targets[0].lower()]
         if MODEL.lower() not in names:
             raise _bad(self.where, Text("there is no model in it ({})", MODEL))
         return names[MODEL.lower()]
 
     def _load(self, file: str) -> None:
-        """Read a file of the zip and those that its components are in."""
+        """Read a file of the zip and the files of its components."""
         waiting = [file]
         while waiting:
             name = waiting.pop()
-            if name in self.read:
+            if name in self.units:
                 continue
             if name.lower() in self.encrypted:
                 raise _encrypted(self.where)
             reader = _Model(self.where, name)
             self._parse(name, reader.start, reader.prefix, reader.end, reader.text)
-            self.read[name] = reader.unit
-            if reader.unit_is_given and reader.unit != self.read[file]:
+            self.units[name] = reader.unit
+            if reader.unit_is_given and reader.unit != self.units[file]:
                 raise InputError(
                     "UNSUPPORTED_FILE",
                     self.where,
@@ -411,10 +418,10 @@ class _Package:
             self.spaces |= reader.spaces
             if name == file:
                 self.items = reader.items
-            wanted = [key for made in reader.objects.values() for key, _ in made.parts] + [
+            keys = [key for model in reader.objects.values() for key, _ in model.components] + [
                 item.key for item in reader.items
             ]
-            waiting += [key[0] for key in wanted]
+            waiting += [key[0] for key in keys]
 
     def _parse(
         self,
@@ -442,22 +449,24 @@ class _Package:
         size = 0
         with self.archive.open(info) as stream:
             while chunk := stream.read(CHUNK):
-                size += len(chunk)  # what the zip tells of itself need not be true
-                if size > LARGEST:
+                size += len(chunk)  # the size in the zip's directory may be wrong
+                if size > MAX_UNPACKED_BYTES:
                     raise InputError(
                         "UNSUPPORTED_FILE",
                         self.where,
                         "{} unpacks to more than {} MB; export it with a coarser mesh",
                         name,
-                        LARGEST >> 20,
+                        MAX_UNPACKED_BYTES >> 20,
                     )
                 parser.Parse(chunk, False)
                 if (
-                    size - max(parser.CurrentByteIndex, 0) > LONGEST
+                    size - max(parser.CurrentByteIndex, 0) > MAX_ELEMENT_BYTES
                 ):  # it would be read again with each chunk
                     raise _bad(
                         self.where,
-                        Text("an element of {} is longer than {} MB", name, LONGEST >> 20),
+                        Text(
+                            "an element of {} is longer than {} MB", name, MAX_ELEMENT_BYTES >> 20
+                        ),
                     )
             parser.Parse(b"", True)
 
@@ -471,39 +480,41 @@ class _Package:
         role: str,
         within: tuple[Key, ...],
         item: int,
-        made: _Object | None,
+        model: _Object | None,
     ) -> None:
-        """Add an object, moved (4, 3), to the pieces; None: it is not there. role: that of what holds it."""
-        if made is None or key in within:
-            text = "holds itself" if made else "is not in it"
+        """Add an object, moved (4, 3), to the pieces. role: the role of its container. model: None
+        if the file has no such object.
+        """
+        if model is None or key in within:
+            text = "holds itself" if model else "is not in it"
             raise _bad(self.where, Text("object {} of {} {}", key[1], key[0], Word(text)))
         self.placed += 1
-        if self.placed > MOST_PLACED or len(within) > DEEPEST:
-            text = Text("{:,} objects, or objects nested {} times", MOST_PLACED, DEEPEST)
+        if self.placed > MAX_PLACED_OBJECTS or len(within) > MAX_NESTING:
+            text = Text("{:,} objects, or objects nested {} times", MAX_PLACED_OBJECTS, MAX_NESTING)
             raise InputError(
                 "UNSUPPORTED_FILE", self.where, "it builds more than {}; simplify it", Word(text)
             )
         volume = self._volume(key, within)
-        name = (volume and volume.name) or made.name or str(key[1])
-        role = self._role(made, role, volume)
+        name = (volume and volume.name) or model.name or str(key[1])
+        role = self._role(model, role, volume)
         if role not in (PART, NEGATIVE):
             self.left_out.append((name, role))
             return
-        if made.unread:
+        if model.unread:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
                 "object {!r} has {}, which changes its shape and is not read; export it as plain triangles",
                 name,
-                made.unread,
+                model.unread,
             )
-        for setting in made.laid:
+        for setting in model.laid:
             self.laid[Text("{!r}: {}", name, setting)] = None
-        for part, way in made.parts:
-            placed = np.vstack([way[:3] @ moved[:3], way[3] @ moved[:3] + moved[3]])
-            self._add(part, placed, role, (*within, key), item, self.objects.get(part))
-        if made.triangles:
-            self._add_mesh(made, key, moved, role, name, item)
+        for component, transform in model.components:
+            placed = np.vstack([transform[:3] @ moved[:3], transform[3] @ moved[:3] + moved[3]])
+            self._add(component, placed, role, (*within, key), item, self.objects.get(component))
+        if model.triangles:
+            self._add_mesh(model, key, moved, role, name, item)
 
     def _volume(self, key: Key, within: tuple[Key, ...]) -> Volume | None:
         """What a slicer's file says of a component of the objects that hold it, the innermost first."""
@@ -512,30 +523,30 @@ class _Package:
                 return self.parts[number][key[1]]
         return None
 
-    def _role(self, made: _Object, role: str, volume: Volume | None) -> str:
-        """That of an object: its own, else the slicer's, else the one of its type, else that of what holds it."""
-        if made.kind not in (*DEPOSITED, *NOT_DEPOSITED):
+    def _role(self, model: _Object, role: str, volume: Volume | None) -> str:
+        """The role of an object: its own, else the slicer's, else its type's, else its container's."""
+        if model.kind not in (*DEPOSITED, *NOT_DEPOSITED):
             raise _bad(
                 self.where,
-                Text("it has an object of the type {!r}, which 3MF does not know", made.kind),
+                Text("it has an object of the type {!r}, which 3MF does not know", model.kind),
             )
         if role not in (PART, NEGATIVE):
             return role
-        own = made.role
+        own_role = model.role
         if volume is not None:
             # Bambu Studio gives whatever is not part the type 'other'
-            own = volume.role if own == PART else own
+            own_role = volume.role if own_role == PART else own_role
             if volume.role == PART:
-                own = NOT_DEPOSITED.get(made.kind, own)
-        elif own == PART:
-            own = NOT_DEPOSITED.get(made.kind, PART)
-        return role if own == PART else own
+                own_role = NOT_DEPOSITED.get(model.kind, own_role)
+        elif own_role == PART:
+            own_role = NOT_DEPOSITED.get(model.kind, PART)
+        return role if own_role == PART else own_role
 
     def _add_mesh(
-        self, made: _Object, key: Key, moved: Array, role: str, name: str, item: int
+        self, model: _Object, key: Key, moved: Array, role: str, name: str, item: int
     ) -> None:
-        unit = self.read[self.start]
-        self.count += len(made.triangles)
+        unit = self.units[self.start]
+        self.count += len(model.triangles)
         if self.count > MAX_TRIANGLES:
             raise InputError(
                 "UNSUPPORTED_FILE",
@@ -543,17 +554,23 @@ class _Package:
                 "it builds more than {:,} triangles; simplify it",
                 MAX_TRIANGLES,
             )
-        own, some = np.array(made.points).reshape(-1, 3), np.array(made.triangles, dtype=np.intp)
-        if some.min() < 0 or some.max() >= len(own):
+        vertices, faces = (
+            np.array(model.points).reshape(-1, 3),
+            np.array(model.triangles, dtype=np.intp),
+        )
+        if faces.min() < 0 or faces.max() >= len(vertices):
             raise _bad(
                 self.where,
                 Text("object {} of {} has triangles with points that it has not", key[1], key[0]),
             )
-        self.points += len(own)
+        self.points += len(vertices)
         if self.points > 3 * MAX_TRIANGLES:
-            most = 3 * MAX_TRIANGLES
+            max_points = 3 * MAX_TRIANGLES
             raise InputError(
-                "UNSUPPORTED_FILE", self.where, "it builds more than {:,} points; simplify it", most
+                "UNSUPPORTED_FILE",
+                self.where,
+                "it builds more than {:,} points; simplify it",
+                max_points,
             )
         turned = np.linalg.det(moved[:3])
         if abs(turned) <= 1e-12 * np.abs(moved[:3]).max() ** 3:
@@ -561,12 +578,12 @@ class _Package:
                 self.where,
                 Text("object {} of {} is moved by a matrix that flattens it", key[1], key[0]),
             )
-        placed = (own @ moved[:3] + moved[3]) * unit
-        some = some if turned > 0.0 else some[:, ::-1]
-        if not made.volumes:
-            self.pieces.append(_Piece(placed, some, role, name, item))
+        placed = (vertices @ moved[:3] + moved[3]) * unit
+        faces = faces if turned > 0.0 else faces[:, ::-1]
+        if not model.volumes:
+            self.pieces.append(_Piece(placed, faces, role, name, item))
             return
-        for corners, volume in self._ranges(made, some, name):
+        for corners, volume in self._ranges(model, faces, name):
             own_role = volume.role if role == PART else role
             title = volume.name or name
             if own_role not in (PART, NEGATIVE):
@@ -575,35 +592,39 @@ class _Package:
             used, corners = np.unique(corners, return_inverse=True)
             self.pieces.append(_Piece(placed[used], corners.reshape(-1, 3), own_role, title, item))
 
-    def _ranges(self, made: _Object, corners: Index, name: str) -> list[tuple[Index, Volume]]:
-        """The triangles of each volume of an object; those of none are part."""
+    def _ranges(self, model: _Object, corners: Index, name: str) -> list[tuple[Index, Volume]]:
+        """The triangles of each volume of an object; triangles outside every volume are part."""
         free = np.ones(len(corners), dtype=bool)
-        found = []
-        for volume in made.volumes:
-            first, last = volume.first or 0, min(volume.last, len(corners) - 1)
-            if volume.last < first:  # a volume without triangles
+        ranges = []
+        for volume in model.volumes:
+            begin, end = volume.start or 0, min(volume.end, len(corners) - 1)
+            if volume.end < begin:  # a volume without triangles
                 continue
-            if first < 0 or first >= len(corners) or roles.LAST > volume.last >= len(corners):
+            if (
+                begin < 0
+                or begin >= len(corners)
+                or roles.END_OF_TRIANGLES > volume.end >= len(corners)
+            ):
                 raise _bad(
                     self.where,
                     Text(
                         "the slicer's roles name triangles {} to {} of object {!r}, which has {}",
-                        volume.first,
-                        volume.last,
+                        volume.start,
+                        volume.end,
                         name,
                         len(corners),
                     ),
                 )
-            if not free[first : last + 1].all():
+            if not free[begin : end + 1].all():
                 raise _bad(
                     self.where,
-                    Text("the slicer's roles name triangle {} of {!r} twice", first, name),
+                    Text("the slicer's roles name triangle {} of {!r} twice", begin, name),
                 )
-            free[first : last + 1] = False
-            found.append((corners[first : last + 1], volume))
+            free[begin : end + 1] = False
+            ranges.append((corners[begin : end + 1], volume))
         if free.any():
-            found.append((corners[free], Volume()))
-        return found
+            ranges.append((corners[free], Volume()))
+        return ranges
 
 
 class _Model:
@@ -661,7 +682,7 @@ class _Model:
             self._start_object(values)
         elif name == "component":
             self._check_attributes(values)
-            self.now.parts.append((self._key(values), _matrix(values)))
+            self.now.components.append((self._key(values), _matrix(values)))
         elif name == "item":
             self._check_attributes(values)
             printed = values.get("printable", "1").strip().lower() not in ("0", "false")
@@ -685,7 +706,7 @@ class _Model:
         self._check_attributes(values)
 
     def _check_attributes(self, values: dict[str, str]) -> None:
-        """Note attributes of extensions, and mark the object unread for those that change its shape."""
+        """Note attributes of extensions, and mark the object unread if they change its shape."""
         for attribute, value in values.items():
             space, _, name = attribute.rpartition(" ")
             if not space or space in (CORE, PRODUCTION, *PROGRAMS):
@@ -723,8 +744,8 @@ class _Model:
     def _start_setting(self, name: str) -> None:
         """Begin to read a setting of Cura, of an object or an item."""
         key = name.rpartition(":")[2].strip()
-        known = (*roles.CURA_ROLES, *roles.CURA_SHAPES, *roles.CURA_LAID)
-        if key in known and (self.inside or self.item is not None):
+        known_settings = (*roles.CURA_ROLES, *roles.CURA_SHAPES, *roles.CURA_LAID)
+        if key in known_settings and (self.inside or self.item is not None):
             self.setting, self.value = key, []
 
     def _finish_setting(self) -> None:
@@ -775,8 +796,8 @@ class _Model:
                 )
 
 
-def _listed(pieces: list[tuple[str, str]]) -> str:
-    names = list(dict.fromkeys(pieces))
+def _listed(entries: list[tuple[str, str]]) -> str:
+    names = list(dict.fromkeys(entries))
     texts = [
         Text("{!r}: {}", name, roles.NAMES.get(role, role)) for name, role in names[:MAX_NAMED]
     ]
@@ -785,10 +806,10 @@ def _listed(pieces: list[tuple[str, str]]) -> str:
     return Text.joined(", ", texts)
 
 
-def _meet(points: Array, others: Array) -> bool:
+def _meet(points: Array, other_points: Array) -> bool:
     """Whether the boxes around two sets of points overlap."""
-    low = np.maximum(points.min(axis=0), others.min(axis=0))
-    high = np.minimum(points.max(axis=0), others.max(axis=0))
+    low = np.maximum(points.min(axis=0), other_points.min(axis=0))
+    high = np.minimum(points.max(axis=0), other_points.max(axis=0))
     return bool((low < high).all())
 
 

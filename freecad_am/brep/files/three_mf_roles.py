@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Roles that slicers give to the pieces of a 3MF file: part, negative, modifier, blocker, enforcer, support.
 
-PrusaSlicer and SuperSlicer store them in `Metadata/Slic3r_PE_model.config` by ranges of triangles of an object; Bambu
-Studio, OrcaSlicer and programs made from them in `Metadata/model_settings.config` by components of an object; Cura as
-metadata of an object in the model, beside settings that change its shape; Slic3r as `slic3r:volume` elements in the mesh.
+PrusaSlicer and SuperSlicer store them in `Metadata/Slic3r_PE_model.config` by ranges of triangles
+of an object; Bambu Studio, OrcaSlicer and programs made from them in
+`Metadata/model_settings.config` by components of an object; Cura as metadata of an object in the
+model, together with settings that change its shape; Slic3r as `slic3r:volume` elements in the mesh.
 """
 
 from __future__ import annotations
@@ -75,11 +76,13 @@ CONFIG = re.compile(r"metadata/(?:\w+_model|model_settings)\.config", re.IGNOREC
 DRAIN_HOLES = "metadata/slic3r_pe_sla_drain_holes.txt"
 TRUE = ("1", "true", "yes")
 UNUSED = ("", "false", "no", "none", "normal")  # values of settings of Cura that change nothing
-LAST = 1 << 62  # of triangles, where a range has no end
+END_OF_TRIANGLES = 1 << 62  # of triangles, where a range has no end
 
 
 def is_config(name: str) -> bool:
-    """Whether a file of the zip is a slicer's file of roles: those of programs made from PrusaSlicer end in `_model.config`."""
+    """Whether a file of the zip is a slicer's file of roles; programs derived from PrusaSlicer use
+    the ending `_model.config`.
+    """
     return CONFIG.fullmatch(name) is not None
 
 
@@ -94,13 +97,13 @@ def is_used(value: str) -> bool:
 
 @dataclass
 class Volume:
-    """A piece of an object: its triangles from `first` to `last`, or the component or object with the id `part`."""
+    """A piece of an object: its triangles from `start` to `end`, or the component or object with the id `component`."""
 
     role: str = PART
     name: str = ""
-    first: int | None = None
-    last: int = LAST
-    part: int | None = None
+    start: int | None = None
+    end: int = END_OF_TRIANGLES
+    component: int | None = None
 
 
 @dataclass
@@ -137,10 +140,10 @@ class ConfigReader:
     def _begin(self, values: dict[str, str]) -> Volume:
         volume = Volume()
         if "firstid" in values:
-            volume.first = int(values["firstid"])
-            volume.last = int(values.get("lastid", LAST))
+            volume.start = int(values["firstid"])
+            volume.end = int(values.get("lastid", END_OF_TRIANGLES))
         if "id" in values:
-            volume.part = int(values["id"])
+            volume.component = int(values["id"])
         if "subtype" in values:
             volume.role = self._role(values["subtype"])
         return volume
@@ -151,7 +154,9 @@ class ConfigReader:
         elif key == "volume_type":
             volume.role = self._role(value)
         elif key == "modifier" and value.lower() in TRUE and volume.role == PART:
-            volume.role = MODIFIER  # PrusaSlicer writes it beside the type, older ones alone
+            volume.role = (
+                MODIFIER  # PrusaSlicer writes both this and the type, older versions only this
+            )
 
     def _role(self, value: str) -> str:
         role = ROLES.get(value.strip().lower())

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A process that has the geometry kernel to itself, run as a script by `kernel_process`, which tells the protocol.
+"""A process with a geometry kernel of its own, run as a script by `kernel_process`, which documents
+the protocol.
 
-It ends when it is asked nothing for a while, and when whoever started it is gone: at once where it waits to be asked, after
-the call where it is at work.
+It ends after a while without questions, and when its parent is gone: at once while it waits, else
+after the current call.
 """
 
 from __future__ import annotations
@@ -17,39 +18,39 @@ from typing import Any, BinaryIO
 IDLE = 300.0  # s
 
 
-def serve(asked: BinaryIO, answers: BinaryIO) -> None:
-    """Answer until nothing is asked any more."""
-    for entry in _heard(asked):
+def serve(questions: BinaryIO, answers: BinaryIO) -> None:
+    """Answer questions until none comes any more."""
+    for entry in _read_question(questions):
         if entry not in sys.path:
             sys.path.append(entry)
     import FreeCAD
     import Part
 
-    _tell(answers, tuple(FreeCAD.Version()[:3]))
+    _send(answers, tuple(FreeCAD.Version()[:3]))
     while True:
-        module, function, path, rest = _heard(asked)
+        module, function, path, arguments = _read_question(questions)
         try:
-            given = ()
+            shapes = ()
             if path:
-                given = (Part.Shape(),)
-                given[0].importBinary(path)
-            answer = True, getattr(importlib.import_module(module), function)(*given, *rest)
+                shapes = (Part.Shape(),)
+                shapes[0].importBinary(path)
+            answer = True, getattr(importlib.import_module(module), function)(*shapes, *arguments)
         except Exception as error:
             answer = False, _portable(error)
-        _tell(answers, answer)
+        _send(answers, answer)
 
 
-def _heard(asked: BinaryIO) -> Any:
-    """What is asked next; if that is nothing for long, this process ends."""
+def _read_question(questions: BinaryIO) -> Any:
+    """The next question; without one for long, the process ends."""
     leave = threading.Timer(IDLE, os._exit, (0,))
     leave.daemon = True
     leave.start()
-    heard = pickle.load(asked)
+    question = pickle.load(questions)
     leave.cancel()
-    return heard
+    return question
 
 
-def _tell(answers: BinaryIO, answer: Any) -> None:
+def _send(answers: BinaryIO, answer: Any) -> None:
     pickle.dump(answer, answers, protocol=pickle.HIGHEST_PROTOCOL)
     answers.flush()
 

@@ -18,7 +18,7 @@ from ...core.geometry.formatting import place
 from ...core.geometry.walls.surface import dot
 from ...core.issues import InputError, Text
 
-# since FreeCAD 1.0 some faults are a plain RuntimeError, the base of these
+# since FreeCAD 1.0 some faults are a plain RuntimeError, their base class
 FAULTS = (Part.OCCError, FreeCAD.Base.CADKernelError, RuntimeError)
 FAULTY = "BAD_SHAPE"
 MAX_NAMED = 5  # faces named in a message
@@ -47,7 +47,9 @@ def reported(label: str, shape: Any = None) -> Iterator[None]:
 
 
 def _damaged(shape: Any) -> str:
-    """Which faces of a Part.Shape are damaged, and where; of one whose faces are each sound, where it is."""
+    """Which faces of a Part.Shape are damaged, and where; the position of the shape if each face is
+    sound.
+    """
     faces = list(getattr(shape, "Faces", ()))
     named = []
     for number, face in enumerate(faces, start=1):
@@ -65,7 +67,7 @@ def _damaged(shape: Any) -> str:
 
 
 def _middle(shape: Any) -> str:
-    """The middle of a shape as text; a corner of it where it has no extent."""
+    """The middle of a shape as text; a corner if it has no extent."""
     try:
         if shape.BoundBox.isValid():
             return place(tuple(shape.BoundBox.Center))
@@ -77,20 +79,22 @@ def _middle(shape: Any) -> str:
 def refuse_bare(
     named: Sequence[tuple[str, Any]], owner: Index, label: str, narrow: float = 0.0
 ) -> None:
-    """InputError where the kernel has made no triangles of a face: SELF_INTERSECTION if an edge of it crosses itself, else
-    BAD_SHAPE. owner: (m,) the number of the face of each triangle. narrow: a face no wider, mm, needs none."""
+    """InputError if the kernel has made no triangles of a face: SELF_INTERSECTION if one of its
+    edges crosses itself, else BAD_SHAPE. owner: (m,) the number of the face of each triangle.
+    narrow: a face no wider, mm, needs none.
+    """
     for k, (name, face) in enumerate(named):
         if (owner == k).any() or face.Area < 0.5 * narrow * face.Length:
             continue
         for edge in face.Edges:
-            found = _crossing(np.array([tuple(point) for point in edge.discretize(SAMPLES)]))
-            if found is not None:
+            crossing = _crossing(np.array([tuple(point) for point in edge.discretize(SAMPLES)]))
+            if crossing is not None:
                 raise InputError(
                     "SELF_INTERSECTION",
                     f"{label} {name}",
                     "an edge of the face crosses itself at {}; draw it without "
                     "crossings, or divide it there and deposit its parts one after the other",
-                    place(found),
+                    place(crossing),
                 )
         raise InputError(
             FAULTY,
@@ -102,26 +106,26 @@ def refuse_bare(
 
 
 def _crossing(chain: Array) -> Array | None:
-    """Where a chain of points (n, 3) crosses itself; None where it does not."""
+    """The point where a chain of points (n, 3) crosses itself, or None."""
     chord = np.diff(chain, axis=0)
     step = float(np.linalg.norm(chord, axis=1).max())
     pairs = cKDTree(chain[:-1] + 0.5 * chord).query_pairs(1.01 * step, output_type="ndarray")
-    apart = pairs[:, 1] - pairs[:, 0]
-    one, other = pairs[(apart > 2) & (apart < len(chord) - 2)].T
-    a, b, gap = chord[one], chord[other], chain[other] - chain[one]
+    separation = pairs[:, 1] - pairs[:, 0]
+    i, j = pairs[(separation > 2) & (separation < len(chord) - 2)].T
+    a, b, gap = chord[i], chord[j], chain[j] - chain[i]
     system = np.stack(
         [np.stack([dot(a, a), -dot(a, b)], axis=1), np.stack([-dot(a, b), dot(b, b)], axis=1)],
         axis=1,
     )
     plain = np.abs(np.linalg.det(system)) > 1e-4 * dot(a, a) * dot(b, b)
-    one, other, a, b, gap = (column[plain] for column in (one, other, a, b, gap))
-    if not len(one):
+    i, j, a, b, gap = (column[plain] for column in (i, j, a, b, gap))
+    if not len(i):
         return None
-    at = np.linalg.solve(system[plain], np.stack([dot(a, gap), -dot(b, gap)], axis=1)[..., None])[
-        ..., 0
-    ]
-    at = np.clip(at, 0.0, 1.0)
-    miss = np.linalg.norm(gap + at[:, 1:] * b - at[:, :1] * a, axis=1)
+    shares = np.linalg.solve(
+        system[plain], np.stack([dot(a, gap), -dot(b, gap)], axis=1)[..., None]
+    )[..., 0]
+    shares = np.clip(shares, 0.0, 1.0)
+    miss = np.linalg.norm(gap + shares[:, 1:] * b - shares[:, :1] * a, axis=1)
     best = int(np.argmin(miss))
-    found: Array = chain[one[best]] + at[best, 0] * a[best]
-    return found if miss[best] < CROSSED * step else None
+    crossing: Array = chain[i[best]] + shares[best, 0] * a[best]
+    return crossing if miss[best] < CROSSED * step else None

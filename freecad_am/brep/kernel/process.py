@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Long calls of the geometry kernel, made in a process of their own where a window would have to wait for them.
 
-Python's other threads stand still while the kernel makes the triangles of a shape, the window's too, and nothing can end
-such a call. So the threads that work beside a window have it made elsewhere; the main thread, which nobody waits for, makes
-it itself. Both come to the same numbers, bit by bit: shapes travel in the kernel's own binary form.
+Python's other threads, the window's included, are blocked while the kernel makes the triangles of a
+shape, and nothing can end such a call. So worker threads of a window use a separate process; the
+main thread, which blocks no other thread, calls the kernel directly. Both come to the same numbers,
+bit by bit: shapes travel in the kernel's own binary form.
 
 Protocol: pickles both ways. First the module search path is sent, and the version of FreeCAD comes back. Then
 (module, function, file of the shape or '', further arguments) gives (True, value) or (False, error).
@@ -37,35 +38,36 @@ HOST = Path(__file__).with_name("host.py")
 LOOK_EVERY = 0.05  # s; how soon a thread that waits is ended
 FAILED = 1  # of one that ends of itself, but not as it should
 ENDED_BY_LIMIT = -24  # of SIGXCPU
-ENDED_BY_SYSTEM = -9  # what Popen tells of SIGKILL, which Linux gives where memory does not suffice
+ENDED_BY_SYSTEM = -9  # Popen's code for SIGKILL, which Linux sends when memory runs out
 START = 60.0  # s that a process may take to be there
-QUICK = ("Part::GeomPlane", "Part::GeomCylinder", "Part::GeomCone")
-MAX_FACES = 24  # faces, of such surfaces alone: sooner divided than sent
+ANALYTIC_SURFACES = ("Part::GeomPlane", "Part::GeomCylinder", "Part::GeomCone")
+MAX_FACES = 24  # shapes of up to this many such faces are meshed faster than sent
 
 _idle: list[_Process] = []
-_readers: list[_Process] = []  # those that have read files from outside
+_readers: list[_Process] = []  # processes that have read files from outside
 _unable = False
 
 
-def in_kernel_process(function: Callable[..., T], shape: Any, *rest: Any) -> T:
-    """What `function(shape, *rest)` returns or raises; it must be a function of a module, and return no shapes.
+def in_kernel_process(function: Callable[..., T], shape: Any, *arguments: Any) -> T:
+    """What `function(shape, *arguments)` returns or raises; it must be a function of a module, and
+    return no shapes.
 
     Raises RuntimeError where the kernel crashes on the shape, MemoryError where the system ends it for lack of memory.
     """
     if _unable or threading.current_thread() is threading.main_thread() or _is_quick(shape):
-        return function(shape, *rest)
-    with _written(shape) as path:
+        return function(shape, *arguments)
+    with _shape_file(shape) as path:
         for _ in range(2):
-            process = _free(_idle) or _started()
+            process = _free(_idle) or _start_process()
             if process is None:
-                return function(shape, *rest)
+                return function(shape, *arguments)
             try:
-                process.ask((function.__module__, function.__qualname__, path, rest))
+                process.ask((function.__module__, function.__qualname__, path, arguments))
                 sound, answer = process.answer()
             except _Left:  # it had nothing to do for long
                 process.end()
                 continue
-            except BaseException:  # its answer would come to nobody
+            except BaseException:  # its answer would have no receiver
                 process.end()
                 raise
             if _idle:
@@ -73,23 +75,25 @@ def in_kernel_process(function: Callable[..., T], shape: Any, *rest: Any) -> T:
             else:
                 _idle.append(process)
             if sound:
-                found: T = answer
-                return found
+                result: T = answer
+                return result
             raise answer
-    return function(shape, *rest)
+    return function(shape, *arguments)
 
 
 def limited(
     function: Callable[..., None], arguments: tuple[Any, ...], longest: float
 ) -> tuple[int, float] | None:
-    """How the process ended in which `function(*arguments)`, which limits itself, was called, as Popen tells it: 0 where it
-    came back; and the memory, MB, that it took for it. None where there can be no process.
+    """The exit code, as Popen gives it, of the process in which `function(*arguments)` ran within
+    its own limits (0 for success), and the memory, MB, that it took. None if no process can be
+    started.
 
-    longest: s on the clock, after which it is ended, as for its time on the processor.
+    longest: wall-clock limit, s, after which the process is ended, as at the limit of processor
+    time.
     """
     while True:
         used = _free(_readers)
-        process = used or _started()
+        process = used or _start_process()
         if process is None:
             return None
         try:
@@ -116,7 +120,7 @@ def limited(
 
 
 def _free(idle: list[_Process]) -> _Process | None:
-    """A process that has nothing to do, None where there is none."""
+    """An idle process, or None."""
     try:
         return idle.pop()
     except IndexError:  # asked beforehand, another thread might take the last one in between
@@ -125,12 +129,14 @@ def _free(idle: list[_Process]) -> _Process | None:
 
 def _is_quick(shape: Any) -> bool:
     faces = shape.Faces
-    return len(faces) <= MAX_FACES and all(face.Surface.TypeId in QUICK for face in faces)
+    return len(faces) <= MAX_FACES and all(
+        face.Surface.TypeId in ANALYTIC_SURFACES for face in faces
+    )
 
 
 @contextlib.contextmanager
-def _written(shape: Any) -> Iterator[str]:
-    """The path of a file of the shape, for as long as it is needed."""
+def _shape_file(shape: Any) -> Iterator[str]:
+    """The path of a temporary file of the shape."""
     handle, path = tempfile.mkstemp(suffix=".bin", prefix="shape_")
     os.close(handle)
     try:
@@ -142,17 +148,19 @@ def _written(shape: Any) -> Iterator[str]:
 
 
 class _Crashed(RuntimeError):
-    """The process is not there any more, and was at work."""
+    """The process has gone while it was at work."""
 
 
 class _Left(Exception):
-    """The process is not there any more, and was not at work."""
+    """The process has gone while it was idle."""
 
 
 class _Process:
-    """A Python that runs `kernel.host`; another thread listens to it, so that one who waits can be ended at any moment.
+    """A Python that runs `kernel.host`; another thread listens to it, so that a waiting caller can
+    be ended at any moment.
 
-    It is ended at the latest when nobody holds this any more: a thread that is ended may lose it between any two steps.
+    It ends at the latest when the last reference is gone: a thread that is ended may lose it
+    between any two steps.
     """
 
     def __init__(self, python: str) -> None:
@@ -175,11 +183,11 @@ class _Process:
         ).start()
 
     def ask(self, question: Any) -> None:
-        """Send a question. Raises _Left where nobody is there."""
+        """Send a question. Raises _Left if the process is gone."""
         data = memoryview(pickle.dumps(question, protocol=pickle.HIGHEST_PROTOCOL))
         try:
-            with _without_signal():
-                while data:  # past Python's buffer, which would be written at the end too, to whoever is gone by then
+            with _block_sigpipe():
+                while data:  # past Python's buffer, which would be written at exit too, after the receiver is gone
                     data = data[os.write(self.popen.stdin.fileno(), data) :]
         except OSError:
             raise _Left from None
@@ -187,13 +195,13 @@ class _Process:
     def answer(self, longest: float = float("inf")) -> Any:
         """Wait for its answer. Raises _Left where it went before it was asked, RuntimeError where it crashed, MemoryError
         where the system ended it; queue.Empty after `longest` s."""
-        waited, before, self.most = 0.0, _memory_of(self.popen.pid), 0.0
+        waited, start_memory, self.most = 0.0, _memory_of(self.popen.pid), 0.0
         while waited < longest:
             try:
                 answer = self.answers.get(timeout=LOOK_EVERY)
             except queue.Empty:
                 waited += LOOK_EVERY
-                self.most = max(self.most, _memory_of(self.popen.pid) - before)
+                self.most = max(self.most, _memory_of(self.popen.pid) - start_memory)
                 continue
             if answer is not None:
                 return answer[0]
@@ -206,7 +214,7 @@ class _Process:
         raise queue.Empty
 
     def end(self) -> None:
-        """End it, whatever it is doing."""
+        """End the process even while it works."""
         self.kill()
         for stream in (self.popen.stdin, self.popen.stdout):
             with contextlib.suppress(OSError, ValueError):
@@ -214,8 +222,9 @@ class _Process:
 
 
 @contextlib.contextmanager
-def _without_signal() -> Iterator[None]:
-    """While this lasts, to write to a process that has gone is an OSError and nothing else, in this thread.
+def _block_sigpipe() -> Iterator[None]:
+    """Block SIGPIPE in this thread, so that writing to a process that has gone raises an OSError
+    and nothing else.
 
     Python ignores the signal that comes with it. FreeCAD 1.0 and later start Python without its handlers: there it ends
     FreeCAD, with all documents. It comes to the thread that writes, so it is held back in that one and taken away.
@@ -223,18 +232,18 @@ def _without_signal() -> Iterator[None]:
     if not hasattr(signal, "pthread_sigmask"):  # Windows knows no such signal
         yield
         return
-    held = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGPIPE})
+    old_mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGPIPE})
     try:
         yield
     finally:
-        if signal.SIGPIPE not in held:
+        if signal.SIGPIPE not in old_mask:
             if signal.SIGPIPE in signal.sigpending():
                 signal.sigwait({signal.SIGPIPE})
-            signal.pthread_sigmask(signal.SIG_SETMASK, held)
+            signal.pthread_sigmask(signal.SIG_SETMASK, old_mask)
 
 
 def _memory_of(pid: int) -> float:
-    """MB of a process, 0 where that is not told."""
+    """Memory of a process, MB, or 0 if unknown."""
     try:
         with open(f"/proc/{pid}/statm", encoding="ascii") as stream:
             return int(stream.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
@@ -256,8 +265,10 @@ def _listen(stream: Any, answers: queue.Queue[Any]) -> None:
         answers.put(None)
 
 
-def _started() -> _Process | None:
-    """A process that is ready to be asked; None where there can be none, which is not tried again."""
+def _start_process() -> _Process | None:
+    """A process that is ready for questions, or None if none can be started; a failure is not tried
+    again.
+    """
     global _unable
     for python in _pythons():
         process = None
@@ -265,8 +276,8 @@ def _started() -> _Process | None:
             process = _Process(python)
             process.ask(_search_path())
             if process.answer(START) == tuple(FreeCAD.Version()[:3]):
-                found, process = process, None
-                return found
+                started, process = process, None
+                return started
         except (OSError, _Left, RuntimeError, queue.Empty):
             continue
         finally:  # also where the thread is being ended
@@ -277,19 +288,19 @@ def _started() -> _Process | None:
 
 
 def _pythons() -> list[str]:
-    """Programs that may be a plain Python of this version, as FreeCAD's own program is none."""
+    """Paths that may be a plain Python of the current version, as FreeCAD's own program is not one."""
     version = "{}.{}".format(*sys.version_info)
     home = FreeCAD.getHomePath()
-    places = [sys.executable or ""]
+    candidates = [sys.executable or ""]
     for folder in dict.fromkeys((sys.prefix, sys.base_prefix, home)):
-        places += [
+        candidates += [
             os.path.join(folder, "bin", name)
             for name in (f"python{version}", "python3", "python.exe", "python")
         ]
-        places.append(os.path.join(folder, "python.exe"))
-    named = (one for one in places if os.path.basename(one).lower().startswith("python"))
+        candidates.append(os.path.join(folder, "python.exe"))
+    named = (path for path in candidates if os.path.basename(path).lower().startswith("python"))
     return list(
-        dict.fromkeys(one for one in named if os.access(one, os.X_OK) and os.path.isfile(one))
+        dict.fromkeys(path for path in named if os.access(path, os.X_OK) and os.path.isfile(path))
     )
 
 

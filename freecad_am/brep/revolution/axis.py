@@ -25,10 +25,11 @@ SAME_LINE = 1e-4  # mm
 
 
 def candidates(faces: list[Any]) -> list[Axis]:
-    """Possible axes as (point (3,), unit direction (3,)), the likeliest first.
+    """Possible axes as (point (3,), unit direction (3,)), the most likely one first.
 
-    The axes of analytic and revolved surfaces weigh their area, those of circular edges less; last comes the axis that
-    the surface normals point to, which needs no knowledge of the kind of surface.
+    The axes of analytic and revolved surfaces weigh their area, axes of circular edges less; last
+    comes the axis that the surface normals point to, which needs no knowledge of the kind of
+    surface.
     """
     ordered = [axis for axis, _ in sorted(_weighed(faces), key=lambda pair: -pair[1])][:6]
     free = [face for face in faces if face.Surface.TypeId not in ANALYTIC]
@@ -41,49 +42,49 @@ def candidates(faces: list[Any]) -> list[Axis]:
 
 def _weighed(faces: list[Any]) -> list[tuple[Axis, float]]:
     """Axes of faces and their edges, each once, with all that speaks for it."""
-    found: list[tuple[Axis, float]] = []
+    axes: list[tuple[Axis, float]] = []
     rows = np.zeros(
         (64, 6)
-    )  # of those found, to be compared at once: a plate may have hundreds of holes
+    )  # the axes as rows for one comparison: a plate may have hundreds of holes
     for face in faces:
-        for axis, weight in _of_face(face):
-            same = np.flatnonzero(_alike(rows[: len(found)], axis))
+        for axis, weight in _face_axes(face):
+            same = np.flatnonzero(_alike(rows[: len(axes)], axis))
             if len(same):
-                known, total = found[same[0]]
-                found[same[0]] = (known, total + weight)
+                known_axis, total = axes[same[0]]
+                axes[same[0]] = (known_axis, total + weight)
                 continue
-            if len(found) == len(rows):
+            if len(axes) == len(rows):
                 rows = np.vstack([rows, np.zeros_like(rows)])
-            rows[len(found)] = np.concatenate(axis)
-            found.append((axis, weight))
-    return found
+            rows[len(axes)] = np.concatenate(axis)
+            axes.append((axis, weight))
+    return axes
 
 
-def _of_face(face: Any) -> list[tuple[Axis, float]]:
+def _face_axes(face: Any) -> list[tuple[Axis, float]]:
     surface, area = face.Surface, face.Area
-    found = []
+    axes = []
     if surface.TypeId == "Part::GeomSurfaceOfRevolution":
-        found.append((_axis(surface.Location, surface.Direction), area + 1.0))
+        axes.append((_axis(surface.Location, surface.Direction), area + 1.0))
     elif surface.TypeId in ("Part::GeomCylinder", "Part::GeomCone", "Part::GeomToroid"):
-        found.append((_axis(surface.Center, surface.Axis), area))
+        axes.append((_axis(surface.Center, surface.Axis), area))
     elif surface.TypeId == "Part::GeomSphere":
-        found.append((_axis(surface.Center, surface.Axis), 1e-6 * area))
+        axes.append((_axis(surface.Center, surface.Axis), 1e-6 * area))
     for edge in face.Edges:
         if edge.Degenerated or edge.isSeam(face):
             continue
         if edge.Curve.TypeId == "Part::GeomCircle":
-            found.append(
+            axes.append(
                 (_axis(edge.Curve.Center, edge.Curve.Axis), 1e-3 * edge.Length * edge.Curve.Radius)
             )
         elif edge.Curve.TypeId == "Part::GeomBSplineCurve":
             fitted = _circle_through(edge_points(edge, 13))
             if fitted is not None:
-                found.append((fitted, 1e-4 * edge.Length**2))
-    return found
+                axes.append((fitted, 1e-4 * edge.Length**2))
+    return axes
 
 
 def _circle_through(points: Array) -> Axis | None:
-    """The axis of the circle that points (n, 3) lie on, None where they do not lie on one."""
+    """The axis of the circle through points (n, 3), or None if they are not on a circle."""
     middle = points.mean(axis=0)
     _, sizes, basis = np.linalg.svd(points - middle, full_matrices=False)
     if sizes[1] < 1e-6 * sizes[0] or sizes[2] > 1e-7 * sizes[0]:
@@ -104,23 +105,24 @@ def _axis(point: Any, direction: Any) -> Axis:
     return np.array(tuple(point), dtype=np.float64), z / np.linalg.norm(z)
 
 
-def _same(one: Axis, other: Axis) -> bool:
-    return bool(_alike(np.concatenate(one)[None], other)[0])
+def _same(axis: Axis, other_axis: Axis) -> bool:
+    return bool(_alike(np.concatenate(axis)[None], other_axis)[0])
 
 
 def _alike(rows: Array, axis: Axis) -> Mask:
     """Which of axes (n, 6), points and directions, are the same line as another."""
-    apart, along = rows[:, :3] - axis[0], rows[:, 3:]
-    across = apart - (apart * along).sum(axis=1)[:, None] * along
+    offset, along = rows[:, :3] - axis[0], rows[:, 3:]
+    across = offset - (offset * along).sum(axis=1)[:, None] * along
     turned = np.linalg.norm(np.cross(along, axis[1]), axis=1)
     return np.asarray((turned < SAME_ANGLE) & (np.linalg.norm(across, axis=1) < SAME_LINE))
 
 
 def from_normals(faces: list[Any]) -> Axis | None:
-    """The line that all surface normals meet, the upright one on a sphere, or None where there is none.
+    """The line that every surface normal meets (the upright one on a sphere), or None.
 
-    A normal n at p meets the axis (point c, direction a) when n . (c x a) + (p x n) . a = 0. With m = c x a that is
-    linear in (a, m): the axis is the null direction of all samples, of those the one without pitch (a . m = 0).
+    A normal n at p meets the axis (point c, direction a) when n . (c x a) + (p x n) . a = 0. With m
+    = c x a that is linear in (a, m): the axis is the null direction of all samples that has no
+    pitch (a . m = 0).
     """
     points, normals = [], []
     for face in faces:
@@ -162,7 +164,7 @@ def from_normals(faces: list[Any]) -> Axis | None:
 
 
 def _through_centre(middle: Array, size: float, null: Array) -> Axis | None:
-    """The upright axis through the point about which a shape may turn in every direction, None where there is none."""
+    """The upright axis through the point about which a shape may turn in every direction, or None."""
     # m = c x a for every null direction (a, m) is linear in the centre c
     rows = np.vstack([np.cross(np.eye(3), a).T for a in null[:, :3]])
     centre, _, rank, _ = np.linalg.lstsq(rows, null[:, 3:].ravel(), rcond=None)

@@ -39,7 +39,8 @@ def as_array(points: Any) -> Array:
 
 
 def axis_frame(origin: Any, direction: Any) -> AxisFrame:
-    """The frame of an axis as the feature frame wants it (interface.md, `mount`), but for the height of its origin.
+    """The frame of an axis as the feature frame wants it (interface.md, `mount`), except the height
+    of its origin.
 
     Z points the way with a positive component along the part's Z, else X, else Y. X is the part's X projected, Y if X
     is along the axis. The origin is the axis point nearest to the part's origin.
@@ -64,18 +65,18 @@ def edge_points(edge: Any, count: int) -> Array:
     """(count, 3) points along an edge, its ends included; (0, 3) for a degenerate one."""
     if edge.Degenerated:
         return as_array([vertex.Point for vertex in edge.Vertexes])
-    first, last = edge.ParameterRange
-    return as_array([edge.valueAt(t) for t in np.linspace(first, last, count)])
+    t_start, t_end = edge.ParameterRange
+    return as_array([edge.valueAt(t) for t in np.linspace(t_start, t_end, count)])
 
 
-def projected(curve: Any, frame: AxisFrame, first: float, last: float) -> Curve:
+def projected(curve: Any, frame: AxisFrame, t_start: float, t_end: float) -> Curve:
     """The curve in (radius, height) with its derivative, as a callable on parameters (n,)."""
-    middle = 0.5 * (first + last)
+    middle = 0.5 * (t_start + t_end)
 
     def evaluate(t: Array) -> tuple[Array, Array]:
-        both = np.array([(*p, *d) for p, d in (curve.getD1(value) for value in t.tolist())])
-        p = (both[:, :3] - frame.origin) @ frame.rotation
-        return flattened(p, both[:, 3:] @ frame.rotation, t > middle)
+        values = np.array([(*p, *d) for p, d in (curve.getD1(value) for value in t.tolist())])
+        p = (values[:, :3] - frame.origin) @ frame.rotation
+        return flattened(p, values[:, 3:] @ frame.rotation, t > middle)
 
     return evaluate
 
@@ -93,17 +94,21 @@ def flattened(p: Array, d: Array, ending: Any) -> tuple[Array, Array]:
     return np.stack([r, p[:, 2]], axis=1), np.stack([rate, d[:, 2]], axis=1)
 
 
-def pieces_of(curve: Any, frame: AxisFrame, first: float, last: float) -> list[tuple[Array, Array]]:
+def pieces_of(
+    curve: Any, frame: AxisFrame, t_start: float, t_end: float
+) -> list[tuple[Array, Array]]:
     """The curve between two parameters as samples (points (n, 2), tangents (n, 2)), one piece per smooth stretch."""
-    evaluate = projected(curve, frame, first, last)
-    corners, knots = _breaks(curve, first, last)
+    evaluate = projected(curve, frame, t_start, t_end)
+    corners, knots = _breaks(curve, t_start, t_end)
     return smooth_pieces(evaluate, corners, knots)
 
 
 def smooth_pieces(
     evaluate: Curve, corners: Sequence[float], knots: Sequence[float]
 ) -> list[tuple[Array, Array]]:
-    """Samples between neighbouring corners; the slope at a corner is taken just beside it. knots: other breaks."""
+    """Samples between neighbouring corners; the slope at a corner is taken at a small distance from
+    it. knots: other breaks.
+    """
     result = []
     for a, b in pairwise(corners):
         inside = [knot for knot in knots if a < knot < b]
@@ -117,12 +122,12 @@ def smooth_pieces(
     return result
 
 
-def _breaks(curve: Any, first: float, last: float) -> tuple[list[float], list[float]]:
+def _breaks(curve: Any, t_start: float, t_end: float) -> tuple[list[float], list[float]]:
     """Parameters of corners, the two ends included, and of the other knots of a B-spline."""
     corners, knots = [], []
     if curve.TypeId == "Part::GeomBSplineCurve":
-        span = last - first
+        span = t_end - t_start
         for knot, times in zip(curve.getKnots(), curve.getMultiplicities(), strict=True):
-            if first + 1e-9 * span < knot < last - 1e-9 * span:
+            if t_start + 1e-9 * span < knot < t_end - 1e-9 * span:
                 (corners if times >= curve.Degree else knots).append(knot)
-    return [first, *corners, last], knots
+    return [t_start, *corners, t_end], knots

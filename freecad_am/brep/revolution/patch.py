@@ -14,12 +14,12 @@ from freecad_am.core.types import Array
 
 from ...core.geometry.curves.contour import Piece
 from ...core.geometry.curves.sampling import Curve, arc, line
-from ..files.lost_pole import edges_of, has_lost_pole, restored
+from ..files.lost_pole import edges_of, has_lost_pole, restore_meridian
 from .cylindrical import AxisFrame, as_array, edge_points, flattened, pieces_of, smooth_pieces
 
 TOLERANCE = 1e-3  # mm a face may be off its own surface of revolution
 EDGE_TOLERANCE = 1e-2  # mm an edge may be off a parallel or a meridian
-FULL = 2.0 * np.pi - 1e-5
+FULL_TURN_RAD = 2.0 * np.pi - 1e-5
 # surfaces whose first parameter is the azimuth about their axis
 NATURAL = (
     "Part::GeomCylinder",
@@ -31,12 +31,13 @@ NATURAL = (
 
 @dataclass(frozen=True)
 class Patch:
-    """What a face is about an axis. pieces: its meridian, empty for a face that lies along the axis and only ends a
-    part of a turn. deviation: mm off a surface of revolution, inf where it has no meridian at all. what: that in words.
+    """A face in relation to an axis. segments: its meridian, empty for a plane along the axis that
+    only bounds a part of a turn. deviation: mm off a surface of revolution, inf without a meridian.
+    what: the deviation in words.
     """
 
     name: str
-    pieces: tuple[Piece, ...]
+    segments: tuple[Piece, ...]
     deviation: float
     what: str = ""
 
@@ -55,9 +56,11 @@ def patch_of(face: Any, name: str, frame: AxisFrame) -> Patch:
     try:
         curves = _meridian(face, frame)
     except (ValueError, RuntimeError, Part.OCCError):
-        curves = None  # a line that stands still is not a meridian, and the kernel gives up on some surfaces
+        curves = (
+            None  # a line without extent is not a meridian, and the kernel fails on some surfaces
+        )
     if curves is None:
-        return Patch(name, (), _spread(face, frame), "it does not turn about the axis")
+        return Patch(name, (), _radial_spread(face, frame), "it does not turn about the axis")
     deviation = _deviation(face, frame, curves)
     if deviation > TOLERANCE:
         return Patch(name, (), deviation, "it is not of revolution")
@@ -74,14 +77,14 @@ def patch_of(face: Any, name: str, frame: AxisFrame) -> Patch:
 
 def _closed_on_axis(face: Any, name: str, frame: AxisFrame) -> Patch:
     """The patch of a face whose file has lost its pole."""
-    curves, edges = restored(face, frame), edges_of(face)
+    curves, edges = restore_meridian(face, frame), edges_of(face)
     edge = _edge_deviation(edges, frame)
     if curves is None or edge > EDGE_TOLERANCE:
         what = (
             "it has an edge but no area, so the file is damaged or it does not turn about the axis"
         )
         return Patch(name, (), max(edge, 2.0 * TOLERANCE), what)
-    points = np.vstack([edge_points(one, 181) for one in edges])
+    points = np.vstack([edge_points(rim, 181) for rim in edges])
     turn, off = _reach(frame, points), _distance(frame, points, curves)
     return Patch(
         name,
@@ -95,9 +98,9 @@ def _ends_a_turn(face: Any, frame: AxisFrame) -> bool:
     if not planar(face):
         return False
     points = np.vstack([frame.local(edge_points(edge, 5)) for edge in face.Edges])
-    far = points[np.argmax(np.hypot(points[:, 0], points[:, 1]))]
-    off = np.abs(points[:, 0] * far[1] - points[:, 1] * far[0]) / max(
-        np.hypot(far[0], far[1]), 1e-12
+    farthest = points[np.argmax(np.hypot(points[:, 0], points[:, 1]))]
+    off = np.abs(points[:, 0] * farthest[1] - points[:, 1] * farthest[0]) / max(
+        np.hypot(farthest[0], farthest[1]), 1e-12
     )
     return bool(off.max() < EDGE_TOLERANCE)
 
@@ -115,9 +118,9 @@ def _meridian(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
     if planar(face):
         return _flat(face, frame)
     if kind == "Part::GeomSphere":
-        found = _sphere(face, frame)
-        if found is not None:
-            return found
+        sphere_meridian = _sphere(face, frame)
+        if sphere_meridian is not None:
+            return sphere_meridian
     return _along_parameter(face, frame) or _section(face, frame)
 
 
@@ -136,7 +139,7 @@ def _flat(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
 
 
 def _sphere(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
-    """A sphere centred on the axis, whichever way its own poles lie."""
+    """A sphere centred on the axis, for any direction of its own poles."""
     centre = frame.local([face.Surface.Center])[0]
     if np.hypot(centre[0], centre[1]) > TOLERANCE:
         return None
@@ -162,8 +165,8 @@ def _along_parameter(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] |
     surface = face.Surface
     middle_u, middle_v = 0.5 * (u0 + u1), 0.5 * (v0 + v1)
     best, span = None, TOLERANCE
-    for along_v, first, last in ((True, v0, v1), (False, u0, u1)):
-        t = np.linspace(first, last, 17)
+    for along_v, t_start, t_end in ((True, v0, v1), (False, u0, u1)):
+        t = np.linspace(t_start, t_end, 17)
         r, h, _ = frame.cylindrical(
             [
                 surface.value(middle_u, value) if along_v else surface.value(value, middle_v)
@@ -172,30 +175,34 @@ def _along_parameter(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] |
         )
         steps = np.hypot(np.diff(r), np.diff(h))
         if steps.sum() > span:
-            best, span = (along_v, first, last, steps.min()), float(steps.sum())
+            best, span = (along_v, t_start, t_end, steps.min()), float(steps.sum())
     if best is None or best[3] < 1e-6 * span:
         return None
-    along_v, first, last, _ = best
+    along_v, t_start, t_end, _ = best
     if surface.TypeId == "Part::GeomOffsetSurface":
-        return smooth_pieces(_offset_line(face, frame, along_v, first, last), [first, last], [])
+        return smooth_pieces(
+            _offset_line(face, frame, along_v, t_start, t_end), [t_start, t_end], []
+        )
     return pieces_of(
-        surface.uIso(middle_u) if along_v else surface.vIso(middle_v), frame, first, last
+        surface.uIso(middle_u) if along_v else surface.vIso(middle_v), frame, t_start, t_end
     )
 
 
-def _offset_line(face: Any, frame: AxisFrame, along_v: bool, first: float, last: float) -> Curve:
+def _offset_line(face: Any, frame: AxisFrame, along_v: bool, t_start: float, t_end: float) -> Curve:
     """A parameter line of a surface whose own curves the kernel only approximates."""
     u0, u1, v0, v1 = face.ParameterRange
     surface, order = face.Surface, (0, 1) if along_v else (1, 0)
 
     def evaluate(t: Array) -> tuple[Array, Array]:
-        places = [
+        parameters = [
             (0.5 * (u0 + u1), value) if along_v else (value, 0.5 * (v0 + v1))
             for value in t.tolist()
         ]
-        d = as_array([surface.getDN(u, v, *order) for u, v in places]) @ frame.rotation
+        d = as_array([surface.getDN(u, v, *order) for u, v in parameters]) @ frame.rotation
         return flattened(
-            frame.local([surface.value(u, v) for u, v in places]), d, t > 0.5 * (first + last)
+            frame.local([surface.value(u, v) for u, v in parameters]),
+            d,
+            t > 0.5 * (t_start + t_end),
         )
 
     return evaluate
@@ -206,27 +213,27 @@ def _section(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
     tangent is across the surface normal.
     """
     radius, _, azimuth = frame.cylindrical(_grid(face, True) or _grid(face, False))
-    at = float(azimuth[np.argmax(radius)])
-    across = frame.rotation @ [-np.sin(at), np.cos(at), 0.0]
-    outward = frame.rotation @ [np.cos(at), np.sin(at), 0.0]
+    middle_azimuth = float(azimuth[np.argmax(radius)])
+    across = frame.rotation @ [-np.sin(middle_azimuth), np.cos(middle_azimuth), 0.0]
+    outward = frame.rotation @ [np.cos(middle_azimuth), np.sin(middle_azimuth), 0.0]
     wires = face.slice(FreeCAD.Vector(*across.tolist()), float(across @ frame.origin))
     edges = [edge for wire in wires for edge in wire.Edges if not edge.Degenerated]
     surface = face.Surface
 
-    def of_edge(edge: Any) -> list[tuple[Array, Array]]:
-        first, last = edge.ParameterRange
+    def edge_samples(edge: Any) -> list[tuple[Array, Array]]:
+        t_start, t_end = edge.ParameterRange
 
         def evaluate(t: Array) -> tuple[Array, Array]:
-            places = [surface.parameter(edge.valueAt(value)) for value in t.tolist()]
-            p = frame.local([surface.value(u, v) for u, v in places])
-            n = as_array([surface.normal(u, v) for u, v in places]) @ frame.rotation
+            parameters = [surface.parameter(edge.valueAt(value)) for value in t.tolist()]
+            p = frame.local([surface.value(u, v) for u, v in parameters])
+            n = as_array([surface.normal(u, v) for u, v in parameters]) @ frame.rotation
             forward = as_array([edge.tangentAt(value) for value in t.tolist()]) @ frame.rotation
             d = np.cross(np.cross(n, forward), n)
-            return flattened(p, d, t > 0.5 * (first + last))
+            return flattened(p, d, t > 0.5 * (t_start + t_end))
 
-        return smooth_pieces(evaluate, [first, last], [])
+        return smooth_pieces(evaluate, [t_start, t_end], [])
 
-    kept = [
+    section_edges = [
         edge
         for edge in edges
         if float(
@@ -236,7 +243,7 @@ def _section(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
         )
         > 0.0
     ]
-    return [piece for edge in kept for piece in of_edge(edge)] or None
+    return [samples for edge in section_edges for samples in edge_samples(edge)] or None
 
 
 def _grid(face: Any, inside_only: bool) -> list[Any]:
@@ -275,7 +282,7 @@ def _distance(frame: AxisFrame, points: Any, curves: list[tuple[Array, Array]]) 
     return float(nearest.max())
 
 
-def _spread(face: Any, frame: AxisFrame) -> float:
+def _radial_spread(face: Any, frame: AxisFrame) -> float:
     """How far a face without a meridian is from turning about the axis: the play of its radius or height, mm."""
     radius, height, _ = frame.cylindrical(_grid(face, True) or _grid(face, False))
     return float(max(min(np.ptp(radius), np.ptp(height)), 2.0 * TOLERANCE))
@@ -289,8 +296,8 @@ def _edge_deviation(edges: list[Any], frame: AxisFrame) -> float:
             continue
         p = frame.local(edge_points(edge, 9))
         radius = np.hypot(p[:, 0], p[:, 1])
-        far = p[np.argmax(radius)] / max(radius.max(), 1e-12)
-        off_meridian = np.abs(p[:, 0] * far[1] - p[:, 1] * far[0]).max()
+        farthest = p[np.argmax(radius)] / max(radius.max(), 1e-12)
+        off_meridian = np.abs(p[:, 0] * farthest[1] - p[:, 1] * farthest[0]).max()
         off_parallel = np.hypot(np.ptp(radius), np.ptp(p[:, 2]))
         worst = max(worst, float(min(off_meridian, off_parallel)))
     return worst
@@ -299,19 +306,21 @@ def _edge_deviation(edges: list[Any], frame: AxisFrame) -> float:
 def _turn(face: Any, frame: AxisFrame) -> tuple[float, float] | None:
     """Azimuths (start, end) rad of a part of a turn, None for a full one."""
     u0, u1, v0, v1 = face.ParameterRange
-    if face.Surface.TypeId in NATURAL and u1 - u0 > FULL:
+    if face.Surface.TypeId in NATURAL and u1 - u0 > FULL_TURN_RAD:
         return None
     flat = planar(face)
-    kept = [edge_points(edge, 181) for edge in face.Edges]
+    samples = [edge_points(edge, 181) for edge in face.Edges]
     for t in np.linspace(0.0, 1.0, 181)[1:-1].tolist():
         for u, v in ((u0 + t * (u1 - u0), 0.5 * (v0 + v1)), (0.5 * (u0 + u1), v0 + t * (v1 - v0))):
             if not flat:
-                kept.append(as_array([face.Surface.value(u, v)]))
-    return _reach(frame, np.vstack(kept))
+                samples.append(as_array([face.Surface.value(u, v)]))
+    return _reach(frame, np.vstack(samples))
 
 
 def _reach(frame: AxisFrame, points: Array) -> tuple[float, float] | None:
-    """Azimuths (start, end) rad between which points lie: what they leave out is the widest stretch without any."""
+    """Azimuths (start, end) rad of the range that holds all points; the complement is the widest
+    empty range.
+    """
     radius, _, azimuth = frame.cylindrical(points)
     azimuth = np.sort(np.mod(azimuth[radius > 1e-3 * max(radius.max(), 1e-9)], 2.0 * np.pi))
     gaps = np.diff(np.r_[azimuth, azimuth[0] + 2.0 * np.pi])

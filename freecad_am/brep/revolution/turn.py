@@ -17,37 +17,37 @@ SAME_AZIMUTH = 1e-4  # rad
 Turn = tuple[float, float]
 
 
-def merged(pieces: Sequence[Piece], label: str) -> list[Piece]:
-    """One piece for all that share a meridian, turned as far as they reach together.
+def merged(segments: Sequence[Piece], label: str) -> list[Piece]:
+    """One segment for all segments that share a meridian, over their joint turn.
 
     Raises InputError 'NOT_REVOLUTION' where they leave more than one opening around the axis.
     """
     groups: list[list[Piece]] = []
-    ends = np.array([piece.points[[0, -1]] for piece in pieces]).reshape(-1, 2, 2)
+    ends = np.array([segment.points[[0, -1]] for segment in segments]).reshape(-1, 2, 2)
     firsts: list[int] = []
-    for number, piece in enumerate(pieces):
-        known = ends[firsts]
-        apart = [
-            np.abs(known - way).max(axis=(1, 2), initial=0.0)
-            for way in (ends[number], ends[number, ::-1])
+    for number, segment in enumerate(segments):
+        first_ends = ends[firsts]
+        end_gaps = [
+            np.abs(first_ends - end_order).max(axis=(1, 2), initial=0.0)
+            for end_order in (ends[number], ends[number, ::-1])
         ]
-        for k in np.flatnonzero(np.minimum(*apart) <= MERIDIAN_MM).tolist():
-            if _same_meridian(groups[k][0], piece):
-                groups[k].append(piece)
+        for k in np.flatnonzero(np.minimum(*end_gaps) <= MERIDIAN_MM).tolist():
+            if _same_meridian(groups[k][0], segment):
+                groups[k].append(segment)
                 break
         else:
-            groups.append([piece])
+            groups.append([segment])
             firsts.append(number)
     return [
-        replace(group[0], turn=_union([piece.turn for piece in group], group, label))
+        replace(group[0], turn=_union([segment.turn for segment in group], group, label))
         for group in groups
     ]
 
 
-def _same_meridian(one: Piece, other: Piece) -> bool:
-    """Whether pieces with the same ends are one on the way, too."""
-    middle = other.points[len(other.points) // 2]
-    start, steps = one.points[:-1], np.diff(one.points, axis=0)
+def _same_meridian(segment: Piece, other_segment: Piece) -> bool:
+    """Whether segments with the same ends also coincide between them."""
+    middle = other_segment.points[len(other_segment.points) // 2]
+    start, steps = segment.points[:-1], np.diff(segment.points, axis=0)
     share = np.clip(
         ((middle - start) * steps).sum(1) / np.maximum((steps * steps).sum(1), 1e-30), 0.0, 1.0
     )
@@ -57,21 +57,25 @@ def _same_meridian(one: Piece, other: Piece) -> bool:
 def _union(turns: Sequence[Turn | None], group: Sequence[Piece], label: str) -> Turn | None:
     if any(turn is None for turn in turns):
         return None
-    known = sorted(
+    sorted_turns = sorted(
         (turn[0] % (2.0 * np.pi), turn[1] - turn[0]) for turn in turns if turn is not None
     )
     joined: list[Turn] = []
-    for start, span in [*known, *((start + 2.0 * np.pi, span) for start, span in known)]:
+    for start, span in [
+        *sorted_turns,
+        *((start + 2.0 * np.pi, span) for start, span in sorted_turns),
+    ]:
         if joined and start <= joined[-1][1] + SAME_AZIMUTH:
             joined[-1] = joined[-1][0], max(joined[-1][1], start + span)
         else:
             joined.append((start, start + span))
     if any(end - start >= 2.0 * np.pi - SAME_AZIMUTH for start, end in joined):
         return None
-    # everything was laid down twice, a turn apart: what is one stretch shows up whole once at least
+    # each range is listed twice, a turn apart, so that every joined range appears whole at least
+    # once
     distinct = {round((start % (2.0 * np.pi)) / SAME_AZIMUTH) for start, _ in joined[1:]}
     if len(distinct) > 1:
-        names = ", ".join(piece.name for piece in group)
+        names = ", ".join(segment.name for segment in group)
         text = Text("{} leave more than one opening around the axis; choose one of them", names)
         raise InputError("NOT_REVOLUTION", label, text)
     start, end = max(joined, key=lambda turn: turn[1] - turn[0])
@@ -84,13 +88,19 @@ def common_turn(chain: Chain, label: str) -> Turn | None:
 
     Raises InputError 'NOT_REVOLUTION' naming the faces that turn differently.
     """
-    first = chain[0]
-    for piece in chain[1:]:
-        same = (piece.turn is None) == (first.turn is None)
-        if same and piece.turn is not None and first.turn is not None:
-            off = abs(np.angle(np.exp(1j * (piece.turn[0] - first.turn[0]))))
+    first_segment = chain[0]
+    for segment in chain[1:]:
+        same = (segment.turn is None) == (first_segment.turn is None)
+        if same and segment.turn is not None and first_segment.turn is not None:
+            off = abs(np.angle(np.exp(1j * (segment.turn[0] - first_segment.turn[0]))))
             same = (
-                max(off, abs((piece.turn[1] - piece.turn[0]) - (first.turn[1] - first.turn[0])))
+                max(
+                    off,
+                    abs(
+                        (segment.turn[1] - segment.turn[0])
+                        - (first_segment.turn[1] - first_segment.turn[0])
+                    ),
+                )
                 < 1e-3
             )
         if not same:
@@ -98,12 +108,12 @@ def common_turn(chain: Chain, label: str) -> Turn | None:
                 "NOT_REVOLUTION",
                 label,
                 "{} turns {} and {} {}; choose faces that turn alike",
-                first.name,
-                _degrees(first.turn),
-                piece.name,
-                _degrees(piece.turn),
+                first_segment.name,
+                _degrees(first_segment.turn),
+                segment.name,
+                _degrees(segment.turn),
             )
-    return first.turn
+    return first_segment.turn
 
 
 def _degrees(turn: Turn | None) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Which faces of a shape certainly do not turn about an axis, told by a few of their normals."""
+"""Faces of a shape that are certainly not of revolution about an axis, judged by a few normals."""
 
 from __future__ import annotations
 
@@ -21,8 +21,10 @@ ON_AXIS = 1e-3  # mm
 
 
 class Normals(NamedTuple):
-    """Places (n, 3) on faces, the unit normals (n, 3) there, and the number (n,) of the face of each. flat: (faces,) bool;
-    wide: (faces,) bool, which are wide enough to be told by their normals."""
+    """Points (n, 3) on faces, their unit normals (n, 3), and the number (n,) of the face of each.
+    flat: (faces,) bool; wide: (faces,) bool, faces that are wide enough for a judgement by their
+    normals.
+    """
 
     points: Array
     normals: Array
@@ -34,32 +36,33 @@ class Normals(NamedTuple):
 def normals_of(faces: Sequence[Any]) -> Normals:
     """A few normals of each face, taken where the face is and not only its surface."""
     flat = np.array([planar(face) for face in faces], dtype=bool)
-    places: list[Any] = []
+    points: list[Any] = []
     directions: list[Any] = []
     counts = []
     for face, is_flat in zip(faces, flat.tolist(), strict=True):
-        found = _flat(face) if is_flat else _curved(face)
-        places += [point for point, _ in found]
-        directions += [normal for _, normal in found]
-        counts.append(len(found))
+        samples = _flat(face) if is_flat else _curved(face)
+        points += [point for point, _ in samples]
+        directions += [normal for _, normal in samples]
+        counts.append(len(samples))
     wide = np.array([2.0 * face.Area > NARROW * face.Length for face in faces], dtype=bool)
     return Normals(
-        as_array(places), as_array(directions), np.repeat(np.arange(len(faces)), counts), flat, wide
+        as_array(points), as_array(directions), np.repeat(np.arange(len(faces)), counts), flat, wide
     )
 
 
-def surely_off(of: Normals, frame: AxisFrame) -> Mask:
-    """(faces,) bool: faces that lean around the axis somewhere, so that they are not of revolution about it; those that lie
-    along it, and only end a part of a turn, are not among them."""
-    points, normals = frame.local(of.points), of.normals @ frame.rotation
+def surely_off(samples: Normals, frame: AxisFrame) -> Mask:
+    """(faces,) bool: faces with a normal that leans around the axis, so that they are not of
+    revolution about it; planes along the axis, which only bound a part of a turn, are excluded.
+    """
+    points, normals = frame.local(samples.points), samples.normals @ frame.rotation
     radius = np.hypot(points[:, 0], points[:, 1])
     around = np.abs(points[:, 0] * normals[:, 1] - points[:, 1] * normals[:, 0]) / np.maximum(
         radius, ON_AXIS
     )
     through = np.abs((points[:, :2] * normals[:, :2]).sum(axis=1)) < NARROW
-    ends = of.flat[of.face] & through & (np.abs(normals[:, 2]) < SLOPE)
+    ends = samples.flat[samples.face] & through & (np.abs(normals[:, 2]) < SLOPE)
     leans = (around > SLOPE) & (radius > NARROW) & ~ends
-    return np.bincount(of.face[leans], minlength=len(of.flat)).astype(bool) & of.wide
+    return np.bincount(samples.face[leans], minlength=len(samples.flat)).astype(bool) & samples.wide
 
 
 def _flat(face: Any) -> list[tuple[Any, Any]]:
@@ -73,12 +76,12 @@ def _flat(face: Any) -> list[tuple[Any, Any]]:
 def _curved(face: Any) -> list[tuple[Any, Any]]:
     u0, u1, v0, v1 = face.ParameterRange
     inner = (np.arange(ACROSS) + 0.5) / ACROSS
-    found = []
+    samples = []
     for u in (u0 + inner * (u1 - u0)).tolist():
         for v in (v0 + inner * (v1 - v0)).tolist():
             if face.isPartOfDomain(u, v):
                 try:
-                    found.append((face.Surface.value(u, v), face.Surface.normal(u, v)))
+                    samples.append((face.Surface.value(u, v), face.Surface.normal(u, v)))
                 except (RuntimeError, Part.OCCError):
                     continue  # where the surface is degenerate
-    return found
+    return samples

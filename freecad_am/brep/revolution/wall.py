@@ -23,8 +23,8 @@ from .turning import normals_of, surely_off
 from .wire import pieces_of_edges
 
 SLIVER = 1e-3  # mm; faces narrower than this are ignored
-MOSTLY = 0.5  # of the surface of several solids, that the one with a wall has at least
-JUDGED = 24  # faces that are off an axis, looked at for the one to tell of
+MOSTLY = 0.5  # least share of the surface of several solids for the one with a wall
+JUDGED = 24  # faces off an axis among which the message names one
 
 Named = tuple[str, Any]
 
@@ -38,10 +38,11 @@ def find_wall(
 ) -> RevolvedWall:
     """The wall of a Part.Shape as a meridian turned about its axis, in the shape's own coordinates.
 
-    faces: names such as 'Face3' of the wall's faces; all when left out: of a solid or closed shell then the outer or
-    inner wall without its flat end faces, or the middle, halfway between the two. axis: point and direction, needed by
-    wires and sketches, found on surfaces. Raises InputError 'NO_WALL', 'NOT_REVOLUTION' (naming face and deviation in
-    mm), 'NO_AXIS', 'UNKNOWN_FACE', 'SEVERAL_SOLIDS', 'NOT_OF_REVOLUTION' where most of several solids are not.
+    faces: names such as 'Face3' of the wall's faces; all when left out; a solid or closed shell
+    then gives the outer or inner wall without its flat end faces, or the middle, halfway between
+    the two. axis: point and direction, needed by wires and sketches, found on surfaces. Raises
+    InputError 'NO_WALL', 'NOT_REVOLUTION' (naming face and deviation in mm), 'NO_AXIS',
+    'UNKNOWN_FACE', 'SEVERAL_SOLIDS', 'NOT_OF_REVOLUTION' where most of several solids are not.
     """
     if shape is None or shape.isNull():
         raise InputError("NO_WALL", label, "the shape is empty; choose an object with a shape")
@@ -52,39 +53,45 @@ def find_wall(
         return _from_faces(_chosen(named, faces, label), wall, axis, label, selected=True)
     if len(shape.Solids) > 1:
         return _only_solid(shape, named, wall, axis, label)
-    whole = bool(shape.Shells) and all(shell.isClosed() for shell in shape.Shells)
-    return _from_faces(named, wall, axis, label, selected=False, whole=whole)
+    is_closed = bool(shape.Shells) and all(shell.isClosed() for shell in shape.Shells)
+    return _from_faces(named, wall, axis, label, selected=False, is_closed=is_closed)
 
 
 def _chosen(named: list[Named], faces: Sequence[str], label: str) -> list[Named]:
-    known = dict(named)
+    faces_by_name = dict(named)
     for name in faces:
-        if name not in known:
+        if name not in faces_by_name:
             raise InputError(
                 "UNKNOWN_FACE", label, "it has no {}; choose from Face1 to Face{}", name, len(named)
             )
-    return [(name, known[name]) for name in dict.fromkeys(faces)]
+    return [(name, faces_by_name[name]) for name in dict.fromkeys(faces)]
 
 
 def _only_solid(
     shape: Any, named: list[Named], wall: str, axis: tuple[Any, Any] | None, label: str
 ) -> RevolvedWall:
     """The wall of the one solid that has one, where that is most of the shape."""
-    found: list[tuple[str, RevolvedWall, float]] = []
+    walls: list[tuple[str, RevolvedWall, float]] = []
     area = sum(solid.Area for solid in shape.Solids)
     for index, solid in enumerate(shape.Solids, start=1):
-        own = [
-            (name, face) for name, face in named if any(face.isSame(other) for other in solid.Faces)
+        solid_faces = [
+            (name, face)
+            for name, face in named
+            if any(face.isSame(solid_face) for solid_face in solid.Faces)
         ]
         try:
-            made = _from_faces(own, wall, axis, label, False, whole=True)
-            found.append(
-                (Text("Solid{} ({} to {})", index, own[0][0], own[-1][0]), made, solid.Area / area)
+            wall_of_solid = _from_faces(solid_faces, wall, axis, label, False, is_closed=True)
+            walls.append(
+                (
+                    Text("Solid{} ({} to {})", index, solid_faces[0][0], solid_faces[-1][0]),
+                    wall_of_solid,
+                    solid.Area / area,
+                )
             )
         except InputError:
             continue
-    if len(found) == 1:
-        name, made, share = found[0]
+    if len(walls) == 1:
+        name, wall_of_solid, share = walls[0]
         if share < MOSTLY:
             raise InputError(
                 "NOT_OF_REVOLUTION",
@@ -95,15 +102,15 @@ def _only_solid(
                 name,
                 share,
             )
-        return made
-    if not found:
+        return wall_of_solid
+    if not walls:
         raise InputError(
             "NO_WALL",
             label,
             "none of its {} solids is of revolution; name the faces of the wall",
             len(shape.Solids),
         )
-    names = Text.joined(", ", (name for name, *_ in found))
+    names = Text.joined(", ", (name for name, *_ in walls))
     raise InputError(
         "SEVERAL_SOLIDS", label, "{} all have a wall; name the faces of the one to deposit", names
     )
@@ -115,7 +122,7 @@ def _from_faces(
     axis: tuple[Any, Any] | None,
     label: str,
     selected: bool,
-    whole: bool = False,
+    is_closed: bool = False,
 ) -> RevolvedWall:
     """whole: the faces are all of a closed surface."""
     wide = [
@@ -152,23 +159,24 @@ def _from_faces(
             worst.deviation,
             Word(hint),
         )
-    pieces = merged([piece for patch in patches for piece in patch.pieces], label)
-    if not pieces:
+    segments = merged([segment for patch in patches for segment in patch.segments], label)
+    if not segments:
         raise InputError(
             "NO_WALL", label, "it has no face that turns about the axis; name the faces of the wall"
         )
-    return _assembled(pieces, frame, wall, label, selected, whole)
+    return _assembled(segments, frame, wall, label, selected, is_closed)
 
 
 def _about_best(
     wide: Sequence[Named], lines: Sequence[tuple[Any, Any]]
 ) -> tuple[AxisFrame, list[Patch]]:
-    """The axis about which all faces turn, and what they are about it; else the one that the least of their area is off, and
-    the largest of the faces that are."""
+    """The axis about which all faces turn, and their patches; else the axis that the least area
+    deviates from, and the largest deviating faces.
+    """
     normals = normals_of([face for _, face in wide])
     area = np.array([face.Area + SLIVER for _, face in wide])
     large = np.argsort(-area, kind="stable").tolist()
-    least, frame, off = np.inf, None, []
+    least_area, frame, off = np.inf, None, []
     for point, direction in lines:
         about = axis_frame(point, direction)
         leaning = surely_off(normals, about)
@@ -181,8 +189,12 @@ def _about_best(
             else:
                 return about, patches
             leaning[len(patches) - 1] = True
-        if area[leaning].sum() < least:
-            least, frame, off = float(area[leaning].sum()), about, [k for k in large if leaning[k]]
+        if area[leaning].sum() < least_area:
+            least_area, frame, off = (
+                float(area[leaning].sum()),
+                about,
+                [k for k in large if leaning[k]],
+            )
     assert frame is not None
     return frame, [patch_of(wide[k][1], wide[k][0], frame) for k in off[:JUDGED]]
 
@@ -197,15 +209,15 @@ def _from_edges(shape: Any, wall: str, axis: tuple[Any, Any] | None, label: str)
 
 
 def _assembled(
-    pieces: list[Piece],
+    segments: list[Piece],
     frame: AxisFrame,
     wall: str,
     label: str,
     selected: bool,
-    whole: bool = False,
+    closed_source: bool = False,
 ) -> RevolvedWall:
-    """The wall made of pieces about the axis of the frame."""
-    chains, gap = contour.chains(pieces)
+    """The wall made of meridian segments about the axis of the frame."""
+    chains, gap = contour.chains(segments)
     if len(chains) > 1:
         names = Text.joined(
             " and ", ("-".join(dict.fromkeys((chain[0].name, chain[-1].name))) for chain in chains)
@@ -217,7 +229,7 @@ def _assembled(
             names,
         )
     chain, issues = chains[0], []
-    closed = contour.is_closed(chain, whole) and (not selected or _loops(chain))
+    closed = contour.is_closed(chain, closed_source) and (not selected or _loops(chain))
     gap = contour.opening(chain) if closed and not contour.is_closed(chain) else gap
     if gap > contour.JOIN_MM:
         issues.append(
@@ -246,7 +258,7 @@ def _assembled(
         turn is None,
         tuple(issues),
         label,
-        tuple(dict.fromkeys(piece.name for piece in chain)),
+        tuple(dict.fromkeys(segment.name for segment in chain)),
     )
 
 
@@ -277,11 +289,11 @@ def _step_notes(chain: Chain, label: str) -> list[Issue]:
             NOTE,
             "STEP",
             Text(
-                "{} of {} is a step of {:.3g} mm in the wall; it is kept", piece.name, label, span
+                "{} of {} is a step of {:.3g} mm in the wall; it is kept", segment.name, label, span
             ),
         )
-        for piece in chain
-        if (span := float(np.hypot(*(piece.points[-1] - piece.points[0])))) < contour.BRIDGE_MM
+        for segment in chain
+        if (span := float(np.hypot(*(segment.points[-1] - segment.points[0])))) < contour.BRIDGE_MM
         and len(chain) > 1
     ]
 

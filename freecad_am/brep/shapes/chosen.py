@@ -10,28 +10,36 @@ import Part
 
 
 def solids_of(shape: Any, numbers: Sequence[int]) -> Any:
-    """The solids with these numbers, from 1, of a Part.Shape. IndexError for one that there is not."""
-    chosen = [shape.Solids[number - 1] for number in numbers]
-    return chosen[0] if len(chosen) == 1 else Part.makeCompound(chosen)
+    """The solids with these numbers, from 1, of a Part.Shape. IndexError for a missing number."""
+    solids = [shape.Solids[number - 1] for number in numbers]
+    return solids[0] if len(solids) == 1 else Part.makeCompound(solids)
 
 
 def owners_of(shape: Any, names: Sequence[str]) -> tuple[Any, tuple[str, ...]]:
-    """The solids that some faces of a Part.Shape belong to, and those of the faces that belong to none; and what the faces
-    are called there. The shape itself where a name is none of its faces."""
+    """The solids that own some faces of a Part.Shape, together with the faces without a solid, and
+    the names of the faces in that result. The shape itself if a name is not one of its faces.
+    """
     faces = shape.Faces
     numbers = [int(name.removeprefix("Face")) for name in names]
     if not numbers or max(numbers) > len(faces):
         return shape, tuple(names)
-    chosen = [faces[number - 1] for number in numbers]
+    named_faces = [faces[number - 1] for number in numbers]
     solids = [
         solid
         for solid in shape.Solids
-        if any(one.isSame(face) for face in solid.Faces for one in chosen)
+        if any(other_face.isSame(face) for face in solid.Faces for other_face in named_faces)
     ]
-    held = [face for solid in solids for face in solid.Faces]
-    own = [*solids, *(face for face in chosen if not any(face.isSame(one) for one in held))]
-    made = own[0] if len(own) == 1 else Part.makeCompound(own)
-    return made, tuple(
-        next(f"Face{k + 1}" for k, one in enumerate(made.Faces) if one.isSame(face))
-        for face in chosen
+    solid_faces = [face for solid in solids for face in solid.Faces]
+    members = [
+        *solids,
+        *(
+            face
+            for face in named_faces
+            if not any(face.isSame(other_face) for other_face in solid_faces)
+        ),
+    ]
+    result = members[0] if len(members) == 1 else Part.makeCompound(members)
+    return result, tuple(
+        next(f"Face{k + 1}" for k, other_face in enumerate(result.Faces) if other_face.isSame(face))
+        for face in named_faces
     )

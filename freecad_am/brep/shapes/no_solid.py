@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a shape without solids has instead, and how to make a solid of it."""
+"""The reason why a shape has no solids, and how to make one."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ SEW = Text(
 )
 
 
-def no_solid(source: Any, label: str, wanted: str) -> InputError:
-    """The error NO_SOLID for a Part.Shape, or None. wanted: what to choose instead, for the end of the sentence."""
+def no_solid(source: Any, label: str, remedy: str) -> InputError:
+    """The error NO_SOLID for a Part.Shape, or None. remedy: what to choose instead, for the end of the sentence."""
     faces = [] if source is None or source.isNull() else list(source.Faces)
     if not faces:
-        return InputError("NO_SOLID", label, "it is not a solid; {}", wanted)
+        return InputError("NO_SOLID", label, "it is not a solid; {}", remedy)
     if source.Shells and all(shell.isClosed() for shell in source.Shells):
         return InputError(
             "NO_SOLID",
@@ -28,7 +28,7 @@ def no_solid(source: Any, label: str, wanted: str) -> InputError:
             "it is no solid, but {} closed shell(s) of {} face(s); make solids of them (Part, Convert to solid), or {}",
             len(source.Shells),
             len(faces),
-            wanted,
+            remedy,
         )
     edge, face = _open_edge(faces)
     return InputError(
@@ -39,12 +39,12 @@ def no_solid(source: Any, label: str, wanted: str) -> InputError:
         edge,
         face,
         SEW,
-        wanted,
+        remedy,
     )
 
 
 def _open_edge(faces: list[Any]) -> tuple[str, str]:
-    """The place of the middle of an edge that a single face has, and the name of that face."""
+    """The midpoint of an edge that only one face uses, and the name of the face."""
     owners: dict[int, list[int]] = {}
     edges = {}
     for number, face in enumerate(faces, start=1):
@@ -53,10 +53,10 @@ def _open_edge(faces: list[Any]) -> tuple[str, str]:
             edges[edge.hashCode()] = edge
     single = [
         code
-        for code, own in owners.items()
-        if len(own) == 1
+        for code, face_numbers in owners.items()
+        if len(face_numbers) == 1
         and not edges[code].Degenerated
-        and not edges[code].isSeam(faces[own[0] - 1])
+        and not edges[code].isSeam(faces[face_numbers[0] - 1])
     ]
     if not single:
         return place(np.array(tuple(faces[0].BoundBox.Center))), "Face1"

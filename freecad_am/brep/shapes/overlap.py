@@ -6,16 +6,22 @@ from __future__ import annotations
 from typing import Any
 
 
-def common_volume(one: Any, other: Any) -> float:
-    """mm3 that the solids of two Part.Shapes have in common, 0 where they only touch, or one of them has no solid."""
-    if not one.Solids or not other.Solids or not one.BoundBox.intersect(other.BoundBox):
+def common_volume(shape: Any, other_shape: Any) -> float:
+    """Volume, mm3, that the solids of two Part.Shapes share; 0 if they only touch, or a shape has
+    no solid.
+    """
+    if (
+        not shape.Solids
+        or not other_shape.Solids
+        or not shape.BoundBox.intersect(other_shape.BoundBox)
+    ):
         return 0.0
-    found = 0.0
-    for first in one.Solids:
-        for second in other.Solids:
-            if first.BoundBox.intersect(second.BoundBox):
-                found += sum(abs(solid.Volume) for solid in first.common(second).Solids)
-    return found
+    volume = 0.0
+    for own_solid in shape.Solids:
+        for other_solid in other_shape.Solids:
+            if own_solid.BoundBox.intersect(other_solid.BoundBox):
+                volume += sum(abs(solid.Volume) for solid in own_solid.common(other_solid).Solids)
+    return volume
 
 
 def volume(shape: Any) -> float:
@@ -23,8 +29,10 @@ def volume(shape: Any) -> float:
     return sum(abs(solid.Volume) for solid in shape.Solids)
 
 
-def touching(one: Any, other: Any, tolerance: float) -> bool:
+def touching(shape: Any, other_shape: Any, tolerance: float) -> bool:
     """Whether two Part.Shapes come within a tolerance, mm, of one another."""
-    near = one.BoundBox
-    near.enlarge(tolerance)
-    return bool(near.intersect(other.BoundBox) and one.distToShape(other)[0] <= tolerance)
+    box = shape.BoundBox
+    box.enlarge(tolerance)
+    return bool(
+        box.intersect(other_shape.BoundBox) and shape.distToShape(other_shape)[0] <= tolerance
+    )

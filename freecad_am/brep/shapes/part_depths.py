@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How a part lies about the surface that its beads run on, from its shape."""
+"""The depth of a part around the surface of its beads, from its shape."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ from ..kernel.process import in_kernel_process
 from ..sections_agree import sections_agree
 from .tessellate import tessellated
 
-CHORD = 1e-3  # of the part's size, between it and its triangles
-FINEST, COARSEST = 0.02, 0.5  # mm of that
+CHORD_SHARE = 1e-3  # share of the part's size: chord error of its triangles
+MIN_CHORD_MM, MAX_CHORD_MM = 0.02, 0.5  # bounds of the chord error, mm
 PLACES = 4000  # of the surface
 
 
-def of_revolved(shape: Any, wall: RevolvedWall, label: str) -> PartDepths | None:
-    """Of the part that a wall of revolution was found on; None where it has no faces."""
+def revolved_depths(shape: Any, wall: RevolvedWall, label: str) -> PartDepths | None:
+    """Depths of the part of a wall of revolution, or None if the part has no faces."""
     return _of(shape, wall.faces, label, revolved_places(wall), None)
 
 
-def of_faces(
+def face_depths(
     shape: Any, faces: Sequence[str], label: str, substrate: Body | None
 ) -> PartDepths | None:
-    """Of the part that faces are the wall of; what lies in the substrate does not count."""
+    """Depths of the part whose wall is `faces`; material in the substrate does not count."""
     return _of(shape, faces, label, None, substrate)
 
 
@@ -67,27 +67,31 @@ def _of(
         return None
     solids = _solids(shape)
     size = shape.BoundBox.DiagonalLength
-    chord = float(np.clip(CHORD * size, min(FINEST, 10.0 * CHORD * size), COARSEST))
+    chord = float(
+        np.clip(CHORD_SHARE * size, min(MIN_CHORD_MM, 10.0 * CHORD_SHARE * size), MAX_CHORD_MM)
+    )
     try:
-        made = in_kernel_process(tessellated, shape.copy(), chord)
+        tessellation = in_kernel_process(tessellated, shape.copy(), chord)
     except FAULTS:
-        return None  # told by who needs the triangles
+        return None  # the code that needs the triangles reports it
     names = [f"Face{number + 1}" for number in range(len(shape.Faces))]
-    body = Body(label, made.vertices, made.triangles.astype(np.int64))
-    on = np.isin(made.owner, [k for k, name in enumerate(names) if name in set(faces)])
+    body = Body(label, tessellation.vertices, tessellation.triangles.astype(np.int64))
+    on = np.isin(tessellation.owner, [k for k, name in enumerate(names) if name in set(faces)])
     surface = _places(body, on) if surface is None else surface
     if not len(surface.points):
         return None
     depths, thickness, by_face, share = measured(
-        body, made.owner, names, surface, 3.0 * chord, substrate
+        body, tessellation.owner, names, surface, 3.0 * chord, substrate
     )
     codes = {face.hashCode(): name for name, face in zip(names, shape.Faces, strict=True)}
     owned = [[codes.get(face.hashCode(), "") for face in solid.Faces] for solid in solids]
-    left = (
-        [k for k, own in enumerate(owned) if not set(own) & set(faces)] if len(solids) > 1 else []
+    unused = (
+        [k for k, names_of_solid in enumerate(owned) if not set(names_of_solid) & set(faces)]
+        if len(solids) > 1
+        else []
     )
-    known = {name for k in left for name in owned[k]} | set(faces)
-    rest = [k for k, name in enumerate(names) if name not in known]
+    accounted = {name for k in unused for name in owned[k]} | set(faces)
+    remaining = [k for k, name in enumerate(names) if name not in accounted]
     volumes = [abs(float(solid.Volume)) for solid in solids]
     if len(solids) == 1:
         volumes = [_volume(solids[0], volumes[0], body, chord)]
@@ -97,15 +101,17 @@ def _of(
         float(surface.areas.sum()),
         depths,
         thickness,
-        tuple(names[k] for k in rest),
-        tuple(float(by_face[k]) for k in rest),
-        tuple(float(shape.Faces[k].Area) for k in rest),
-        tuple((f"Solid{k + 1}", volumes[k]) for k in left),
+        tuple(names[k] for k in remaining),
+        tuple(float(by_face[k]) for k in remaining),
+        tuple(float(shape.Faces[k].Area) for k in remaining),
+        tuple((f"Solid{k + 1}", volumes[k]) for k in unused),
     )
 
 
 def _volume(solid: Any, volume: float, body: Body, chord: float) -> float:
-    """That of the kernel, or of triangles within `chord` mm where the kernel's own integral is off."""
+    """The kernel's volume of a solid, or the volume of triangles within `chord` mm if the kernel's
+    integral is off.
+    """
     mesh = abs(SolidMesh(body.vertices, body.triangles).volume)
     doubt = abs(mesh - volume)
     if doubt <= 2.0 * chord * float(solid.Area):
@@ -122,14 +128,14 @@ def _solids(shape: Any) -> list[Any]:
 
 
 def _places(body: Body, on: Any) -> Surface:
-    """Places spread over the triangles of a wall."""
+    """Points spread over the triangles of a wall."""
     corners = body.corners()[on]
     if not len(corners):
         return Surface(*(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0)))
     across = doubled_areas(corners)
     twice: Array = np.linalg.norm(across, axis=1)
-    points, of = divide_triangles(
+    points, face = divide_triangles(
         corners, grain(corners, float(2.0 * np.sqrt(0.5 * twice.sum() / PLACES)))
     )
-    areas = (0.5 * twice / np.maximum(np.bincount(of, minlength=len(corners)), 1))[of]
-    return Surface(points, (across / np.maximum(twice, 1e-300)[:, None])[of], areas)
+    areas = (0.5 * twice / np.maximum(np.bincount(face, minlength=len(corners)), 1))[face]
+    return Surface(points, (across / np.maximum(twice, 1e-300)[:, None])[face], areas)

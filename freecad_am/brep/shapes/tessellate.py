@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shapes as triangles: what the nozzle is kept clear of, and what is measured and cut by them."""
+"""Shapes as triangles, for clearance, measurement and cuts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ..kernel.process import in_kernel_process
 
 DEFLECTION = 0.1  # mm, largest distance of the triangles from a curved face
 WELDED = 1e-5  # mm; vertices of the tessellations of two faces
-ANGLE = 0.35  # rad; of a turn from triangle to triangle in the first, coarse mesh
+ANGLE = 0.35  # rad between neighbouring triangles of the first, coarse mesh
 
 
 def body(source: Any, name: str) -> Body:
@@ -46,7 +46,9 @@ def _rows(points: Any, triangles: Any) -> tuple[Array, Index]:
 
 
 class Tessellation(NamedTuple):
-    """Vertices (n, 3), triangles (m, 3), the face (m,) of each; of each face, the parameters (k, 2) of its vertices."""
+    """Vertices (n, 3), triangles (m, 3), the face (m,) of each, and for each face the parameters
+    (k, 2) of its vertices.
+    """
 
     vertices: Array
     triangles: Index
@@ -55,8 +57,9 @@ class Tessellation(NamedTuple):
 
 
 def tessellated(shape: Any, chord: float, angle: float = ANGLE) -> Tessellation:
-    """Triangles within `chord` mm of the shape; vertices that faces share are one. Faces that the kernel makes no triangles
-    of have none."""
+    """Triangles within `chord` mm of the shape; faces share the vertices of their common edges.
+    Faces on which the kernel fails have no triangles.
+    """
     import MeshPart  # slow to import
 
     # all at once, so that shared edges are divided alike; coarser around than the faces' own call would have it
@@ -65,20 +68,22 @@ def tessellated(shape: Any, chord: float, angle: float = ANGLE) -> Tessellation:
     )
     points, corners, owner, nodes, count = [], [], [], [], 0
     for k, face in enumerate(shape.Faces):
-        own, triangles = face.tessellate(chord) if divided(face) else ([], [])
-        points.append(np.array([tuple(point) for point in own]).reshape(-1, 3))
+        face_points, triangles = face.tessellate(chord) if divided(face) else ([], [])
+        points.append(np.array([tuple(point) for point in face_points]).reshape(-1, 3))
         corners.append(np.array(triangles, dtype=np.intp).reshape(-1, 3) + count)
         owner.append(np.full(len(triangles), k, dtype=np.intp))
         nodes.append(np.array(face.getUVNodes() if triangles else [], dtype=float).reshape(-1, 2))
-        count += len(own)
+        count += len(face_points)
     return Tessellation(
         *welded(np.vstack(points), np.vstack(corners), np.concatenate(owner)), nodes
     )
 
 
 def divided(face: Any) -> bool:
-    """Whether the kernel has made triangles of a face when it made those of its shape. Asked for those of one alone that it
-    has failed on, it may take minutes, which nothing ends, for a few that do not meet its neighbours'."""
+    """Whether the kernel made triangles of a face when it meshed the shape. Meshing a single face
+    that failed before may take minutes without a way to end it, for a few triangles that do not
+    meet the neighbours'.
+    """
     try:
         face.getUVNodes()
     except RuntimeError:
@@ -87,16 +92,16 @@ def divided(face: Any) -> bool:
 
 
 def welded(points: Array, triangles: Index, owner: Index) -> tuple[Array, Index, Index]:
-    """Vertices closer than WELDED made one; triangles that lose a corner go."""
+    """Merge vertices closer than WELDED and drop triangles that lose a corner."""
     tree = cKDTree(points)
-    first = np.arange(len(points))
+    representative = np.arange(len(points))
     pairs = tree.query_pairs(WELDED, output_type="ndarray")
-    np.minimum.at(first, pairs.max(axis=1), pairs.min(axis=1))
-    while (first[first] != first).any():
-        first = first[first]
-    kept, index = np.unique(first, return_inverse=True)
+    np.minimum.at(representative, pairs.max(axis=1), pairs.min(axis=1))
+    while (representative[representative] != representative).any():
+        representative = representative[representative]
+    used_points, index = np.unique(representative, return_inverse=True)
     triangles = np.ravel(index)[triangles]
-    whole = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
-    triangles, owner = triangles[whole], owner[whole]
+    proper = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    triangles, owner = triangles[proper], owner[proper]
     used, index = np.unique(triangles, return_inverse=True)
-    return points[kept][used], np.ravel(index).reshape(-1, 3).astype(np.intp), owner
+    return points[used_points][used], np.ravel(index).reshape(-1, 3).astype(np.intp), owner

@@ -37,16 +37,18 @@ def refuse_gaps(wall: PatchWall, label: str) -> None:
     corner = wall.vertices[ends]
     middle = corner.mean(axis=1)
     tree = cKDTree(middle)
-    count, part = connected_parts(wall, np.ones(len(wall.vertices), dtype=bool))
-    near = np.asarray(tree.query(middle, k=min(16, len(middle)))[1]).reshape(len(middle), -1)
-    other = (owner[near] != owner[:, None]) | (part[ends[near, 0]] != part[ends[:, 0]][:, None])
-    apart = ~(ends[near][:, :, :, None] == ends[:, None, None, :]).any(axis=(2, 3))
-    gap = _to_segments(middle, corner[near])
-    gap[~(other & apart)] = np.inf
+    count, component = connected_parts(wall, np.ones(len(wall.vertices), dtype=bool))
+    neighbours = np.asarray(tree.query(middle, k=min(16, len(middle)))[1]).reshape(len(middle), -1)
+    foreign = (owner[neighbours] != owner[:, None]) | (
+        component[ends[neighbours, 0]] != component[ends[:, 0]][:, None]
+    )
+    unconnected = ~(ends[neighbours][:, :, :, None] == ends[:, None, None, :]).any(axis=(2, 3))
+    gap = _to_segments(middle, corner[neighbours])
+    gap[~(foreign & unconnected)] = np.inf
     best = gap.min(axis=1)
     if best.min() < SLIT:
         row = int(np.argmax(np.where(best < SLIT, best, -1.0)))
-        k = near[row, int(np.argmin(gap[row]))]
+        k = neighbours[row, int(np.argmin(gap[row]))]
         raise InputError(
             "GAP",
             label,
@@ -58,12 +60,12 @@ def refuse_gaps(wall: PatchWall, label: str) -> None:
             SEWN,
         )
     if count > 1:
-        one, other = (np.flatnonzero(part == k) for k in (0, 1))
-        distance, index = cKDTree(wall.vertices[one]).query(wall.vertices[other])
+        piece_vertices, foreign = (np.flatnonzero(component == k) for k in (0, 1))
+        distance, index = cKDTree(wall.vertices[piece_vertices]).query(wall.vertices[foreign])
         k = int(np.argmin(distance))
         names = [
             wall.faces[wall.patch[np.flatnonzero((wall.triangles == v).any(axis=1))[0]]]
-            for v in (one[index[k]], other[k])
+            for v in (piece_vertices[index[k]], foreign[k])
         ]
         raise InputError(
             "GAP",
@@ -74,7 +76,7 @@ def refuse_gaps(wall: PatchWall, label: str) -> None:
             names[0],
             names[1],
             distance[k],
-            place(wall.vertices[other[k]]),
+            place(wall.vertices[foreign[k]]),
             SEWN,
         )
 
@@ -86,8 +88,10 @@ def _owners(wall: PatchWall, ends: Index) -> Index:
     base = len(wall.vertices)
     order = np.argsort(keys[:, 0] * base + keys[:, 1])
     pair = np.sort(ends, axis=1)
-    at = np.searchsorted((keys[:, 0] * base + keys[:, 1])[order], pair[:, 0] * base + pair[:, 1])
-    owner: Index = wall.patch[face[order[at]]]
+    positions = np.searchsorted(
+        (keys[:, 0] * base + keys[:, 1])[order], pair[:, 0] * base + pair[:, 1]
+    )
+    owner: Index = wall.patch[face[order[positions]]]
     return owner
 
 
@@ -106,13 +110,13 @@ def refuse_creases(wall: PatchWall, shape: Any, label: str) -> None:
     edges = Edges(wall.triangles)
     middle = wall.vertices[edges.ends].mean(axis=1)
     if (edges.count > 2).any():
-        at = middle[np.argmax(edges.count > 2)]
+        branch_point = middle[np.argmax(edges.count > 2)]
         raise InputError(
             "BRANCHING_FACES",
             label,
             "more than two faces meet in one edge at {}; a wall branches by smooth faces with "
             "openings: leave one of them out",
-            place(at),
+            place(branch_point),
         )
     two = edges.count == 2
     pair = wall.patch[edges.faces]
@@ -123,8 +127,8 @@ def refuse_creases(wall: PatchWall, shape: Any, label: str) -> None:
     normals = np.empty((2, len(joint), 3))
     for side in (0, 1):
         for k in np.unique(pair[joint, side]):
-            mine = pair[joint, side] == k
-            normals[side, mine] = wall.patches[k].at(wall.patches[k].inverse(ends[mine]))[1]
+            on_patch = pair[joint, side] == k
+            normals[side, on_patch] = wall.patches[k].at(wall.patches[k].inverse(ends[on_patch]))[1]
     angle = np.arctan2(
         np.linalg.norm(np.cross(normals[0], normals[1]), axis=1), dot(normals[0], normals[1])
     )
@@ -146,20 +150,27 @@ def refuse_creases(wall: PatchWall, shape: Any, label: str) -> None:
 
 def _edge_at(shape: Any, point: Array) -> str:
     vertex = Part.Vertex(FreeCAD.Vector(*point))
-    found = min(
+    nearest_edge = min(
         enumerate(shape.Edges, start=1),
-        key=lambda one: one[1].distToShape(vertex)[0],
+        key=lambda entry: entry[1].distToShape(vertex)[0],
         default=(0, None),
     )
-    return f"Edge{found[0]}" if found[0] else ""
+    return f"Edge{nearest_edge[0]}" if nearest_edge[0] else ""
 
 
-def refuse_tight(wall: PatchWall, chosen: Mask, height: float, label: str) -> None:
-    """InputError LAYER_HEIGHT where the smaller principal radius of the vertices `chosen` (n,) is below the layer height."""
+def refuse_tight(wall: PatchWall, selected: Mask, height: float, label: str) -> None:
+    """InputError LAYER_HEIGHT where the smaller principal radius of the vertices `selected` (n,) is
+    below the layer height.
+    """
     radius, patch = smallest_radii(wall)
-    radius = np.where(chosen, radius, np.inf)
-    at = int(np.argmin(radius))
-    _refuse_below(height, float(radius[at]), wall.vertices[at], f"{label} {wall.faces[patch[at]]}")
+    radius = np.where(selected, radius, np.inf)
+    tightest = int(np.argmin(radius))
+    _refuse_below(
+        height,
+        float(radius[tightest]),
+        wall.vertices[tightest],
+        f"{label} {wall.faces[patch[tightest]]}",
+    )
 
 
 def refuse_tight_tube(tube: SurfaceWall, height: float, label: str) -> None:
@@ -179,9 +190,9 @@ def refuse_tight_tube(tube: SurfaceWall, height: float, label: str) -> None:
         )
         turns.append((ahead - back) / (2.0 * (step_u + step_v)))
     radius = principal_radii(slopes, turns)
-    at = np.unravel_index(int(np.argmin(radius)), radius.shape)
+    tightest = np.unravel_index(int(np.argmin(radius)), radius.shape)
     named = f"{label} {tube.faces[0]}" if len(tube.faces) == 1 else label
-    _refuse_below(height, float(radius[at]), surface.point(u[at], v[at]), named)
+    _refuse_below(height, float(radius[tightest]), surface.point(u[tightest], v[tightest]), named)
 
 
 def _refuse_below(height: float, radius: float, point: Array, where: str) -> None:
@@ -199,24 +210,27 @@ def _refuse_below(height: float, radius: float, point: Array, where: str) -> Non
 
 def smallest_radii(wall: PatchWall) -> tuple[Array, Index]:
     """Smallest principal radius (n,) mm at each vertex, and the patch (n,) it was taken from."""
-    first = np.zeros(len(wall.vertices), dtype=np.intp)
-    first[wall.triangles.ravel()] = np.arange(wall.triangles.size)
-    patch = wall.patch[first // 3]
-    uv = wall.uv.reshape(-1, 2)[first]
+    corner = np.zeros(len(wall.vertices), dtype=np.intp)
+    corner[wall.triangles.ravel()] = np.arange(wall.triangles.size)
+    patch = wall.patch[corner // 3]
+    uv = wall.uv.reshape(-1, 2)[corner]
     radius = np.full(len(wall.vertices), np.inf)
     for k in np.unique(patch):
-        mine = np.flatnonzero(patch == k)
-        one, at = wall.patches[k], uv[mine]
+        members = np.flatnonzero(patch == k)
+        surface_patch, uv_inside = wall.patches[k], uv[members]
         reach = np.maximum(np.ptp(wall.uv[wall.patch == k].reshape(-1, 2), axis=0), 1e-9)
         middle = wall.uv[wall.patch == k].reshape(-1, 2).mean(axis=0)
-        at = middle + (1.0 - 4.0 * STEP) * (at - middle)  # steps stay inside
+        uv_inside = middle + (1.0 - 4.0 * STEP) * (uv_inside - middle)  # steps stay inside
         slopes, turns = [], []
         for axis in (0, 1):
             step = STEP * reach[axis] * np.eye(2)[axis]
-            (ahead, up), (back, down) = one.at(at + step), one.at(at - step)
+            (ahead, up), (back, down) = (
+                surface_patch.at(uv_inside + step),
+                surface_patch.at(uv_inside - step),
+            )
             slopes.append((ahead - back) / (2.0 * STEP * reach[axis]))
             turns.append((up - down) / (2.0 * STEP * reach[axis]))
-        radius[mine] = principal_radii(slopes, turns)
+        radius[members] = principal_radii(slopes, turns)
     return radius, patch
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Whether a wall of several faces is cut by itself: faces that fold back, and triangles that cross."""
+"""Self-intersection of a wall of several faces: faces that fold back, and triangles that cross."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from ...core.issues import InputError, Text
 BENT, FOLDED = (
     0.3,
     -0.7,
-)  # cosines between the normals at the ends of an edge, and of a small part of it
+)  # cosines between the normals at the ends of an edge, and at the ends of a short section
 STEPS, CLOSER = (
     np.linspace(0.0, 1.0, 33),
     4,
-)  # on an edge at which normals are asked for, and how often between two of them
-ASKED, CLOSING = (
+)  # samples of the normal on an edge, and refinements between two samples
+MAX_TESTED_CUTS, CLOSING_STEPS = (
     12,
     20,
 )  # cuts of triangles that are followed up, and steps to the place where the faces meet
@@ -49,9 +49,9 @@ def refuse_folded(wall: PatchWall, label: str) -> None:
             normal = patch.at(line.reshape(-1, 2))[1].reshape(line.shape[:2] + (3,))
             plain = (patch.area(line.reshape(-1, 2)) > 1e-6).reshape(line.shape[:2])
             turn = np.where(plain[:, 1:] & plain[:, :-1], dot(normal[:, 1:], normal[:, :-1]), 1.0)
-            at = np.argmin(turn, axis=1)
+            sharpest = np.argmin(turn, axis=1)
             row = np.flatnonzero(turn.min(axis=1) < FOLDED)
-            start, end = line[row, at[row]], line[row, at[row] + 1]
+            start, end = line[row, sharpest[row]], line[row, sharpest[row] + 1]
             if not len(row):
                 break
         if len(row):
@@ -68,17 +68,19 @@ FOLDS_TUBE = Text("give the bend a larger radius than the tube")
 FOLDS = Text(
     "redraw it with a larger radius there, or divide it and deposit its parts one after the other"
 )
-APART = 0.02  # of the length of a tube, between places of it that cross in a bend
+MIN_BEND_SHARE = (
+    0.02  # least distance, as a share of the length of a tube, of places that cross in a bend
+)
 
 
 def _remedy(wall: PatchWall, triangles: tuple[int, int]) -> str:
     """What to do where two triangles of a wall cut each other."""
-    one, other = (int(wall.patch[k]) for k in triangles)
-    if one != other:
+    patch, other_patch = (int(wall.patch[k]) for k in triangles)
+    if patch != other_patch:
         return Text(
             "trim the faces where they cross, or choose those that do not cross and deposit the others as a feature of their own"
         )
-    if _is_bend(wall, one, triangles):
+    if _is_bend(wall, patch, triangles):
         return Text("give bends a larger radius than the tube")
     return Text(
         "redraw the face so that it does not cross itself, or divide it and deposit its parts one after the other"
@@ -86,13 +88,17 @@ def _remedy(wall: PatchWall, triangles: tuple[int, int]) -> str:
 
 
 def _is_bend(wall: PatchWall, patch: int, triangles: tuple[int, int]) -> bool:
-    """Whether two triangles of a tube, a patch that closes one way, lie at different places along it."""
+    """Whether two triangles of a tube, a patch that closes one way, are at different positions
+    along the tube.
+    """
     closed = np.array(wall.patches[patch].periods) > 0.0
     if closed.sum() != 1:
         return bool(closed.all())
     along = wall.uv[..., int(np.argmin(closed))]
-    places = along[list(triangles)].mean(axis=1)
-    return bool(abs(places[0] - places[1]) > APART * np.ptp(along[wall.patch == patch]))
+    positions = along[list(triangles)].mean(axis=1)
+    return bool(
+        abs(positions[0] - positions[1]) > MIN_BEND_SHARE * np.ptp(along[wall.patch == patch])
+    )
 
 
 def refuse_crossing(wall: PatchWall, label: str) -> None:
@@ -114,19 +120,25 @@ def refuse_crossing(wall: PatchWall, label: str) -> None:
             wall.triangles[pairs[:, 0]][:, :, None] == wall.triangles[pairs[:, 1]][:, None, :]
         ).any(axis=(1, 2))
         pairs = pairs[~shared]
-        for one, other in (pairs.T, pairs.T[::-1]):
-            _refuse_cuts(wall, corner, normal, one, other, label)
+        for edge_triangles, cut_triangles in (pairs.T, pairs.T[::-1]):
+            _refuse_cuts(wall, corner, normal, edge_triangles, cut_triangles, label)
 
 
 def _refuse_cuts(
-    wall: PatchWall, corner: Array, normal: Array, one: Index, other: Index, label: str
+    wall: PatchWall,
+    corner: Array,
+    normal: Array,
+    edge_triangles: Index,
+    cut_triangles: Index,
+    label: str,
 ) -> None:
-    """InputError SELF_INTERSECTION where edges of the triangles `one` (k,) cut the triangles `other` (k,), and so do their
-    faces."""
+    """InputError SELF_INTERSECTION where edges of `edge_triangles` (k,) cut `cut_triangles` (k,)
+    and the exact faces cut as well.
+    """
     for k in range(3):
-        start, end = corner[one, k], corner[one, (k + 1) % 3]
-        a, b, c = (corner[other, j] for j in range(3))
-        low, high = dot(start - a, normal[other]), dot(end - a, normal[other])
+        start, end = corner[edge_triangles, k], corner[edge_triangles, (k + 1) % 3]
+        a, b, c = (corner[cut_triangles, j] for j in range(3))
+        low, high = dot(start - a, normal[cut_triangles]), dot(end - a, normal[cut_triangles])
         across = np.flatnonzero(low * high < 0.0)
         t = (low[across] / (low[across] - high[across]))[:, None]
         point = start[across] + t * (end[across] - start[across])
@@ -134,36 +146,45 @@ def _refuse_cuts(
             closest(a[across], b[across], c[across], point)[0]
             < 1e-9 + 1e-9 * wall.mesh.longest_edge
         )
-        for at in np.flatnonzero(cut)[:: max(1, int(cut.sum()) // ASKED)]:
-            faces = one[across[at]], other[across[at]]
-            found = _crossing(wall, faces, point[at])
-            if found is None:
+        for candidate in np.flatnonzero(cut)[:: max(1, int(cut.sum()) // MAX_TESTED_CUTS)]:
+            faces = edge_triangles[across[candidate]], cut_triangles[across[candidate]]
+            crossing = _crossing(wall, faces, point[candidate])
+            if crossing is None:
                 continue
             names = sorted({wall.faces[wall.patch[face]] for face in faces})
             raise InputError(
                 "SELF_INTERSECTION",
                 label,
                 "the wall cuts itself at {} ({}); {}",
-                place(found),
+                place(crossing),
                 Text.joined(" and ", names),
                 _remedy(wall, faces),
             )
 
 
 def _crossing(wall: PatchWall, triangles: tuple[int, int], point: Array) -> Array | None:
-    """Where the exact faces cut each other near two triangles that do so at a point; None where they do not."""
-    near = point[None]
+    """The point where the exact faces cut each other near the cut of two triangles at `point`, or
+    None.
+    """
+    estimate = point[None]
     patches = [wall.patches[wall.patch[k]] for k in triangles]
     uv = [wall.uv[k].mean(axis=0)[None] for k in triangles]
-    for _ in range(CLOSING):
-        uv = [patch.inverse(near, start) for patch, start in zip(patches, uv)]
-        (one, one_up), (other, other_up) = (patch.at(at) for patch, at in zip(patches, uv))
-        apart = float(np.linalg.norm(one - other))
-        if apart < 1e-6 or np.linalg.norm(one[0] - point) > 2.0 * wall.mesh.longest_edge:
+    for _ in range(CLOSING_STEPS):
+        uv = [patch.inverse(estimate, start) for patch, start in zip(patches, uv)]
+        (foot, foot_normal), (other_foot, other_normal) = (
+            patch.at(uv_point) for patch, uv_point in zip(patches, uv)
+        )
+        separation = float(np.linalg.norm(foot - other_foot))
+        if separation < 1e-6 or np.linalg.norm(foot[0] - point) > 2.0 * wall.mesh.longest_edge:
             break
         # where the two tangent planes meet, nearest to the middle between the feet
-        planes = np.stack([one_up[0], other_up[0]])
-        gap = np.array([one_up[0] @ (one[0] - near[0]), other_up[0] @ (other[0] - near[0])])
-        near = near + (np.linalg.pinv(planes, rcond=1e-3) @ gap)[None]
-    steep = float(np.linalg.norm(np.cross(one_up[0], other_up[0]))) > CROSSING
-    return one[0] if apart < 1e-6 and steep else None
+        planes = np.stack([foot_normal[0], other_normal[0]])
+        gap = np.array(
+            [
+                foot_normal[0] @ (foot[0] - estimate[0]),
+                other_normal[0] @ (other_foot[0] - estimate[0]),
+            ]
+        )
+        estimate = estimate + (np.linalg.pinv(planes, rcond=1e-3) @ gap)[None]
+    steep = float(np.linalg.norm(np.cross(foot_normal[0], other_normal[0]))) > CROSSING
+    return foot[0] if separation < 1e-6 and steep else None

@@ -22,10 +22,10 @@ from ..shapes.no_solid import no_solid
 from .patch_wall import sound
 from .wall import Tube, tubes
 
-TOUCH = 0.05  # mm; a wall that ends this short of its substrate stands on it
-ON_EDGE = 1e-3  # mm; an edge of the wall lies on its end within this
-AROUND = 12  # places around an end at which it is told which of the two is in the substrate
-POINTS = 480  # of the first layer
+TOUCH = 0.05  # mm; a wall that ends this short of its substrate counts as touching
+ON_EDGE = 1e-3  # mm; tolerance of an edge on the end of the wall
+END_SAMPLES = 12  # samples around an end that decide which end is in the substrate
+POINTS = 480  # points of the first layer
 STEPS = 12
 EXACT = 1e-9  # mm
 
@@ -37,17 +37,17 @@ def find_wall(
     label: str = "part",
     substrate_label: str = "substrate",
 ) -> SurfaceWall:
-    """The wall of a Part.Shape that stands on the solid `substrate`, in the coordinates of both.
+    """The wall of a Part.Shape on the solid `substrate`, in the coordinates of both.
 
-    The first layer is the loop in which the wall leaves the substrate for good; where there are several loops an issue
-    says so. Raises the InputErrors of `brep.wall.tubes`, and NO_SOLID, INSIDE_OUT, NO_CONTACT, OPEN_CONTACT, INSIDE,
-    WALL_EDGE, SELF_INTERSECTION.
+    The first layer is the loop in which the wall leaves the substrate for good; an issue reports
+    several loops. Raises the InputErrors of `brep.wall.tubes`, and NO_SOLID, INSIDE_OUT,
+    NO_CONTACT, OPEN_CONTACT, INSIDE, WALL_EDGE, SELF_INTERSECTION.
     """
     solid = _solid(substrate, substrate_label)
-    named, both = tubes(shape, faces, label)
-    if both[0].kind == TABLE:
+    named, tubes_both_ways = tubes(shape, faces, label)
+    if tubes_both_ways[0].kind == TABLE:
         sound(named, label)  # the kernel may crash on faces that cut themselves
-    tube = min(both, key=lambda one: _away(one, solid))
+    tube = min(tubes_both_ways, key=lambda candidate: _distance_outside(candidate, solid))
     surface = tube.surface()
     loops = _loops(tube, named, solid)
     if not loops:
@@ -64,12 +64,12 @@ def find_wall(
     points, _, error = chains[-1]
     _refuse_inside(tube, solid, label, substrate_label)
     _refuse_edges(tube, points, named, label)
-    found = Text(
+    message = Text(
         "the first layer lies on the wall and on {} within {} mm",
         substrate_label,
         format_deviation(error),
     )
-    issues = [Issue(NOTE, "FIRST_LAYER", found)]
+    issues = [Issue(NOTE, "FIRST_LAYER", message)]
     if len(chains) > 1:
         issues.append(
             Issue(
@@ -109,14 +109,14 @@ def _solid(substrate: Any, label: str) -> Any:
     return substrate
 
 
-def _away(tube: Tube, solid: Any) -> float:
-    """Mean distance (mm) of the tube's lower end from the solid, inside of it none."""
+def _distance_outside(tube: Tube, solid: Any) -> float:
+    """Mean distance (mm) of the tube's lower end from the solid; 0 for points inside."""
     return float(np.mean([_distance(point, solid) for point in _ring(tube, 0.0)]))
 
 
 def _ring(tube: Tube, u: float) -> Array:
-    v = tube.period * np.arange(AROUND) / AROUND
-    return tube.surface().point(np.full(AROUND, u), v)
+    v = tube.period * np.arange(END_SAMPLES) / END_SAMPLES
+    return tube.surface().point(np.full(END_SAMPLES, u), v)
 
 
 def _distance(point: Array, solid: Any) -> float:
@@ -129,8 +129,8 @@ def _distance(point: Array, solid: Any) -> float:
 def _loops(tube: Tube, named: list[tuple[str, Any]], solid: Any) -> list[list[Any]]:
     """Closed loops of edges in which the wall, made TOUCH longer at its lower end, meets the solid."""
     wall = _longer(tube) or Part.Shell([face for _, face in named])
-    loops, whole = _closed(solid.section(wall).Edges)
-    if whole:
+    loops, is_complete = _closed(solid.section(wall).Edges)
+    if is_complete:
         return loops
     # of elementary surfaces OpenCASCADE 7.8 and later leave out a piece at times; of B-splines they do not
     again, _ = _closed(solid.section(wall.toNurbs()).Edges)
@@ -180,50 +180,54 @@ def _posed(face: Any, origin: Any, x: Any, y: Any, z: Any) -> Any:
 def _chain(edges: list[Any], surface: Placed, solid: Any) -> tuple[Array, float, float]:
     """Points (m, 3) around a loop on both surfaces, their mean u, and how far they are off the substrate, mm."""
     length = sum(edge.Length for edge in edges)
-    parts, error = [], 0.0
-    last = None
+    point_runs, error = [], 0.0
+    last_point = None
     for edge in edges:
         count = step_count(POINTS * edge.Length, length, 4) + 1
         points = np.array([tuple(point) for point in edge.discretize(Number=count)])
-        if last is not None and np.linalg.norm(points[-1] - last) < np.linalg.norm(
-            points[0] - last
+        if last_point is not None and np.linalg.norm(points[-1] - last_point) < np.linalg.norm(
+            points[0] - last_point
         ):
             points = points[::-1]
-        elif last is None and len(edges) > 1:
+        elif last_point is None and len(edges) > 1:
             following = np.array([tuple(vertex.Point) for vertex in edges[1].Vertexes])
             ahead, behind = (
                 np.linalg.norm(following - end, axis=1).min() for end in (points[-1], points[0])
             )
             if behind < ahead:
                 points = points[::-1]
-        last = points[-1]
-        points, off = _on_both(points, surface, _face_under(edge, solid))
-        parts.append(points[:-1])
+        last_point = points[-1]
+        points, off = _fit_to_both(points, surface, _face_under(edge, solid))
+        point_runs.append(points[:-1])
         error = max(error, off)
-    chain = np.concatenate(parts)
+    chain = np.concatenate(point_runs)
     return chain, float(surface.inverse(chain)[0].mean()), error
 
 
 def _face_under(edge: Any, solid: Any) -> Any:
-    """The face of the solid that an edge of the intersection lies on."""
-    places = [Part.Vertex(point) for point in edge.discretize(Number=5)[1:4]]
-    return min(solid.Faces, key=lambda face: max(face.distToShape(place)[0] for place in places))
+    """The face of the solid that carries an edge of the intersection."""
+    vertices = [Part.Vertex(point) for point in edge.discretize(Number=5)[1:4]]
+    return min(
+        solid.Faces, key=lambda face: max(face.distToShape(vertex)[0] for vertex in vertices)
+    )
 
 
-def _on_both(points: Array, surface: Placed, face: Any) -> tuple[Array, float]:
-    """Points moved up or down the wall until they lie on the face's surface, and the largest distance left."""
+def _fit_to_both(points: Array, surface: Placed, face: Any) -> tuple[Array, float]:
+    """Points moved up or down the wall onto the face's surface, and the largest remaining distance."""
     u, v = surface.inverse(points)
     under = face.Surface
     for _ in range(STEPS):
-        at, along, _ = surface.derivatives(u, v)
-        foot, normal = _feet(at, under)
-        gap, rate = dot(foot - at, normal), dot(along, normal)
+        wall_points, along, _ = surface.derivatives(u, v)
+        foot, normal = _feet(wall_points, under)
+        gap, rate = dot(foot - wall_points, normal), dot(along, normal)
         steep = np.abs(rate) > 1e-3 * np.linalg.norm(along, axis=1)
         u = u + np.where(steep, gap / np.where(steep, rate, 1.0), 0.0)
         if np.abs(gap).max() < EXACT:
             break
-    at = surface.point(u, v)
-    return at, float(np.linalg.norm(_feet(at, under)[0] - at, axis=1).max())
+    wall_points = surface.point(u, v)
+    return wall_points, float(
+        np.linalg.norm(_feet(wall_points, under)[0] - wall_points, axis=1).max()
+    )
 
 
 def _feet(points: Array, under: Any) -> tuple[Array, Array]:

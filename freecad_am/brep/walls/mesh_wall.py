@@ -24,11 +24,11 @@ from ...core.geometry.walls.patch_wall import FirstCurve
 from ...core.geometry.walls.rims import connected_parts, find_rims, mark_ends
 from ...core.geometry.walls.surface import dot
 from ...core.issues import NOTE, InputError, Issue, Text
-from .patch_wall import EQUAL, from_substrate, several_loops
+from .patch_wall import EQUILATERAL_AREA, from_substrate, several_loops
 from .substrate import Substrate
 
-UPRIGHT = 0.7  # of a normal along Z; the floor of a cup looks down by more
-FLOOR = 0.1  # layer heights over the lowest place; what lies no higher is a floor
+UPRIGHT = 0.7  # Z share of a normal; the floor of a cup faces down by more
+FLOOR = 0.1  # layer heights over the lowest point; surfaces up to this height are a floor
 ABOVE = 0.5  # layer heights over a floor at which the wall about it begins
 
 
@@ -47,9 +47,9 @@ def find_mesh_wall(
     """
     corner = body.corners()
     area = 0.5 * float(np.linalg.norm(doubled_areas(corner), axis=1).sum())
-    about = area / (EQUAL * height) / height
+    about = area / (EQUILATERAL_AREA * height) / height
     if about > MAX_TRIANGLES:
-        enough = at_least(float(np.sqrt(area / (EQUAL * MAX_TRIANGLES))))
+        enough = at_least(float(np.sqrt(area / (EQUILATERAL_AREA * MAX_TRIANGLES))))
         raise InputError(
             "TOO_FINE",
             "strategy.layer_height",
@@ -65,24 +65,24 @@ def find_mesh_wall(
     if start_edges:
         start = _from_edges(wall, start_edges, label)
     elif substrate is not None:
-        first, behind, issues = from_substrate(wall, substrate, rims, label)
-        start = _Start(first, behind, issues)
+        first_curves_found, behind, issues = from_substrate(wall, substrate, rims, label)
+        start = _Start(first_curves_found, behind, issues)
     else:
         start = _from_platform(wall, height, label)
     _refuse_loose(wall, start, label)
-    issues = [*wall.issues, *start.issues, *several_loops(start.first, label)]
+    issues = [*wall.issues, *start.issues, *several_loops(start.curves, label)]
     return replace(
         wall,
-        first=tuple(start.first),
+        first=tuple(start.curves),
         behind=start.behind,
-        rims=mark_ends(wall, rims, tuple(start.first), start.behind),
+        rims=mark_ends(wall, rims, tuple(start.curves), start.behind),
         issues=tuple(issues),
         ground=_lowest(wall) if substrate is None else None,
     )
 
 
 class _Start(NamedTuple):
-    first: list[FirstCurve]
+    curves: list[FirstCurve]
     behind: Mask
     issues: list[Issue]
 
@@ -90,27 +90,27 @@ class _Start(NamedTuple):
 def _loops(wall: MeshWall) -> list[Array]:
     """The loops (n, 3) of the boundary, the first point not repeated, in the order of the heights of their middles."""
     ends, _ = boundary(wall.triangles)
-    found = []
+    loops = []
     if len(ends):
         for members, forward, _ in runs(wall.vertices, ends, np.pi):
-            found.append(wall.vertices[np.where(forward, ends[members, 0], ends[members, 1])])
-    return sorted(found, key=lambda loop: tuple(np.round(loop.mean(axis=0)[[2, 0, 1]], 6)))
+            loops.append(wall.vertices[np.where(forward, ends[members, 0], ends[members, 1])])
+    return sorted(loops, key=lambda loop: tuple(np.round(loop.mean(axis=0)[[2, 0, 1]], 6)))
 
 
 def _curve(loop: Array) -> FirstCurve:
-    before = loop - np.roll(loop, 1, axis=0)
-    before /= np.maximum(np.linalg.norm(before, axis=1, keepdims=True), 1e-300)
-    sharp = dot(before, np.roll(before, -1, axis=0)) < np.cos(CORNER)
+    arrivals = loop - np.roll(loop, 1, axis=0)
+    arrivals /= np.maximum(np.linalg.norm(arrivals, axis=1, keepdims=True), 1e-300)
+    sharp = dot(arrivals, np.roll(arrivals, -1, axis=0)) < np.cos(CORNER)
     return FirstCurve(*fit_splines(loop, sharp, True), True)
 
 
 def _from_edges(wall: MeshWall, names: Sequence[str], label: str) -> _Start:
     loops = _loops(wall)
-    chosen = []
+    selected = []
     for name in dict.fromkeys(names):
         number = int(name.removeprefix("Edge")) if name.removeprefix("Edge").isdigit() else 0
         if not 1 <= number <= len(loops):
-            known = (
+            available = (
                 Text.joined(
                     ", ",
                     (
@@ -125,10 +125,10 @@ def _from_edges(wall: MeshWall, names: Sequence[str], label: str) -> _Start:
                 label,
                 "it has no {}; choose from the open ends of the mesh, by height: {}",
                 name,
-                known,
+                available,
             )
-        chosen.append(_curve(loops[number - 1]))
-    return _Start(chosen, np.zeros(len(wall.vertices), dtype=bool), [])
+        selected.append(_curve(loops[number - 1]))
+    return _Start(selected, np.zeros(len(wall.vertices), dtype=bool), [])
 
 
 def _lowest(wall: MeshWall) -> float:
@@ -136,8 +136,9 @@ def _lowest(wall: MeshWall) -> float:
 
 
 def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
-    """From the open ends that stand on the plane through its lowest place, else from about the floor that lies there, else
-    from the lowest open end."""
+    """Start from the open ends on the plane through the lowest point, else around a floor in that
+    plane, else from the lowest open end.
+    """
     lowest = _lowest(wall)
     loops = _loops(wall)
     standing = [loop for loop in loops if loop[:, 2].max() < lowest + height]
@@ -158,14 +159,14 @@ def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
     if (flat & (corner[:, :, 2] < lowest + FLOOR * height).all(axis=1)).any():
         ground = PlaneGround(lowest + ABOVE * height)
         value = ground_distances(wall, ground)
-        first, _ = first_curves(wall, ground, value, find_rims(wall))
+        curves, _ = first_curves(wall, ground, value, find_rims(wall))
         text = Text(
             "the first layer runs {:g} mm over the floor of {}, which is not deposited",
             ABOVE * height,
             label,
         )
-        if first:
-            return _Start(first, value < 0.0, [Issue(NOTE, "FIRST_LAYER", text)])
+        if curves:
+            return _Start(curves, value < 0.0, [Issue(NOTE, "FIRST_LAYER", text)])
     if not loops:
         raise InputError(
             "NO_START",
@@ -186,22 +187,22 @@ def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
 
 
 def _refuse_loose(wall: MeshWall, start: _Start, label: str) -> None:
-    """InputError GAP where a piece of the wall hangs together with nothing that layers start from."""
-    number, part = connected_parts(wall, ~start.behind)
+    """InputError GAP where a piece of the wall has no connection to a start of layers."""
+    number, component = connected_parts(wall, ~start.behind)
     if number < 2:
         return
-    near = cKDTree(np.vstack([one.points for one in start.first]))
+    start_tree = cKDTree(np.vstack([curve.points for curve in start.curves]))
     reach = 2.0 * wall.mesh.longest_edge
     for k in range(number):
-        mine = wall.vertices[part == k]
-        away = near.query(mine)[0]
-        if away.min() > reach and len(mine) > 2:
+        piece_points = wall.vertices[component == k]
+        distance = start_tree.query(piece_points)[0]
+        if distance.min() > reach and len(piece_points) > 2:
             raise InputError(
                 "GAP",
                 label,
                 "it is {} pieces that do not hang together, and no layer starts on the one at {}, {:.4g} mm "
                 "from where layers start; choose its edge to start from too, or deposit it by itself",
                 number,
-                place(mine[np.argmin(away)]),
-                away.min(),
+                place(piece_points[np.argmin(distance)]),
+                distance.min(),
             )

@@ -25,11 +25,11 @@ from .standing import standing_edges
 from .start_edges import curves_along, curves_of
 from .substrate import Substrate
 
-EQUAL = 0.433  # area of a triangle with equal sides of 1
+EQUILATERAL_AREA = 0.433  # area of a triangle with equal sides of 1
 COARSE, SHARE = (
     4.0,
     0.04,
-)  # edges of a first mesh, which tells the radii: of the layer height, of the size of the wall
+)  # edge lengths of the first mesh, which gives the radii: shares of the layer height and of the wall's size
 
 
 def find_patch_wall(
@@ -40,12 +40,12 @@ def find_patch_wall(
     label: str = "part",
     start_edges: Sequence[str] = (),
 ) -> PatchWall:
-    """The wall of the faces `named` of a shape, for layers of `height` mm, on a substrate, from edges of its own, or
-    from those that stand on the platform.
+    """The wall of the faces `named` of a shape, for layers of `height` mm, on a substrate, from
+    edges of its own, or from its edges on the platform.
 
-    All curves in which it leaves the substrate are taken; an issue tells where when there are several. Raises InputError
-    GAP, CREASE, BRANCHING_FACES, SELF_INTERSECTION, LAYER_HEIGHT, ROUGH_WALL, TOO_FINE, NOT_ORIENTABLE, NO_CONTACT, INSIDE,
-    NO_START, UNKNOWN_EDGE.
+    It starts from every curve in which it leaves the substrate; an issue locates them if there are
+    several. Raises InputError GAP, CREASE, BRANCHING_FACES, SELF_INTERSECTION, LAYER_HEIGHT,
+    ROUGH_WALL, TOO_FINE, NOT_ORIENTABLE, NO_CONTACT, INSIDE, NO_START, UNKNOWN_EDGE.
     """
     _refuse_fine(named, height)
     wall = sheet(named, _edge(named, height, label), label)
@@ -56,20 +56,20 @@ def find_patch_wall(
     rims = find_rims(wall)
     issues: list[Issue] = []
     if start_edges:
-        first = curves_of(shape, start_edges, wall, label)
+        curves = curves_of(shape, start_edges, wall, label)
         behind = np.zeros(len(wall.vertices), dtype=bool)
     elif substrate is None:
-        first, issues = _from_platform(wall, [face for _, face in named], label)
+        curves, issues = _from_platform(wall, [face for _, face in named], label)
         behind = np.zeros(len(wall.vertices), dtype=bool)
     else:
-        first, behind, issues = from_substrate(wall, substrate, rims, label)
+        curves, behind, issues = from_substrate(wall, substrate, rims, label)
     refuse_tight(wall, ~behind, height, label)
-    issues += several_loops(first, label)
+    issues += several_loops(curves, label)
     return replace(
         wall,
-        first=tuple(first),
+        first=tuple(curves),
         behind=behind,
-        rims=mark_ends(wall, rims, tuple(first), behind),
+        rims=mark_ends(wall, rims, tuple(curves), behind),
         issues=tuple(issues),
         ground=float(wall.vertices[:, 2].min()) if substrate is None else None,
     )
@@ -78,7 +78,7 @@ def find_patch_wall(
 def _from_platform(
     wall: PatchWall, faces: Sequence[Any], label: str
 ) -> tuple[list[FirstCurve], list[Issue]]:
-    """The edges that stand on the platform, and a note. InputError NO_SUBSTRATE."""
+    """The edges on the platform, and a note. InputError NO_SUBSTRATE."""
     lowest = wall.vertices[np.argmin(wall.vertices[:, 2])]
     edges = standing_edges(faces, float(lowest[2]))
     if not edges:
@@ -90,20 +90,20 @@ def _from_platform(
             lowest[2],
             place(lowest),
         )
-    first = curves_along(edges, wall)
+    curves = curves_along(edges, wall)
     text = Text(
         "the first layer is the edge of {} at {}, which stands on the platform",
         label,
-        place(first[0].points.mean(axis=0)),
+        place(curves[0].points.mean(axis=0)),
     )
-    return first, [Issue(NOTE, "FIRST_LAYER", text)]
+    return curves, [Issue(NOTE, "FIRST_LAYER", text)]
 
 
-def several_loops(first: Sequence[FirstCurve], label: str) -> list[Issue]:
-    """A note where there are several first curves."""
-    if len(first) < 2:
+def several_loops(curves: Sequence[FirstCurve], label: str) -> list[Issue]:
+    """A note if a wall has several first curves."""
+    if len(curves) < 2:
         return []
-    places = Text.joined(", ", (place(curve.points.mean(axis=0)) for curve in first))
+    positions = Text.joined(", ", (place(curve.points.mean(axis=0)) for curve in curves))
     return [
         Issue(
             NOTE,
@@ -112,8 +112,8 @@ def several_loops(first: Sequence[FirstCurve], label: str) -> list[Issue]:
                 "{} starts in {} curves, about {}: layers grow from all of them; choose the edges to "
                 "start from if only some are meant",
                 label,
-                len(first),
-                places,
+                len(curves),
+                positions,
             ),
         )
     ]
@@ -123,8 +123,8 @@ def _refuse_fine(named: Sequence[tuple[str, Any]], height: float) -> None:
     """InputError TOO_FINE where even triangles with sides of a layer height are more than a mesh may have."""
     area = sum(face.Area for _, face in named)
     about, enough = (
-        area / (EQUAL * height) / height,
-        at_least(float(np.sqrt(area / (EQUAL * MAX_TRIANGLES)))),
+        area / (EQUILATERAL_AREA * height) / height,
+        at_least(float(np.sqrt(area / (EQUILATERAL_AREA * MAX_TRIANGLES)))),
     )
     if about > MAX_TRIANGLES:
         raise InputError(
@@ -147,8 +147,9 @@ def _edge(named: Sequence[tuple[str, Any]], height: float, label: str) -> float:
 
 
 def sound(named: Sequence[tuple[str, Any]], label: str, edge: float = 0.0) -> PatchWall:
-    """A coarse mesh of the faces, edges not longer than `edge` mm or a share of their size, that has been found not to cut
-    itself. InputError SELF_INTERSECTION, and those of `sheet`."""
+    """A coarse mesh of the faces, edges not longer than `edge` mm or a share of their size, without
+    self-intersection. InputError SELF_INTERSECTION, and the errors of `sheet`.
+    """
     size = Part.Compound([face for _, face in named]).BoundBox.DiagonalLength
     coarse = sheet(named, max(edge, SHARE * size), label)
     refuse_folded(coarse, label)
@@ -173,8 +174,9 @@ def _outward(wall: PatchWall, shape: Any) -> PatchWall:
 def from_substrate(
     wall: PatchWall, substrate: Substrate, rims: Any, label: str
 ) -> tuple[list[FirstCurve], Mask, list[Issue]]:
-    """Where a wall leaves its substrate, which of its vertices (n,) lie behind that, and notes. InputError NO_CONTACT,
-    INSIDE, OWN_SUBSTRATE."""
+    """The curves where a wall leaves its substrate, its vertices (n,) behind them, and notes.
+    InputError NO_CONTACT, INSIDE, OWN_SUBSTRATE.
+    """
     ground = substrate.ground(wall.mesh.typical_edge)
     value = contact.ground_distances(wall, ground)
     if np.abs(value).max() < contact.TOUCH_MM + getattr(
@@ -189,32 +191,32 @@ def from_substrate(
         )
     outside = value >= 0.0
     if outside.all():
-        at, gap = nearest_point(wall.vertices, ground, value)
+        vertex, gap = nearest_point(wall.vertices, ground, value)
         raise InputError(
             "NO_CONTACT",
             label,
             "the wall does not touch {}: it comes nearest at {}, {:.4g} mm away; move it so that it "
             "reaches in, at most {:g} mm may be missing",
             substrate.label,
-            place(wall.vertices[at]),
+            place(wall.vertices[vertex]),
             gap,
             contact.TOUCH_MM,
         )
     if not outside.any():
-        at, depth = nearest_point(wall.vertices, ground, value)
+        vertex, depth = nearest_point(wall.vertices, ground, value)
         raise InputError(
             "INSIDE",
             label,
             "the wall lies wholly in {} (at {} it is {:.4g} mm deep, and nowhere less); let it end "
             "outside of the substrate",
             substrate.label,
-            place(wall.vertices[at]),
+            place(wall.vertices[vertex]),
             depth,
         )
     dropped = _stays_in(wall, outside, substrate)
     value[dropped] = np.minimum(value[dropped], -1e-6)
-    first, off = contact.first_curves(wall, ground, value, rims)
-    if not first:
+    curves, off = contact.first_curves(wall, ground, value, rims)
+    if not curves:
         raise InputError(
             "NO_CONTACT",
             label,
@@ -223,9 +225,9 @@ def from_substrate(
             substrate.label,
             wall.mesh.typical_edge,
         )
-    found = Text("the first layer lies on the wall and on {}", substrate.label)
+    message = Text("the first layer lies on the wall and on {}", substrate.label)
     if ground.facets:
-        found += (
+        message += (
             Text(
                 "; between the edges of its triangles it runs smoothly, up to {} mm off them, about as far as they "
                 "are off what they stand for",
@@ -235,8 +237,8 @@ def from_substrate(
             else ""
         )
     else:
-        found += Text(" within {} mm", format_deviation(off))
-    return first, value < 0.0, [Issue(NOTE, "FIRST_LAYER", found)]
+        message += Text(" within {} mm", format_deviation(off))
+    return curves, value < 0.0, [Issue(NOTE, "FIRST_LAYER", message)]
 
 
 def _stays_in(wall: PatchWall, outside: Mask, substrate: Substrate) -> Mask:
@@ -244,9 +246,9 @@ def _stays_in(wall: PatchWall, outside: Mask, substrate: Substrate) -> Mask:
     pipe), while another part does."""
     low, high = substrate.solid.vertices.min(axis=0), substrate.solid.vertices.max(axis=0)
     leaves = ((wall.vertices < low - 1e-3) | (wall.vertices > high + 1e-3)).any(axis=1)
-    count, part = connected_parts(wall, outside)
+    count, component = connected_parts(wall, outside)
     goes = np.zeros(count, dtype=bool)
-    goes[part[outside & leaves]] = True
+    goes[component[outside & leaves]] = True
     dropped = outside.copy()
-    dropped[outside] = not_kept = ~goes[part[outside]]
+    dropped[outside] = not_kept = ~goes[component[outside]]
     return dropped if goes.any() and not_kept.any() else np.zeros(len(outside), dtype=bool)

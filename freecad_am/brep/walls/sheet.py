@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Connected faces as one sheet: a patch for each face and a watertight mesh over all of them, turned to one side."""
+"""Connected faces as one sheet: a patch for each face and one watertight mesh, oriented to one
+side.
+"""
 
 from __future__ import annotations
 
@@ -26,19 +28,19 @@ from ..shapes.tessellate import ANGLE, Tessellation, tessellated
 from .sheet_places import Places
 from .surface_patch import patch_of
 
-SEWN = 0.01  # mm; edges of faces that lie closer than this are one
+SEWN = 0.01  # mm; closer edges of faces are merged
 MAX_TRIANGLES = 1_500_000  # triangles
 SECOND_TRY = 15000  # triangles that are not worth a second try
-TRIED = (1.0, 0.84, 0.71, 0.59)  # first meshes of edges shorter by these shares
-ASKED = 200  # triangles of a face that tell its side
-COLLAPSE = 0.55  # of the longest edge; shorter ones are drawn together
+EDGE_SHARES = (1.0, 0.84, 0.71, 0.59)  # first meshes of edges shorter by these shares
+SIDE_SAMPLES = 200  # triangles of a face that decide its side
+COLLAPSE = 0.55  # share of the longest edge; shorter edges are collapsed
 
 
 def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWall:
     """The faces as a wall that neither starts nor ends anywhere yet, its edges not longer than `edge` mm.
 
-    Triangles are turned as the faces are, and all to one side. Raises InputError ROUGH_WALL, NOT_ORIENTABLE,
-    TOO_FINE, and those of `kernel.refuse_bare`.
+    Triangles are turned as the faces are, and all to one side. Raises InputError ROUGH_WALL,
+    NOT_ORIENTABLE, TOO_FINE, and the errors of `kernel.refuse_bare`.
     """
     names, faces = [name for name, _ in named], [face for _, face in named]
     shape, order = _sewn(faces)
@@ -47,33 +49,33 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
     patches = [patch_of(face, f"{label} {name}") for name, face in zip(names, faces)]
     (vertices, triangles, owner, nodes), about = in_kernel_process(tessellated_for, shape, edge)
     refuse_bare(list(zip(names, faces)), owner, label)
-    triangles = _turned(triangles, owner, names, label)
-    places = Places(shape, patches, nodes, vertices, edge)
-    made = (
-        refine_mesh(vertices, triangles, owner, edge, places.middles, MAX_TRIANGLES)
+    triangles = _orient_triangles(triangles, owner, names, label)
+    sheet_places = Places(shape, patches, nodes, vertices, edge)
+    mesh = (
+        refine_mesh(vertices, triangles, owner, edge, sheet_places.middles, MAX_TRIANGLES)
         if about < 2 * MAX_TRIANGLES
         else None
     )
     if (
-        made is None and about < MAX_TRIANGLES
+        mesh is None and about < MAX_TRIANGLES
     ):  # long needles, as on slanted tubes: turned edges reach from side to side
-        places = Places(shape, patches, nodes, vertices, edge)
-        made = refine_mesh(
-            vertices, triangles, owner, edge, places.middles, MAX_TRIANGLES, flip=False
+        sheet_places = Places(shape, patches, nodes, vertices, edge)
+        mesh = refine_mesh(
+            vertices, triangles, owner, edge, sheet_places.middles, MAX_TRIANGLES, flip=False
         )
-    if made is None:
+    if mesh is None:
         raise _too_fine(edge, about, label)
-    vertices, triangles, owner = made
+    vertices, triangles, owner = mesh
     triangles, owner = collapse_edges(vertices, triangles, owner, COLLAPSE * edge, edge)
     triangles = flip_edges(vertices, triangles, owner)
     uv = np.empty((len(triangles), 3, 2))
     turned = []
     for k, patch in enumerate(patches):
-        mine = owner == k
-        used, index = np.unique(triangles[mine], return_inverse=True)
-        found = places.parameters(k, vertices, used)
-        uv[mine] = patch.unwrap(found[np.ravel(index)].reshape(-1, 3, 2))
-        turned.append(facing(patch, vertices[triangles[mine]]))
+        on_face = owner == k
+        used, index = np.unique(triangles[on_face], return_inverse=True)
+        parameters = sheet_places.parameters(k, vertices, used)
+        uv[on_face] = patch.unwrap(parameters[np.ravel(index)].reshape(-1, 3, 2))
+        turned.append(facing(patch, vertices[triangles[on_face]]))
     used, index = np.unique(triangles, return_inverse=True)
     vertices, triangles = vertices[used], np.ravel(index).reshape(-1, 3).astype(np.intp)
     return PatchWall(
@@ -115,7 +117,7 @@ def _too_fine(edge: float, about: float, label: str) -> InputError:
 
 def facing(patch: Patch, corners: Array) -> Patch:
     """The patch with its normals on the side from which the triangles (m, 3, 3) are counter-clockwise."""
-    corners = corners[:: max(1, len(corners) // ASKED)]
+    corners = corners[:: max(1, len(corners) // SIDE_SAMPLES)]
     facets = doubled_areas(corners)
     normals = patch.at(patch.inverse(corners.mean(axis=1)))[1]
     return replace(patch, sign=patch.sign if dot(facets, normals).sum() > 0.0 else -patch.sign)
@@ -128,47 +130,48 @@ def _sewn(faces: list[Any]) -> tuple[Any, list[int]]:
         shape.sewShape(SEWN)
     if len(shape.Faces) != len(faces):
         shape = Part.Compound(faces)
-    given = [(face.CenterOfMass, face.Area) for face in faces]
+    keys = [(face.CenterOfMass, face.Area) for face in faces]
     order = []
     for face in shape.Faces:
         middle, area = face.CenterOfMass, face.Area
         order.append(
             min(
                 range(len(faces)),
-                key=lambda k: given[k][0].distanceToPoint(middle) + abs(given[k][1] - area),
+                key=lambda k: keys[k][0].distanceToPoint(middle) + abs(keys[k][1] - area),
             )
         )
     return shape, order if len(set(order)) == len(order) else list(range(len(faces)))
 
 
 def tessellated_for(shape: Any, edge: float) -> tuple[Tessellation, float]:
-    """Of some tessellations, the one of which the fewest triangles become by halving edges until none is longer than
-    `edge`, and about how many: halves of what is a little too long are far too short."""
-    made: list[tuple[float, Tessellation]] = []
-    for share in TRIED:
-        one = tessellated(shape, max(0.1 * edge * share**2, 1e-3), ANGLE * share)
-        made.append((count_halved(one[0][one[1]], edge), one))
-        if made[0][0] < SECOND_TRY or made[0][0] > 4 * MAX_TRIANGLES:
+    """The tessellation, out of several, that needs the fewest triangles after halving edges down to
+    at most `edge`, and about how many: halves of slightly long edges are far too short.
+    """
+    candidates: list[tuple[float, Tessellation]] = []
+    for share in EDGE_SHARES:
+        tessellation = tessellated(shape, max(0.1 * edge * share**2, 1e-3), ANGLE * share)
+        candidates.append((count_halved(tessellation[0][tessellation[1]], edge), tessellation))
+        if candidates[0][0] < SECOND_TRY or candidates[0][0] > 4 * MAX_TRIANGLES:
             break
-    about, best = min(made, key=lambda one: one[0])
+    about, best = min(candidates, key=lambda tessellation: tessellation[0])
     return best, about
 
 
-def _turned(triangles: Index, owner: Index, names: list[str], label: str) -> Index:
-    """The triangles with those of some faces turned, so that neighbours agree. InputError NOT_ORIENTABLE."""
+def _orient_triangles(triangles: Index, owner: Index, names: list[str], label: str) -> Index:
+    """The triangles, with some faces flipped so that neighbours agree. InputError NOT_ORIENTABLE."""
     edges = Edges(triangles)
     half = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2)
     forward = half[:, :, 0] < half[:, :, 1]
     two = np.flatnonzero(edges.count == 2)
-    one, other = edges.faces[two].T
-    ways = [
+    face_a, face_b = edges.faces[two].T
+    directions = [
         forward[face, np.argmax(edges.of_triangle[face] == two[:, None], axis=1)]
-        for face in (one, other)
+        for face in (face_a, face_b)
     ]
-    against = ways[0] == ways[1]
+    against = directions[0] == directions[1]
     count = len(names)
     links: dict[int, list[tuple[int, bool]]] = {k: [] for k in range(count)}
-    pairs = np.sort(owner[np.stack([one, other], axis=1)], axis=1)
+    pairs = np.sort(owner[np.stack([face_a, face_b], axis=1)], axis=1)
     for a, b in np.unique(pairs, axis=0):
         share = float(against[(pairs == (a, b)).all(axis=1)].mean())
         if (a == b and share > 0.0) or 0.02 < share < 0.98:
@@ -182,22 +185,22 @@ def _turned(triangles: Index, owner: Index, names: list[str], label: str) -> Ind
             continue
         turned[start], waiting = 0, [start]
         while waiting:
-            at = waiting.pop()
-            for near, turn in links[at]:
-                wanted = int(turned[at]) ^ int(turn)
-                if turned[near] < 0:
-                    turned[near] = wanted
-                    waiting.append(near)
-                elif turned[near] != wanted:
-                    raise _twisted(label, names[at], names[near])
+            current = waiting.pop()
+            for neighbour, turn in links[current]:
+                target = int(turned[current]) ^ int(turn)
+                if turned[neighbour] < 0:
+                    turned[neighbour] = target
+                    waiting.append(neighbour)
+                elif turned[neighbour] != target:
+                    raise _twisted(label, names[current], names[neighbour])
     triangles = triangles.copy()
     flip = turned[owner] == 1
     triangles[flip] = triangles[flip][:, ::-1]
     return triangles
 
 
-def _twisted(label: str, one: str, other: str) -> InputError:
-    named = one if one == other else f"{one} and {other}"
+def _twisted(label: str, face_name: str, other_name: str) -> InputError:
+    named = face_name if face_name == other_name else f"{face_name} and {other_name}"
     return InputError(
         "NOT_ORIENTABLE",
         label,

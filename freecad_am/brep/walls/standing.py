@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Edges on which faces stand on the platform, in which a wall on no substrate starts."""
+"""Edges of faces on the platform, where a wall without a substrate starts."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ from ...core.geometry.walls.contact import TOUCH_MM
 from ..shapes.tessellate import DEFLECTION, triangles_of
 
 SAMPLES = 9
-DIGITS = 3  # of mm; edges of faces that are not sewn lie nearer than that
+DIGITS = 3  # decimals of mm; edges of unsewn faces are closer
 
 
 def standing_edges(faces: Sequence[Any], lowest: float) -> list[Any]:
-    """Those edges of faces that lie in the plane Z = `lowest` mm, through the lowest place of these, within TOUCH, and that
-    bound only one of them."""
-    found: dict[tuple[float, ...], list[Any]] = {}
+    """Edges of faces that are within TOUCH of the plane Z = `lowest` mm, through the faces' lowest
+    point, and that bound only one face.
+    """
+    edges_by_key: dict[tuple[float, ...], list[Any]] = {}
     for face in faces:
         for edge in face.Edges:
             if edge.Degenerated or edge.isSeam(face):
@@ -28,9 +29,9 @@ def standing_edges(faces: Sequence[Any], lowest: float) -> list[Any]:
                 [tuple(edge.valueAt(t)) for t in np.linspace(*edge.ParameterRange, SAMPLES)]
             )
             if points[:, 2].max() < lowest + TOUCH_MM:
-                at = np.round([*points[SAMPLES // 2], edge.Length], DIGITS) + 0.0
-                found.setdefault(tuple(at.tolist()), []).append(edge)
-    return [edges[0] for edges in found.values() if len(edges) == 1]
+                key = np.round([*points[SAMPLES // 2], edge.Length], DIGITS) + 0.0
+                edges_by_key.setdefault(tuple(key.tolist()), []).append(edge)
+    return [edges[0] for edges in edges_by_key.values() if len(edges) == 1]
 
 
 def stand(faces: Sequence[Any]) -> bool:

@@ -17,7 +17,7 @@ from ...core.geometry.walls.patch_wall import FirstCurve, PatchWall
 from ...core.issues import InputError
 
 ON_WALL = 1e-3  # mm
-WITHIN = 1e-5  # mm between nodes, at the THIRDS of each arc
+NODE_TOLERANCE_MM = 1e-5  # mm between nodes, at the THIRDS of each arc
 THIRDS = np.array([1.0 / 3.0, 2.0 / 3.0])
 ROUNDS = 12
 SMOOTH = np.radians(1.0)  # smaller turns from edge to edge are not corners
@@ -61,21 +61,27 @@ def _curve(chain: list[Any], wall: PatchWall) -> FirstCurve:
     closed = bool(wire.isClosed())
     rows = [sampled(edge, wall.mesh.typical_edge) for edge in wire.OrderedEdges]
     nodes = np.vstack([points[:-1] for points, _ in rows])
-    after = np.vstack([along[:-1] for _, along in rows])
+    departures = np.vstack([along[:-1] for _, along in rows])
     arrivals = [along[-1:] for _, along in rows]
     starts = [arrivals[-1] if closed else rows[0][1][:1], *arrivals[:-1]]
-    before = np.vstack([np.vstack([start, along[1:-1]]) for start, (_, along) in zip(starts, rows)])
+    incoming = np.vstack(
+        [np.vstack([start, along[1:-1]]) for start, (_, along) in zip(starts, rows)]
+    )
     if not closed:
         nodes = np.vstack([nodes, rows[-1][0][-1:]])
-        before, after = np.vstack([before, arrivals[-1]]), np.vstack([after, arrivals[-1]])
-    smooth = np.einsum("ij,ij->i", before, after) > np.cos(SMOOTH)
-    before[smooth] = after[smooth]
-    return FirstCurve(wall.project(nodes)[0], before, after, closed)
+        incoming, departures = (
+            np.vstack([incoming, arrivals[-1]]),
+            np.vstack([departures, arrivals[-1]]),
+        )
+    smooth = np.einsum("ij,ij->i", incoming, departures) > np.cos(SMOOTH)
+    incoming[smooth] = departures[smooth]
+    return FirstCurve(wall.project(nodes)[0], incoming, departures, closed)
 
 
 def sampled(edge: Any, step: float) -> tuple[Array, Array]:
-    """Points and unit tangents (n, 3) of an edge the way it runs, so near together that the arcs between them keep within
-    WITHIN; about `step` mm at most."""
+    """Points and unit tangents (n, 3) of an edge the way it runs, so dense that the arcs between
+    them stay within NODE_TOLERANCE_MM; about `step` mm apart at most.
+    """
     low, high = edge.ParameterRange
     count = step_count(edge.Length, step, 8) + 1
     t = np.linspace(low, high, count)
@@ -84,7 +90,7 @@ def sampled(edge: Any, step: float) -> tuple[Array, Array]:
     for _ in range(ROUNDS):
         points, along = _nodes(edge, t)
         between = (t[:-1, None] + np.diff(t)[:, None] * THIRDS).ravel()
-        inner = np.array([tuple(edge.valueAt(one)) for one in between.tolist()])
+        inner = np.array([tuple(edge.valueAt(parameter)) for parameter in between.tolist()])
         off = (
             FirstCurve(points, along, along, False)
             .curve()
@@ -92,7 +98,7 @@ def sampled(edge: Any, step: float) -> tuple[Array, Array]:
             .reshape(-1, len(THIRDS))
             .max(axis=1)
         )
-        bad = np.flatnonzero(off > WITHIN)
+        bad = np.flatnonzero(off > NODE_TOLERANCE_MM)
         if not len(bad):
             break
         t = np.insert(t, bad + 1, 0.5 * (t[bad] + t[bad + 1]))
@@ -101,7 +107,7 @@ def sampled(edge: Any, step: float) -> tuple[Array, Array]:
 
 def _nodes(edge: Any, t: Array) -> tuple[Array, Array]:
     """Points and unit tangents (n, 3) at the parameters (n,), the tangents the way these run."""
-    points = np.array([tuple(edge.valueAt(one)) for one in t.tolist()])
-    along = np.array([tuple(edge.Curve.tangent(one)[0]) for one in t.tolist()])
+    points = np.array([tuple(edge.valueAt(parameter)) for parameter in t.tolist()])
+    along = np.array([tuple(edge.Curve.tangent(parameter)[0]) for parameter in t.tolist()])
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     return points, -along if (points[1] - points[0]) @ along[0] < 0.0 else along

@@ -21,15 +21,16 @@ from ..shapes.tessellate import body, tessellated, welded
 from .sheet import facing
 from .surface_patch import patch_of
 
-CHORD = 0.1  # mm between a solid and the triangles that stand for it
-WELD_MM = 1e-5  # mm; vertices of a mesh that lie closer are one
+CHORD = 0.1  # mm between a solid and its triangles
+WELD_MM = 1e-5  # mm; closer vertices of a mesh are merged
 CROSSED = 0.01  # mm; a mesh that cuts itself by no more only touches itself
 
 
 @dataclass(frozen=True)
 class Substrate:
-    """shape: a Part.Shape with solids, None for a mesh. solid: the mesh, or the solid's triangles within CHORD; then
-    face: (m,) the face of each, from 0. issues: what of a mesh was mended."""
+    """shape: a Part.Shape with solids, None for a mesh. solid: the mesh, or the solid's triangles
+    within CHORD; then face: (m,) the face of each, from 0. issues: notes on repairs of a mesh.
+    """
 
     label: str
     shape: Any
@@ -74,28 +75,35 @@ def substrate_of(source: Any, label: str, mend: float = 0.0) -> Substrate:
                 solid.Volume,
             )
     source = _as_one(source)
-    made = in_kernel_process(tessellated, source.copy(), CHORD)
+    tessellation = in_kernel_process(tessellated, source.copy(), CHORD)
     refuse_bare(
-        [(f"Face{number + 1}", face) for number, face in enumerate(source.Faces)], made.owner, label
+        [(f"Face{number + 1}", face) for number, face in enumerate(source.Faces)],
+        tessellation.owner,
+        label,
     )
-    return Substrate(label, source, SolidMesh(made.vertices, made.triangles), made.owner)
+    return Substrate(
+        label, source, SolidMesh(tessellation.vertices, tessellation.triangles), tessellation.owner
+    )
 
 
 def _as_one(shape: Any) -> Any:
-    """The shape with solids that touch made one, for what lies between them is not an outside to leave."""
+    """The shape with touching solids fused, as the contact between them is not an outside."""
     solids = shape.Solids
     boxes = [solid.BoundBox for solid in solids]
-    near = [one.intersect(other) for k, one in enumerate(boxes) for other in boxes[:k]]
-    fused = solids[0].multiFuse(solids[1:]).removeSplitter() if any(near) else shape
+    box_overlaps = [
+        box.intersect(other_box) for k, box in enumerate(boxes) for other_box in boxes[:k]
+    ]
+    fused = solids[0].multiFuse(solids[1:]).removeSplitter() if any(box_overlaps) else shape
     return fused if fused.Solids else shape
 
 
 def mesh_solid(
     points: Any, triangles: Any, label: str, mend: float = 0.0
 ) -> tuple[SolidMesh, tuple[Issue, ...]]:
-    """The solid of a mesh's points (n, 3) and triangles (m, 3), points closer than SAME made one, triangles that then lack a
-    corner left out; where that bounds no solid, what `mesh_repair` makes of it, and what that was. InputError NO_SOLID,
-    BAD_FILE, OPEN_MESH, NON_MANIFOLD, NOT_ORIENTABLE, SELF_CROSSING."""
+    """The solid of a mesh's points (n, 3) and triangles (m, 3), points closer than WELD_MM merged,
+    triangles that then lack a corner left out; else the mesh as `mesh_repair` repairs it, with
+    notes. InputError NO_SOLID, BAD_FILE, OPEN_MESH, NON_MANIFOLD, NOT_ORIENTABLE, SELF_CROSSING.
+    """
     if not len(triangles):
         raise InputError(
             "NO_SOLID", label, "the mesh has no triangles; choose a closed mesh or a solid part"
@@ -113,11 +121,13 @@ def mesh_solid(
     try:
         solid.refuse_unsound(label)
     except InputError:
-        found = repair_mesh(
+        result = repair_mesh(
             np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.intp), label, mend
         )
-        begin = np.cumsum([0, *(len(one.vertices) for one in found.solids)])
-        corners = np.vstack([one.triangles + at for one, at in zip(found.solids, begin)])
-        return SolidMesh(np.vstack([one.vertices for one in found.solids]), corners), found.issues
+        begin = np.cumsum([0, *(len(mesh.vertices) for mesh in result.solids)])
+        corners = np.vstack([mesh.triangles + offset for mesh, offset in zip(result.solids, begin)])
+        return SolidMesh(
+            np.vstack([mesh.vertices for mesh in result.solids]), corners
+        ), result.issues
     solid.refuse_crossing(label, CROSSED)
     return solid, ()

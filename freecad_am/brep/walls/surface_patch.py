@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faces as patches: their exact surfaces told in numbers that the core evaluates by itself."""
+"""Faces as patches: their exact surfaces as numbers that the core evaluates without FreeCAD."""
 
 from __future__ import annotations
 
@@ -109,25 +109,25 @@ def _refuse_kinks(patch: Patch, face: Any, where: str) -> None:
         ((patch.knots_u, patch.poles.shape[0]), (patch.knots_v, patch.poles.shape[1]))
     ):
         degree = len(knots) - count - 1
-        found, times = np.unique(knots, return_counts=True)
+        knot_values, times = np.unique(knots, return_counts=True)
         low, high = max(ranges[axis, 0], knots[degree]), min(ranges[axis, 1], knots[count])
         step = 1e-7 * (knots[count] - knots[degree])
-        for knot in found[
-            (times >= degree) & (found > low + 9.0 * step) & (found < high - 9.0 * step)
+        for knot in knot_values[
+            (times >= degree) & (knot_values > low + 9.0 * step) & (knot_values < high - 9.0 * step)
         ]:
             uv = np.empty((9, 2))
             uv[:, axis], uv[:, 1 - axis] = knot, np.linspace(*ranges[1 - axis], 11)[1:-1]
             side = step * np.eye(2)[axis]
-            (points, before), (_, after) = patch.at(uv - side), patch.at(uv + side)
-            turn = np.arccos(np.clip((before * after).sum(axis=1), -1.0, 1.0))
+            (points, normals_before), (_, normals_after) = patch.at(uv - side), patch.at(uv + side)
+            turn = np.arccos(np.clip((normals_before * normals_after).sum(axis=1), -1.0, 1.0))
             if turn.max() > KINK:
-                at = ", ".join(f"{number:.4g}" for number in points[np.argmax(turn)])
+                position = ", ".join(f"{number:.4g}" for number in points[np.argmax(turn)])
                 raise InputError(
                     "ROUGH_WALL",
                     where,
                     "at ({}) the face has an edge within itself, of {:.3g} deg; round it, or divide "
                     "the face there and deposit its parts one after the other",
-                    at,
+                    position,
                     np.degrees(turn.max()),
                 )
 
@@ -136,21 +136,21 @@ def _checked(patch: Patch, face: Any, where: str) -> Patch:
     """The patch, if it is the face's surface. InputError ROUGH_WALL."""
     low_u, high_u, low_v, high_v = face.ParameterRange
     surface = face.Surface
-    places = [
+    parameters = [
         (u, v)
         for u in np.linspace(low_u, high_u, 9)[1:-1]
         for v in np.linspace(low_v, high_v, 9)[1:-1]
     ]
-    points = np.array([tuple(surface.value(u, v)) for u, v in places])
-    off = np.linalg.norm(patch.at(patch.inverse(points, np.array(places)))[0] - points, axis=1)
+    points = np.array([tuple(surface.value(u, v)) for u, v in parameters])
+    off = np.linalg.norm(patch.at(patch.inverse(points, np.array(parameters)))[0] - points, axis=1)
     if off.max() > ERROR:
-        at = ", ".join(f"{number:.4g}" for number in points[np.argmax(off)])
+        position = ", ".join(f"{number:.4g}" for number in points[np.argmax(off)])
         raise InputError(
             "ROUGH_WALL",
             where,
             "at ({}) it is {:.3g} mm off the spline that stands for it, more than {:g} mm; rebuild the "
             "face, for instance as a loft or a sweep",
-            at,
+            position,
             off.max(),
             ERROR,
         )

@@ -46,14 +46,15 @@ class Tube:
 def tubes(
     shape: Any, names: Sequence[str], label: str
 ) -> tuple[list[tuple[str, Any]], tuple[Tube, Tube]]:
-    """The faces of the wall and its surface, told once from each end: (named faces, (from one end, from the other)).
+    """The faces of the wall and its surface, described from each end: (named faces, (from one end,
+    from the other)).
 
     names: of the wall's faces; when left out the only face that is not flat. Raises InputError NO_WALL, UNKNOWN_FACE,
     NOT_ONE_SURFACE (faces of different surfaces), NOT_CLOSED (the wall has no closed direction).
     """
     named = _chosen(shape, names, label)
-    first_name, first = named[0]
-    kind = _ANALYTIC.get(first.Surface.TypeId, TABLE)
+    first_name, first_face = named[0]
+    kind = _ANALYTIC.get(first_face.Surface.TypeId, TABLE)
     if kind == TABLE and len(named) > 1:
         raise InputError(
             "NOT_ONE_SURFACE",
@@ -63,37 +64,41 @@ def tubes(
             first_name,
         )
     for name, face in named[1:]:
-        _refuse_other(first, face, f"{label} {name}", first_name)
-    whole = tuple(name for name, _ in named)
+        _refuse_other(first_face, face, f"{label} {name}", first_name)
+    face_names = tuple(name for name, _ in named)
     if kind == TABLE:
-        return named, _tables(first, whole, label)
+        return named, _tables(first_face, face_names, label)
     low, high = _ranges([face for _, face in named], kind, label)
-    made = _torus if kind == TORUS else _cone
-    return named, (made(first.Surface, low, high, whole), made(first.Surface, high, low, whole))
+    make_tube = _torus if kind == TORUS else _cone
+    return named, (
+        make_tube(first_face.Surface, low, high, face_names),
+        make_tube(first_face.Surface, high, low, face_names),
+    )
 
 
 def faces_by_name(shape: Any, names: Sequence[str], label: str) -> dict[str, Any]:
-    """The faces of a shape by their names, Face1 and on. InputError NO_WALL without any, UNKNOWN_FACE when one of `names`
-    is none of them."""
+    """The faces of a shape by their names, Face1 and on. InputError NO_WALL without any,
+    UNKNOWN_FACE for a name that the shape lacks.
+    """
     if shape is None or shape.isNull() or not shape.Faces:
         raise InputError(
             "NO_WALL", label, "it has no faces; choose a part with the faces of the wall"
         )
-    known = {f"Face{index}": face for index, face in enumerate(shape.Faces, start=1)}
+    faces = {f"Face{index}": face for index, face in enumerate(shape.Faces, start=1)}
     for name in names:
-        if name not in known:
+        if name not in faces:
             raise InputError(
-                "UNKNOWN_FACE", label, "it has no {}; choose from Face1 to Face{}", name, len(known)
+                "UNKNOWN_FACE", label, "it has no {}; choose from Face1 to Face{}", name, len(faces)
             )
-    return known
+    return faces
 
 
 def _chosen(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any]]:
-    known = faces_by_name(shape, names, label)
+    faces = faces_by_name(shape, names, label)
     if names:
-        return [(name, known[name]) for name in dict.fromkeys(names)]
+        return [(name, faces[name]) for name in dict.fromkeys(names)]
     curved = [
-        (name, face) for name, face in known.items() if face.Surface.TypeId != "Part::GeomPlane"
+        (name, face) for name, face in faces.items() if face.Surface.TypeId != "Part::GeomPlane"
     ]
     if len(curved) != 1:
         raise InputError(
@@ -105,9 +110,9 @@ def _chosen(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any
     return curved
 
 
-def _refuse_other(first: Any, face: Any, where: str, first_name: str) -> None:
-    """InputError unless both faces lie on one surface."""
-    surface = first.Surface
+def _refuse_other(first_face: Any, face: Any, where: str, first_name: str) -> None:
+    """InputError unless both faces share one surface."""
+    surface = first_face.Surface
     low_u, high_u, low_v, high_v = face.ParameterRange
     points = [
         face.valueAt(a, b)
@@ -137,11 +142,15 @@ def _ranges(faces: list[Any], kind: str, label: str) -> tuple[float, float]:
             else ((low_v, high_v), (low_u, high_u))
         )
         middle = face.valueAt(0.5 * (low_u + high_u), 0.5 * (low_v + high_v))
-        at = surface.parameter(middle)
+        parameters = surface.parameter(middle)
         rising.append(
-            _about(at[0] if kind == TORUS else at[1], along, TURN if kind == TORUS else 0.0)
+            _about(
+                parameters[0] if kind == TORUS else parameters[1],
+                along,
+                TURN if kind == TORUS else 0.0,
+            )
         )
-        around.append(_about(at[1] if kind == TORUS else at[0], turn, TURN))
+        around.append(_about(parameters[1] if kind == TORUS else parameters[0], turn, TURN))
     if not _covered(around):
         raise InputError(
             "NOT_CLOSED",
@@ -159,11 +168,14 @@ def _ranges(faces: list[Any], kind: str, label: str) -> tuple[float, float]:
     return low, high
 
 
-def _about(middle: float, own: tuple[float, float], period: float) -> tuple[float, float]:
+def _about(middle: float, own_range: tuple[float, float], period: float) -> tuple[float, float]:
     """A range as wide as the face's own about a middle given on the first surface, near the face's own middle."""
-    half, at = 0.5 * (own[1] - own[0]), 0.5 * (own[0] + own[1])
-    if period and abs(np.remainder(middle - at + 0.5 * period, period) - 0.5 * period) < 1e-6:
-        middle = at
+    half, own_middle = 0.5 * (own_range[1] - own_range[0]), 0.5 * (own_range[0] + own_range[1])
+    if (
+        period
+        and abs(np.remainder(middle - own_middle + 0.5 * period, period) - 0.5 * period) < 1e-6
+    ):
+        middle = own_middle
     return middle - half, middle + half
 
 
@@ -245,10 +257,10 @@ def _tables(face: Any, faces: tuple[str, ...], label: str) -> tuple[Tube, Tube]:
             (u[:-1] + 0.5 * u[1])[:: max(1, n // 16)],
             (v + 0.5 * v[1])[:: max(1, m // 16)],
         )
-        made = own_surface(TABLE, (), u, v, points, period)
-        found = made.point(*np.meshgrid(rows, columns, indexing="ij"))
+        table = own_surface(TABLE, (), u, v, points, period)
+        evaluated = table.point(*np.meshgrid(rows, columns, indexing="ij"))
         error = float(
-            np.linalg.norm(found - sampled(along[0] + rows, around[0] + columns), axis=-1).max()
+            np.linalg.norm(evaluated - sampled(along[0] + rows, around[0] + columns), axis=-1).max()
         )
         if error <= TABLE_ERROR:
             break
@@ -284,8 +296,8 @@ def _refuse_seam(
     """InputError where a closed surface has an edge along its seam."""
     for a in np.linspace(*along, 5)[1:-1]:
         ends = [surface.tangent(b, a)[0] if closed_u else surface.tangent(a, b)[1] for b in around]
-        one, other = (_unit(_array(end)) for end in ends)
-        if np.linalg.norm(one - other) > SMOOTH:
+        tangent, other_tangent = (_unit(_array(end)) for end in ends)
+        if np.linalg.norm(tangent - other_tangent) > SMOOTH:
             raise InputError(
                 "ROUGH_WALL",
                 where,

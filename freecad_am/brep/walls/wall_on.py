@@ -23,8 +23,8 @@ from .wall import faces_by_name, tubes
 
 FLAT = "Part::GeomPlane"
 MOST_NAMED = 8  # faces named in a message
-BELOW = 9  # places up the tube at which it is told whether it stays in the substrate's box
-# what is not a closed tube of one surface that starts in one loop may still be a wall
+BELOW = 9  # samples up the tube that decide whether it stays in the substrate's box
+# a wall need not be a closed tube of one surface that starts in one loop
 OTHER_KIND = frozenset(
     {"NOT_ONE_SURFACE", "NOT_CLOSED", "WALL_EDGE", "NO_WALL", "ROUGH_WALL", "NO_CONTACT", "INSIDE"}
 )
@@ -44,10 +44,11 @@ def wall_on(
     """The wall of a Part.Shape, or of a mesh (Body), for layers of `height` mm, in its coordinates. mend: the largest hole
     of a mesh that is closed, mm.
 
-    substrate: a Part.Shape with solids, a mesh (Body or Mesh.Mesh), or None where layers start from edges of the part, those
-    that stand on the platform if none are named. A SurfaceWall where the faces are one surface that closes around, its end
-    straight across, and the first layer one loop; a PatchWall otherwise, and always for fronts. Raises the InputErrors of
-    `find_patch_wall` and `substrate_of`, LAYER_HEIGHT, BAD_SHAPE.
+    substrate: a Part.Shape with solids, a mesh (Body or Mesh.Mesh), or None where layers start from
+    edges of the part; from its edges on the platform if none are named. A SurfaceWall where the
+    faces are one surface that closes around, its end straight across, and the first layer one loop;
+    a PatchWall otherwise, and always for fronts. Raises InputErrors as in `find_patch_wall` and
+    `substrate_of`, LAYER_HEIGHT, BAD_SHAPE.
     """
     with reported(substrate_label, substrate):
         carrier = None if substrate is None else substrate_of(substrate, substrate_label, mend)
@@ -80,15 +81,16 @@ def _wall_on(
         except FAULTS:
             pass  # the wall as a sheet asks less of the kernel
     named = named_faces(shape, faces, label)
-    found = find_patch_wall(shape, named, carrier, height, label, start_edges)
+    wall = find_patch_wall(shape, named, carrier, height, label, start_edges)
     if carrier is None or carrier.shape is not None or start_edges or fronts:
-        return found
-    return _as_tube(found, shape, faces, carrier, label) or found
+        return wall
+    return _as_tube(wall, shape, faces, carrier, label) or wall
 
 
 def _starts_all_around(tube: SurfaceWall, solid: Any) -> bool:
-    """Whether the first layer runs around the tube, and what is below it stays within the box of the substrate: there the
-    wall's other loops lie in it, such as in the bore of a pipe."""
+    """Whether the first layer runs around the tube, and the tube below stays within the box of the
+    substrate, so that the wall's other loops are inside, such as in the bore of a pipe.
+    """
     surface = tube.surface()
     u, v = surface.inverse(np.vstack([tube.first, tube.first[:1]]))
     turn = np.remainder(np.diff(v) + 0.5 * tube.period, tube.period) - 0.5 * tube.period
@@ -105,17 +107,17 @@ def _starts_all_around(tube: SurfaceWall, solid: Any) -> bool:
 
 
 def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any]]:
-    """The faces chosen: those named, else all of a shape without solids, else those of a solid that are not flat, if they
-    hang together and no flat one joins them smoothly.
+    """The chosen faces: named ones, else every face of a shape without solids, else the curved
+    faces of a solid if they connect and no flat face joins them smoothly.
 
     Raises InputError NO_WALL, UNKNOWN_FACE.
     """
-    known = faces_by_name(shape, names, label)
+    faces = faces_by_name(shape, names, label)
     if names:
-        return [(name, known[name]) for name in dict.fromkeys(names)]
+        return [(name, faces[name]) for name in dict.fromkeys(names)]
     if not shape.Solids:
-        return list(known.items())
-    curved = [(name, face) for name, face in known.items() if face.Surface.TypeId != FLAT]
+        return list(faces.items())
+    curved = [(name, face) for name, face in faces.items() if face.Surface.TypeId != FLAT]
     if not curved or not _one_piece([face for _, face in curved]):
         listed = (
             ", ".join(name for name, _ in curved[:MOST_NAMED])
@@ -132,8 +134,9 @@ def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str,
     flat = next(
         (
             name
-            for name, face in known.items()
-            if face.Surface.TypeId == FLAT and any(_runs_on(face, other) for _, other in curved)
+            for name, face in faces.items()
+            if face.Surface.TypeId == FLAT
+            and any(_runs_on(face, curved_face) for _, curved_face in curved)
         ),
         "",
     )
@@ -151,24 +154,26 @@ def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str,
 def _one_piece(faces: list[Any]) -> bool:
     """Whether faces hang together by common edges."""
     edges = [{edge.hashCode() for edge in face.Edges} for face in faces]
-    reached, left = edges[0], edges[1:]
-    while left:
-        near = [one for one in left if one & reached]
-        if not near:
+    reached, unreached = edges[0], edges[1:]
+    while unreached:
+        adjacent = [codes for codes in unreached if codes & reached]
+        if not adjacent:
             return False
-        left = [one for one in left if not one & reached]
-        reached = reached.union(*near)
+        unreached = [codes for codes in unreached if not codes & reached]
+        reached = reached.union(*adjacent)
     return True
 
 
-def _runs_on(face: Any, other: Any) -> bool:
+def _runs_on(face: Any, other_face: Any) -> bool:
     """Whether two faces join smoothly along an edge."""
-    codes = {edge.hashCode() for edge in other.Edges}
+    codes = {edge.hashCode() for edge in other_face.Edges}
     for edge in face.Edges:
         if edge.hashCode() in codes:
             point = edge.valueAt(0.5 * (edge.FirstParameter + edge.LastParameter))
-            one, two = (side.normalAt(*side.Surface.parameter(point)) for side in (face, other))
-            if one.cross(two).Length < np.sin(CREASE):
+            normal, other_normal = (
+                side.normalAt(*side.Surface.parameter(point)) for side in (face, other_face)
+            )
+            if normal.cross(other_normal).Length < np.sin(CREASE):
                 return True
     return False
 
@@ -176,24 +181,28 @@ def _runs_on(face: Any, other: Any) -> bool:
 def _as_tube(
     wall: PatchWall, shape: Any, faces: Sequence[str], substrate: Substrate, label: str
 ) -> SurfaceWall | None:
-    """A wall on a mesh as a tube of one surface, where it is one that ends straight across; None where it is not."""
+    """A wall on a mesh as a tube of one surface that ends straight across, or None if it is not
+    one.
+    """
     ends = [rim for rim in wall.rims if rim.end]
     if len(wall.first) != 1 or not wall.first[0].closed or len(ends) != 1:
         return None
     try:
-        _, both = tubes(shape, faces, label)
+        _, tubes_both_ways = tubes(shape, faces, label)
     except InputError:
         return None
     search = substrate.solid.searched(wall.mesh.typical_edge)
     v = 2.0 * np.pi * np.arange(12) / 12
     lowest = [
-        search.signed(one.surface().point(0.0 * v, v * one.period / (2.0 * np.pi)))[0].mean()
-        for one in both
+        search.signed(candidate.surface().point(0.0 * v, v * candidate.period / (2.0 * np.pi)))[
+            0
+        ].mean()
+        for candidate in tubes_both_ways
     ]
-    tube = both[int(np.argmin(lowest))]
+    tube = tubes_both_ways[int(np.argmin(lowest))]
     surface = tube.surface()
-    u, at = surface.inverse(ends[0].points)
-    rate = np.linalg.norm(surface.derivatives(u, at)[1], axis=1)
+    u, v_end = surface.inverse(ends[0].points)
+    rate = np.linalg.norm(surface.derivatives(u, v_end)[1], axis=1)
     if (
         np.abs((u - tube.end) * rate).max() > 1e-3
         or len([rim for rim in wall.rims if rim.closed]) != len(wall.rims)

@@ -54,12 +54,12 @@ def _balance(
         return None
     shape = first.shape.copy(False)
     if found.kind == REVOLUTION:
-        depths = part_depths.of_revolved(
+        depths = part_depths.revolved_depths(
             shape, find_wall(shape, names, label=first.label), first.label
         )
     else:
         faces = tuple(name for name, _ in named_faces(shape, names, first.label))
-        depths = part_depths.of_faces(
+        depths = part_depths.face_depths(
             shape, faces, first.label, None if under is None else under.body()
         )
     return None if depths is None else deposit_balance.of_wall(depths, width)

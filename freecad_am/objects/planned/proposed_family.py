@@ -148,7 +148,7 @@ def proposed(
             return Proposal(
                 "revolution", "", Text("{} is a skin that turns about one axis", part.label)
             )
-        deep = part_depths.of_revolved(shape, wall, part.label)
+        deep = part_depths.revolved_depths(shape, wall, part.label)
         balance = None if deep is None else of_wall(deep, width)
         out = 0.0 if balance is None else balance.left_out or 0.0
         if balance is None or out <= NEGLIGIBLE * (balance.part or 0.0):
@@ -409,7 +409,7 @@ def _thin(part: Taken, width: float, chosen: Sequence[str] = ()) -> bool:
     """Whether the faces of a solid, those chosen or else what tells its wall, are those of a wall that is one bead."""
     try:
         names = tuple(name for name, _ in named_faces(part.shape, chosen, part.label))
-        deep = part_depths.of_faces(part.shape, names, part.label, None)
+        deep = part_depths.face_depths(part.shape, names, part.label, None)
     except (InputError, *kernel.FAULTS):
         return False
     balance = None if deep is None else of_wall(deep, width)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...brep.files.apart import LARGEST
+from ...brep.files.apart import MAX_FILE_MB
 from ...brep.files.read import read_mesh, read_shape
 from ...brep.shapes.tessellate import body
 from ...core.collision.nozzle import depositing
@@ -74,7 +74,7 @@ def hashes_of(text: str, shape: str) -> list[str]:
     too large."""
     files = [(Path(one.file), f"{WHERE} {one.name}") for one in obstacles(text) if one.file]
     files += [(Path(shape.strip()), torch.WHERE)] if shape.strip() != NO_SHAPE else []
-    return [digest(file, LARGEST, "BAD_FILE", where) for file, where in files if is_there(file)]
+    return [digest(file, MAX_FILE_MB, "BAD_FILE", where) for file, where in files if is_there(file)]
 
 
 def _body(one: Obstacle) -> Body:

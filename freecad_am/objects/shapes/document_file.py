@@ -10,7 +10,7 @@ from xml.parsers import expat
 
 import FreeCAD as App
 
-from ...brep.files.apart import apart
+from ...brep.files.apart import read_apart
 from ...core.issues import InputError, Text
 
 CHUNK = 1 << 16
@@ -23,7 +23,7 @@ def opened(path: str, where: str) -> Any:
     Without a window it has been opened before in a process of its own, with limits of time and memory.
     """
     refuse(path, where)
-    apart(_try, path, where)
+    read_apart(_try, path, where)
     return open_here(path, where)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import FreeCAD as App
 import Part
 
-from ...brep.files.apart import apart
+from ...brep.files.apart import read_apart
 from ...brep.files.read import READABLE, mesh_content, placed_mesh, shape_content
 from ...core.geometry.curves.bead_curves import POINT_FILES
 from ...core.geometry.located import is_there, locate
@@ -79,7 +79,7 @@ def _of_document(path: str, object_name: str, stem: str) -> tuple[Any, str, tupl
             )  # open already: it is the user's, and stays open
     return _decoded(
         hooks.carry_out(
-            lambda: apart(_shape_of_file, str(locate(path)), object_name), stem, READING
+            lambda: read_apart(_shape_of_file, str(locate(path)), object_name), stem, READING
         )
     )
 
@@ -94,7 +94,9 @@ def changed_part(
     InputError NO_ADD_ON besides.
     """
     place = str(locate(path))
-    return _decoded(apart(_shape_of_file, place, object_name, change, where, patience=patience))
+    return _decoded(
+        read_apart(_shape_of_file, place, object_name, change, where, patience=patience)
+    )
 
 
 def add_part(document: Any, shape: Any, label: str, issues: tuple[Issue, ...] = ()) -> Any:
