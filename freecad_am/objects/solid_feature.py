@@ -11,8 +11,8 @@ from ..brep.hub import bodies_of
 from ..brep.start_faces import triangles_of_faces
 from ..core.geometry.obstacles import Body
 from ..core.issues import InputError, Issue, Text
-from ..core.layers.along.guided import guided
-from ..core.layers.planes.stacking import stacked
+from ..core.layers.along.guided import prepare_guided
+from ..core.layers.planes.stacking import prepare_stack
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import SolidParameters
 from ..core.strategies import size
@@ -123,9 +123,9 @@ class SolidFeature(FeatureStage):
                 issues += found.issues
             if strategy.layers == "along":
                 edges = None if guide is None else edges_of(*guide)
-                solids = guided(solid, edges, strategy, label, issues)
+                solids = prepare_guided(solid, edges, strategy, label, issues)
             else:
-                solids = stacked(solid, strategy, label, issues)
+                solids = prepare_stack(solid, strategy, label, issues)
             if start is not None:
                 corners = triangles_of_faces(*start, strategy.chord_error)
                 solids = dataclasses.replace(

@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from freecad_am.core.layers.planes.stacking import stacked
+from freecad_am.core.layers.planes.stacking import prepare_stack
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.process.deposit import spacing
@@ -209,7 +209,7 @@ def test_every_picture_is_there_or_says_why(dome, modelled):
 
 def test_volumes_and_sections_of_plane_layers(modelled):
     part = box((-20, -15, 0), (20, 15, 13), "block")
-    solids = stacked([part], SolidParameters(), "block")
+    solids = prepare_stack([part], SolidParameters(), "block")
     toolpath = planned(part, fill="lines", contour=True)
     source = Source(toolpath, deposit.deposit_motion(toolpath), ProcessParameters(), solids=solids)
     volume, share = catalogue.picture("volumes", source).charts

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Which field of layers a group of solids is cut by, and what of it is cut together."""
+"""The field of layers that cuts a group of solids, and the solids that are cut together."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..types import Array
 from .along import field as along
 from .along.field import AlongCuts
 from .curved import field as curved
-from .over_and_under import with_buried, with_overhangs
+from .over_and_under import mark_buried, report_overhangs
 from .planes import field as planes
 from .planes.layer import PlaneLayer
 from .rotary import field as rotary
@@ -35,7 +35,9 @@ class Stack(NamedTuple):
 
 
 def stacks(solids: SolidsOnHub, strategy: FilledParameters) -> Iterator[Stack]:
-    """All solids, group by group: on a cylinder or cone each by itself, on a plane those that are fused as one."""
+    """Yield all solids, group by group: each separately on a cylinder or cone, and fused ones
+    together on a plane.
+    """
     for number, group in enumerate(solids.groups):
         if isinstance(strategy, DevelopableParameters):
             for solid, body in enumerate(group.bodies):
@@ -55,21 +57,26 @@ def stacks(solids: SolidsOnHub, strategy: FilledParameters) -> Iterator[Stack]:
                 layers = planes.slices(group.base, bodies, strategy)
             name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
             yield Stack(
-                name, with_buried(with_overhangs(layers, strategy), strategy.thick), number, solid
+                name, mark_buried(report_overhangs(layers, strategy), strategy.thick), number, solid
             )
 
 
 def footprints(group: Group, chord_error: float) -> list[list[Array]]:
-    """Where each solid of a group leaves its base: closed curves (k, 3) in part coordinates, the first point not repeated;
-    on planes cut a chord error above it. InputError OPEN_MESH, GUIDE_TIGHT."""
+    """Return where each solid of a group leaves its base: closed curves (k, 3) in part
+    coordinates, first point not repeated.
+
+    On planes the cut is a chord error above the base. Raises InputError OPEN_MESH,
+    GUIDE_TIGHT.
+    """
     base, surface = group.base, group.base.surface
     if isinstance(surface, Developable):
-        made = [
+        all_facets = [
             Facets(surface, base.inside(body.vertices), body.triangles, body.name)
             for body in group.bodies
         ]
         return [
-            [base.to_part(loop.points) for loop in cut(facets, 0.0, chord_error)] for facets in made
+            [base.to_part(loop.points) for loop in cut(facets, 0.0, chord_error)]
+            for facets in all_facets
         ]
     cuts = [
         AlongCuts(base, body)
@@ -78,6 +85,9 @@ def footprints(group: Group, chord_error: float) -> list[list[Array]]:
         for body in group.bodies
     ]
     return [
-        [base.to_part(PlaneLayer(0.0).wrap(loop).points) for loop in next(one.loops([chord_error]))]
-        for one in cuts
+        [
+            base.to_part(PlaneLayer(0.0).wrap(loop).points)
+            for loop in next(cut_body.loops([chord_error]))
+        ]
+        for cut_body in cuts
     ]

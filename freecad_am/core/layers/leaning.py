@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""By how much the facets of a part lean out over nothing, before it is cut."""
+"""Overhang of the facets of a part, before it is cut."""
 
 from __future__ import annotations
 
@@ -14,40 +14,47 @@ from ..geometry.on_hub import Base
 from ..types import Array
 from .planes.stacking import facets
 
-LEAST = 1e-9  # rad; what leans by less is a wall
+MIN_LEAN_RAD = 1e-9  # rad; what leans by less is a wall
 
 
 class Leaning(NamedTuple):
-    """Facets that lean out: corners (m, 3, 3) mm, by how much (m,) rad, the least first, and areas (m,) mm2. whole: mm2 of
-    the part."""
+    """Overhanging facets: corners (m, 3, 3) mm, overhang (m,) rad, rising, and areas (m,) mm2.
+    total_area: mm2 of the part.
+    """
 
     corners: Array
     lean: Array
     area: Array
-    whole: float
+    total_area: float
 
-    def beyond(self, angle: float) -> tuple[Array, float]:
-        """Corners (k, 3, 3) of what leans out by more than an angle, rad, and its area, mm2."""
-        first = int(np.searchsorted(self.lean, angle + LEAST, side="right"))
-        return self.corners[first:], float(self.area[first:].sum())
+    def steeper_than(self, angle: float) -> tuple[Array, float]:
+        """Return the corners (k, 3, 3) of facets that overhang by more than an angle, rad, and their
+        area, mm2.
+        """
+        first_steeper = int(np.searchsorted(self.lean, angle + MIN_LEAN_RAD, side="right"))
+        return self.corners[first_steeper:], float(self.area[first_steeper:].sum())
 
 
-def leaning(
+def find_leaning(
     bodies: Sequence[Body], base: Base, standing: float, slit: float | None = None
 ) -> Leaning:
-    """The facets of bodies that face against the way in which layers follow one another on a base, along a guide that there:
-    0 is a wall, a right angle a ceiling. What lies no more than `standing` mm above the lowest place is carried by what the
-    part stands on. slit: as of `stacking.facets`."""
+    """Return the facets of bodies that face against the stacking direction of layers on a base,
+    or along a guide.
+
+    The overhang of a wall is 0, of a ceiling a right angle. Facets at most `standing` mm
+    above the lowest point are carried by the surface under the part. slit: as in
+    `stacking.facets`.
+    """
     corners, normals, areas = facets(bodies, slit)
     inside = base.inside(corners)
     heights = np.asarray(base.surface.distance(inside))
-    ways = base.frame[:3, 2]
+    directions = base.frame[:3, 2]
     if isinstance(base.surface, Guide):
         middles = base.surface.distance(inside.mean(axis=1))
-        ways = base.rotate_to_part(base.surface.at(middles)[1])
-    lean = np.arcsin(np.clip(-(normals * ways).sum(axis=1), -1.0, 1.0))
+        directions = base.rotate_to_part(base.surface.at(middles)[1])
+    lean = np.arcsin(np.clip(-(normals * directions).sum(axis=1), -1.0, 1.0))
     out = np.flatnonzero(
-        (lean > LEAST) & (areas > 0.0) & (heights.max(axis=1) > heights.min() + standing)
+        (lean > MIN_LEAN_RAD) & (areas > 0.0) & (heights.max(axis=1) > heights.min() + standing)
     )
     order = out[np.argsort(lean[out], kind="stable")]
     return Leaning(corners[order], lean[order], areas[order], float(areas.sum()))

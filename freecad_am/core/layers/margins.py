@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Regions of a layer from its loops and those of the layers below it, grown by the margin that is machined off."""
+"""Regions of a layer from its loops and the loops of the layers below, grown by the
+machining margin.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,7 @@ from ..types import Array
 BORDER, ARCS = (
     0.05,
     0.2,
-)  # shares of the chord error: of borders without needless points, of fillings
+)  # shares of the chord error: for borders without needless points, for fillings
 
 Loops = TypeVar("Loops")
 
@@ -24,14 +26,16 @@ Loops = TypeVar("Loops")
 def within_margin(
     below: Sequence[Loops], height: float, margin: float, moved: Callable[[Loops, float], Loops]
 ) -> list[tuple[float, Loops]]:
-    """Loops of the last layer, and of those below it within the margin moved up to it, with how far each has to grow.
+    """Return the loops of the last layer, and of the layers below within the margin, moved up,
+    with the growth of each.
 
-    Growing within a layer covers the margin beside the part; what ends below has the margin above itself.
+    Growing within a layer covers the margin around the part; a surface that ends below has
+    the margin above it.
     """
-    last = len(below) - 1
-    lots = [(margin, below[last])]
-    for number in range(last - 1, -1, -1):
-        up = (last - number) * height
+    last_layer = len(below) - 1
+    lots = [(margin, below[last_layer])]
+    for number in range(last_layer - 1, -1, -1):
+        up = (last_layer - number) * height
         if up >= margin:
             break
         lots.append((math.sqrt(margin * margin - up * up), moved(below[number], up)))
@@ -41,31 +45,35 @@ def within_margin(
 def sections(
     cuts: Sequence[Iterator[list[Array]]], strategy: SolidParameters
 ) -> Iterator[tuple[int, tuple[Region, ...], tuple[Issue, ...]]]:
-    """The layers that have any region, by the loops (n, 2) of several bodies layer by layer: number, regions, what was
-    mended."""
+    """Yield the layers with regions, from the loops (n, 2) of several bodies: number, regions,
+    repairs.
+    """
     below: list[list[Array]] = []
     for number, loops in enumerate(zip(*cuts)):
         below.append([loop for of_body in loops for loop in of_body])
         lots = within_margin(below, strategy.layer_height, strategy.margin, lambda loops, _: loops)
-        found, issues = regions_of(lots, strategy.margin, strategy.chord_error, number)
-        if found:
-            yield number, found, issues
+        grown_regions, issues = regions_of(lots, strategy.margin, strategy.chord_error, number)
+        if grown_regions:
+            yield number, grown_regions, issues
 
 
 def regions_of(
     lots: Sequence[tuple[float, Sequence[Array]]], margin: float, chord_error: float, number: int
 ) -> tuple[tuple[Region, ...], tuple[Issue, ...]]:
-    """The regions of a layer from loops (n, 2) and how far (mm) each lot of them grows, without slits thinner than the chord
-    error; and what was mended."""
+    """Return the regions of a layer from loops (n, 2) and their growth (mm), without slits
+    thinner than the chord error.
+
+    Also returns the issues of repairs.
+    """
     issues: tuple[Issue, ...] = ()
     borders: list[Array] = []
-    whole: tuple[Region, ...] = ()
+    all_regions: tuple[Region, ...] = ()
     for distance, loops in lots:
-        read = mended(loops)
-        issues += read.issues(number)
-        whole = grow_regions(read.regions, distance, ARCS * chord_error)
-        borders += [border for region in whole for border in region.borders()]
+        repaired = mended(loops)
+        issues += repaired.issues(number)
+        all_regions = grow_regions(repaired.regions, distance, ARCS * chord_error)
+        borders += [border for region in all_regions for border in region.borders()]
     if margin > 0.0:
-        whole = regions(borders)
-    whole = joined(whole, chord_error)
-    return tuple(region.simple(BORDER * chord_error) for region in whole), issues
+        all_regions = regions(borders)
+    all_regions = joined(all_regions, chord_error)
+    return tuple(region.simple(BORDER * chord_error) for region in all_regions), issues

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A layer: a surface that can be laid flat without stretching, and what of the part lies on it.
+"""A layer: a surface that unrolls without stretching, and the regions of the part on it.
 
-Fillings know the plane alone. What they lay there is wrapped onto the surface: an isometry, so that spacings, areas and
-angles within the layer are those of the plane.
+Fillings work only on the plane. Their results are wrapped onto the surface by an
+isometry, so spacings, areas and angles within the layer are those of the plane.
 """
 
 from __future__ import annotations
@@ -32,27 +32,29 @@ class LayerSurface(Protocol):
 
     @property
     def period(self) -> Period | None:
-        """What a turn round the surface is on the plane; None where there is none. Regions with the same borders on surfaces
-        with the same period are filled alike."""
+        """The turn around the surface on the plane; None if it does not close.
+
+        Regions with the same borders on surfaces with the same period are filled alike.
+        """
 
     @property
     def bends_freely(self) -> bool:
         """Whether it bends as it comes, so that directions may depart from its normals to turn slower."""
 
     def unroll(self, points: Array) -> Array:
-        """Points (n, 3) of the surface laid flat, (n, 2) mm."""
+        """Return points (n, 3) of the surface unrolled, (n, 2) mm."""
 
     def wrap(self, flat: Array) -> Wrapped:
         """A curve (n, 2) on the plane brought back."""
 
     def heights(self, flat: Array) -> Array | None:
-        """How high (n,) mm the layer is at places (n, 2); None where it has the layer height everywhere."""
+        """Return the layer heights (n,) mm at points (n, 2); None if the layer height is constant."""
 
-    def followed(self, flat: Array, sheet: float) -> LayerSurface:
-        """The surface for a curve (n, 2) that lies about u = `sheet` mm (`strip.Period`)."""
+    def for_sheet(self, flat: Array, sheet: float) -> LayerSurface:
+        """Return the surface for a curve (n, 2) about u = `sheet` mm (`strip.Period`)."""
 
-    def turned(self, azimuth: float) -> float:
-        """By what angle, rad, the plane is turned from where it would lie about another azimuth, rad."""
+    def plane_rotation(self, azimuth: float) -> float:
+        """Return the rotation, rad, of the plane from its orientation about another azimuth, rad."""
 
     def pieces(self, flat: Array, chord_error: float) -> Index:
         """In how many pieces (n - 1,) the edges of a polyline (n, 2) keep within the chord error, mm, when wrapped."""
@@ -63,10 +65,14 @@ class LayerSurface(Protocol):
 
 
 class Slice(NamedTuple):
-    """One layer of a part: its number, the base in whose frame it is, its surface, its regions laid flat, and findings.
-    azimuth: rad about the axis of the base, of the middle of the solid. buried: what of the plane is near to neither a top
-    nor a bottom (`over_and_under`); None where nobody asks. heights: its least, mean and largest height, mm; None
-    where it has the layer height everywhere. before: the share of all layers that come before it."""
+    """One layer of a part: its number, the base in whose frame it is, its surface, its unrolled
+    regions, and issues.
+
+    azimuth: rad about the axis of the base, of the middle of the solid. buried: parts of the
+    plane away from tops and bottoms (`over_and_under`); None if not required. heights:
+    smallest, mean and largest height, mm; None if the layer height is constant. share_before:
+    the share of all layers before this one.
+    """
 
     number: int
     base: Base
@@ -76,20 +82,21 @@ class Slice(NamedTuple):
     azimuth: float = 0.0
     buried: tuple[Region, ...] | None = None
     heights: tuple[float, float, float] | None = None
-    before: float = 0.0
+    share_before: float = 0.0
 
     @property
     def borders(self) -> list[tuple[Array, bool]]:
-        """Those of its regions, (n, 2) on the plane, and whether each is closed; round the hub as often as anything near can
-        ask."""
-        found = []
+        """The borders of its regions, (n, 2) on the plane, and whether each is closed; around the
+        hub in all adjacent turns.
+        """
+        curves = []
         for region in self.regions:
             if isinstance(region, Region):
-                found += [(border, True) for border in region.borders()]
+                curves += [(border, True) for border in region.borders()]
                 continue
             for border, turns in region.borders():
                 if turns:
-                    found.append(
+                    curves.append(
                         (
                             np.vstack(
                                 [region.period.move_turns(border, k) for k in (-turns, 0, turns)]
@@ -98,8 +105,8 @@ class Slice(NamedTuple):
                         )
                     )
                 else:
-                    found += [(region.period.move_turns(border, k), True) for k in (-1, 0, 1)]
-        return found
+                    curves += [(region.period.move_turns(border, k), True) for k in (-1, 0, 1)]
+        return curves
 
     def where(self, point: Array) -> str:
         """A point (2,) of the plane in the part, as text."""

@@ -26,8 +26,8 @@ from ...core.geometry.mesh.repair import WELDS_MM, connected_triangles
 from ...core.geometry.mesh.uncrossed import remove_crossings
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError, Text, Word
-from ...core.layers.curved.field import STANDING
-from ...core.layers.planes.stacking import best, facets, judged
+from ...core.layers.curved.field import CONTACT_HEIGHTS
+from ...core.layers.planes.stacking import evaluate_direction, facets, rank_directions
 from ...core.parameters.filled import GEODESIC, PLANES, DevelopableParameters, SolidParameters
 from ...core.parameters.strategy import SurfaceParameters
 from ...core.process.deposit.balance import MM3, NEGLIGIBLE, of_wall
@@ -322,7 +322,9 @@ def _solid(part: Taken, reason: str, tilts: bool, planes: _Planes) -> Proposal:
             Text("{}, and layers have the bend of {} where it stands", reason, planes.ground.label),
         )
     bodies = [part.body()]
-    least = best(bodies, SolidParameters(max_overhang=STEEP, layer_height=planes.apart))[0].way
+    least = rank_directions(bodies, SolidParameters(max_overhang=STEEP, layer_height=planes.apart))[
+        0
+    ].direction
     way = least if planes.way is None else np.array(planes.way) / np.linalg.norm(planes.way)
     over = _overhang(bodies[0], way)
     along = "" if np.array_equal(way, UP) else Text(", stacked along {}", _direction_text(way))
@@ -372,7 +374,7 @@ def _overhang(body: Body, way: Array) -> float:
     stands on."""
     corners, normals, areas = facets([body], None)
     heights = corners @ way
-    found = judged(
+    found = evaluate_direction(
         way, corners, normals, areas, float(np.sin(STEEP)), FLAT * float(np.ptp(heights))
     )
     return found.area / max(float(areas.sum()), 1e-300)
@@ -383,7 +385,7 @@ def _stands(body: Body, way: Array, layer_height: float) -> bool:
     layers begin on, but for those that a round bottom is made of."""
     corners, normals, _ = facets([body], None)
     heights = corners @ way
-    low: Mask = (heights.max(axis=1) < heights.min() + STANDING * layer_height) & (
+    low: Mask = (heights.max(axis=1) < heights.min() + CONTACT_HEIGHTS * layer_height) & (
         normals @ way < -LEVEL
     )
     return bool(low.any())

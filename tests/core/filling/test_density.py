@@ -14,7 +14,7 @@ from freecad_am.core.filling.lattice import gyroid_period
 from freecad_am.core.filling.sparse import Infill
 from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InputError
-from freecad_am.core.layers.over_and_under import under_and_over, with_buried
+from freecad_am.core.layers.over_and_under import common_regions, mark_buried
 from freecad_am.core.layers.surface import Slice
 from freecad_am.core.parameters.filled import DevelopableParameters
 
@@ -184,7 +184,7 @@ def test_tops_and_bottoms_are_filled_and_the_rest_is_not(pattern):
     wide = shapes.polygon((0, 0), (80, 0), (80, 40), (0, 40))
     (region,) = regions(wide)
     over = regions(shapes.polygon((0, 0), (40, 0), (40, 40), (0, 40)))
-    buried = under_and_over([(region,), over, (region,)])
+    buried = common_regions([(region,), over, (region,)])
     curves = fill(region, BEADS, pattern, 0.4, 1, 0.0, Infill(0.15, 2.0, 0.4, buried))
     grid, _ = shapes.raster(wide, 0.25)
     away = shapes.tree([(curve.points, curve.closed) for curve in curves], STEP).query(grid)[0]
@@ -200,7 +200,7 @@ def test_tops_and_bottoms_are_filled_and_the_rest_is_not(pattern):
     away = shapes.tree([(curve.points, curve.closed) for curve in whole], STEP).query(grid)[0]
     inside = (grid > 1).all(axis=1) & (grid < (79, 39)).all(axis=1)
     assert (away[inside] <= 0.5 * S + 1e-3).mean() >= 0.99
-    assert under_and_over([(region,), (), (region,)]) == ()
+    assert common_regions([(region,), (), (region,)]) == ()
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -284,10 +284,10 @@ def test_layers_of_planes_know_what_is_over_and_under_them():
             number, None, None, regions(shapes.polygon((0, 0), (width, 0), (width, 10), (0, 10)))
         )
 
-    found = list(with_buried(iter([one(*item) for item in zip(layers, wide, strict=True)]), 2))
+    found = list(mark_buried(iter([one(*item) for item in zip(layers, wide, strict=True)]), 2))
     assert [layer.number for layer in found] == layers
     by_number = dict(zip(layers, wide, strict=True))
     for layer in found:
         beside = [by_number.get(layer.number + k, 0.0) for k in (-2, -1, 1, 2)]
         assert sum(part.area for part in layer.buried) == pytest.approx(10.0 * min(beside))
-    assert all(layer.buried is None for layer in with_buried(iter([one(0, 5.0)]), 0))
+    assert all(layer.buried is None for layer in mark_buried(iter([one(0, 5.0)]), 0))

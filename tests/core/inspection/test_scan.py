@@ -14,7 +14,7 @@ from freecad_am.core.inspection.fit_layers import fitted, moved_most
 from freecad_am.core.inspection.scan_heights import Scan
 from freecad_am.core.inspection.scanned_body import facing, scanned
 from freecad_am.core.issues import InputError
-from freecad_am.core.layers.planes.stacking import stacked
+from freecad_am.core.layers.planes.stacking import prepare_stack
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
@@ -59,7 +59,7 @@ def points_on(surface, size=(100.0, 60.0), count=30_000, noise=0.02, outliers=0.
 @pytest.fixture(scope="module")
 def block():
     strategy = SolidParameters(layer_height=HEIGHT, bead_spacing=6.25, chord_error=0.05)
-    solids = stacked([box((-60, -25, 0), (60, 25, 30))], strategy, "block")
+    solids = prepare_stack([box((-60, -25, 0), (60, 25, 30))], strategy, "block")
     return plan(
         solids, strategy, BuildDirectionParameters(), ProcessParameters(travel_speed=6.0), None
     )

@@ -13,8 +13,8 @@ from scipy.spatial.transform import Rotation
 from freecad_am.core.geometry.mesh.refined import Edges
 from freecad_am.core.geometry.mesh.triangle_mesh import Mesh
 from freecad_am.core.layers.charts.chart import Chart
-from freecad_am.core.layers.charts.flattening import flattened, stretched, turned
-from freecad_am.core.layers.curved.carried_on import carried_on
+from freecad_am.core.layers.charts.flattening import align_to_x, flatten, measure_stretch
+from freecad_am.core.layers.curved.carried_on import extrapolate
 from freecad_am.core.layers.curved.eikonal import arrival, links
 from freecad_am.core.layers.curved.level import Cubes
 from freecad_am.core.layers.curved.voxels import Voxels, voxels
@@ -145,7 +145,7 @@ def test_a_field_is_carried_on_as_it_goes():
     grid = _ball()
     linked = links(grid)
     slope = np.array([0.3, -0.5, 0.8])
-    field = carried_on(grid, linked, grid.places(linked.nodes) @ slope)
+    field = extrapolate(grid, linked, grid.places(linked.nodes) @ slope)
     known = np.flatnonzero(~np.isnan(field.ravel()))
     assert len(known) > 1.3 * len(linked.nodes)
     assert np.abs(field.ravel()[known] - grid.places(known) @ slope).max() < 1e-9
@@ -181,27 +181,27 @@ def _sphere(flat, radius=25.0):
 
 def test_what_can_be_laid_flat_is_without_distortion():
     mesh, flat = _sheet(_cylinder)
-    found = flattened(mesh)
-    assert found.least.min() > 0.99 and found.most.max() < 1.01
+    found = flatten(mesh)
+    assert found.min_stretch.min() > 0.99 and found.max_stretch.max() < 1.01
     away = np.linalg.norm(found.points[:, None] - found.points[::97], axis=2)
     true = np.linalg.norm(flat[:, None] - flat[::97], axis=2)
     assert np.abs(away - true).max() < 0.05
-    assert (stretched(mesh, found.points)[0] > 0.0).all()  # none turned over
+    assert (measure_stretch(mesh, found.points)[0] > 0.0).all()  # none turned over
 
 
 def test_what_cannot_is_stretched_no_more_than_it_must():
     mesh, _ = _sheet(_sphere)
-    found = flattened(mesh)
+    found = flatten(mesh)
     half = 0.5 * np.hypot(30.0, 20.0) / 25.0  # angle from the middle to a corner
-    assert found.least.min() > np.sin(
+    assert found.min_stretch.min() > np.sin(
         half
-    ) / half - 0.05 and found.most.max() < 1.05 * half / np.sin(half)
+    ) / half - 0.05 and found.max_stretch.max() < 1.05 * half / np.sin(half)
 
 
 @pytest.mark.parametrize("surface", [_cylinder, _sphere])
 def test_places_of_a_picture_come_back(surface):
     mesh, _ = _sheet(surface)
-    chart = Chart(mesh, turned(mesh, flattened(mesh).points))
+    chart = Chart(mesh, align_to_x(mesh, flatten(mesh).points))
     rng = np.random.default_rng(3)
     share = rng.dirichlet(np.ones(3), 2000)
     face = rng.integers(0, len(mesh.faces), 2000)

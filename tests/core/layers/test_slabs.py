@@ -9,9 +9,9 @@ from freecad_am.core.geometry.curves.guide import fit_guide
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.geometry.on_hub import Base
 from freecad_am.core.geometry.plane import Plane
-from freecad_am.core.layers.leaning import leaning
-from freecad_am.core.layers.planes.slabs import below, group_of, outline, slabs
-from freecad_am.core.layers.planes.stacking import stacked
+from freecad_am.core.layers.leaning import find_leaning
+from freecad_am.core.layers.planes.slabs import group_of, outline, slabs, volumes_below
+from freecad_am.core.layers.planes.stacking import prepare_stack
 from freecad_am.core.parameters.filled import SolidParameters
 from tests.core.strategies.test_solids_in_planes import CONE, box, hull, tube
 
@@ -38,30 +38,32 @@ def test_volumes_below_planes_are_those_of_half_spaces(seed):
     heights = np.concatenate([[-26.0, -25.0], np.linspace(-24.0, 28.0, 17), points[4:8, 2]])
     wanted = [clipped(points, height) for height in heights]
     np.testing.assert_allclose(
-        below(body.vertices, body.triangles, heights), wanted, rtol=1e-9, atol=1e-8
+        volumes_below(body.vertices, body.triangles, heights), wanted, rtol=1e-9, atol=1e-8
     )
 
 
 def test_layers_of_a_cone_and_a_box_have_their_volumes_whichever_way_they_are_stacked():
     cone = tube(CONE)  # by its polygon
     area = 240 / 2 * np.sin(2 * np.pi / 240)
-    group = group_of(stacked([cone], SolidParameters(layer_height=4.0), "cone"))
+    group = group_of(prepare_stack([cone], SolidParameters(layer_height=4.0), "cone"))
     found = slabs(group, 4.0, np.zeros((0, 3)), np.zeros(0))
     planes = np.minimum(4.0 * np.arange(9), 30.0)
     radius = 40.0 - 0.5 * planes
     inner = area * 100.0 * np.diff(planes)
     wanted = -area * np.diff(radius**3) * 2.0 / 3.0 - inner
-    np.testing.assert_allclose(found.part, wanted, rtol=1e-9)
+    np.testing.assert_allclose(found.part_volume, wanted, rtol=1e-9)
     assert len(found.deposited) == 8 and not found.deposited.any()
     bars = [box((0, 0, 0), (30, 7, 5)), box((0, 20, 0), (10, 27, 5))]
-    group = group_of(stacked(bars, SolidParameters(layer_height=4.0, direction="-1 0 0"), "bars"))
+    group = group_of(
+        prepare_stack(bars, SolidParameters(layer_height=4.0, direction="-1 0 0"), "bars")
+    )
     # 30 mm high along -X, the second box in the first 20 mm above the lowest
     points = np.array([[28.0, 1.0, 1.0], [26.0, 1.0, 1.0], [2.0, 1.0, 1.0]])
     points[:, 0] = 30.0 - 4.0 * np.array([0, 1, 6])
     found = slabs(group, 4.0, points, np.array([3.0, 0.0, 5.0]))
     second = 35.0 * np.array([0, 0, 0, 0, 0, 4, 4, 2])
     np.testing.assert_allclose(
-        found.part, 35.0 * np.array([4, 4, 4, 4, 4, 4, 4, 2]) + second, rtol=1e-9
+        found.part_volume, 35.0 * np.array([4, 4, 4, 4, 4, 4, 4, 2]) + second, rtol=1e-9
     )
     assert found.deposited.tolist() == [3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 5.0, 0.0]
     assert (
@@ -85,14 +87,17 @@ def test_facets_lean_by_their_slope_and_what_stands_does_not():
             ]
         )
         body = hull(points)
-        found = leaning([body], LEVEL, 0.1)
+        found = find_leaning([body], LEVEL, 0.1)
         side = 30.0 * np.hypot(20.0, rise)
-        assert found.beyond(slope - 0.01)[1] == pytest.approx(2.0 * side, rel=1e-9)
-        assert found.beyond(slope + 0.01)[1] == 0.0 and len(found.beyond(slope + 0.01)[0]) == 0
-        assert found.whole == pytest.approx(ConvexHull(points).area, rel=1e-9)
+        assert found.steeper_than(slope - 0.01)[1] == pytest.approx(2.0 * side, rel=1e-9)
+        assert (
+            found.steeper_than(slope + 0.01)[1] == 0.0
+            and len(found.steeper_than(slope + 0.01)[0]) == 0
+        )
+        assert found.total_area == pytest.approx(ConvexHull(points).area, rel=1e-9)
         flying = Body("higher", body.vertices + [100.0, 0.0, 50.0], body.triangles)
-        both = leaning([body, flying], LEVEL, 0.1)
-        assert both.beyond(np.radians(85.0))[1] == pytest.approx(
+        both = find_leaning([body, flying], LEVEL, 0.1)
+        assert both.steeper_than(np.radians(85.0))[1] == pytest.approx(
             300.0, rel=1e-9
         )  # its underside is a ceiling
         assert (np.diff(both.lean) >= 0.0).all()
@@ -139,15 +144,15 @@ def test_facets_lean_from_the_guide_where_they_are(widening):
     """A bent pipe leans out nowhere from the planes across it; one that widens by as much as it does, more where the bend is
     narrow: the way is shorter there."""
     body, base = elbow(widening)
-    found, upright = leaning([body], base, 0.1), leaning([body], LEVEL, 0.1)
-    assert upright.beyond(np.radians(20.0))[1] > 0.2 * upright.whole
+    found, upright = find_leaning([body], base, 0.1), find_leaning([body], LEVEL, 0.1)
+    assert upright.steeper_than(np.radians(20.0))[1] > 0.2 * upright.total_area
     least, most = (
         np.arctan(widening * 40.0 / (40.0 + side * (5.0 + widening * 20.0 * np.pi)))
         for side in (1.0, -1.0)
     )
     flat = np.radians(0.5)  # facets are 5 deg wide
-    assert found.beyond(most + flat)[1] < 1e-6 * found.whole
+    assert found.steeper_than(most + flat)[1] < 1e-6 * found.total_area
     if widening:
         assert (
-            found.beyond(least - flat)[1] > 0.95 * found.whole
+            found.steeper_than(least - flat)[1] > 0.95 * found.total_area
         )  # but for what is near the first plane

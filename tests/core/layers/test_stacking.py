@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from freecad_am.core.geometry.obstacles import Body
-from freecad_am.core.layers.planes.stacking import best
+from freecad_am.core.layers.planes.stacking import rank_directions
 from freecad_am.core.parameters.filled import SolidParameters
 
 CORNERS = np.array([[x, y, z] for x in (0, 40) for y in (0, 40) for z in (0, 10)], dtype=float)
@@ -41,11 +41,12 @@ def test_meshes_of_one_part_are_stacked_alike(seed):
     turn = Rotation.random(random_state=seed).as_matrix()
     for part in (PLATE, PLATE @ turn.T):
         few, many = (
-            best([body(quartered(part, times), rng)], SolidParameters())[0] for times in (0, 3)
+            rank_directions([body(quartered(part, times), rng)], SolidParameters())[0]
+            for times in (0, 3)
         )
-        assert few.way == pytest.approx(many.way, abs=2e-4) and few.height == pytest.approx(
-            10.0, abs=0.02
-        )
+        assert few.direction == pytest.approx(
+            many.direction, abs=2e-4
+        ) and few.height == pytest.approx(10.0, abs=0.02)
 
 
 def square_tube(outer, inner, length):
@@ -76,8 +77,8 @@ def test_a_part_is_not_balanced_on_an_edge():
         turn = Rotation.from_euler("z", angle, degrees=True).as_matrix()
         part = square_tube(40.0, 30.0, 80.0) @ turn.T
         whole = Body("tube", part.reshape(-1, 3), np.arange(3 * len(part)).reshape(-1, 3))
-        found = best([whole], SolidParameters())
-        way = found[0].way
+        found = rank_directions([whole], SolidParameters())
+        way = found[0].direction
         assert abs(way @ turn[:, 0]) == pytest.approx(1.0, abs=1e-3) and found[0].area == 0.0
         # what stands on the platform has an area, and the middle of the part is over it
         heights = part @ way
@@ -86,5 +87,5 @@ def test_a_part_is_not_balanced_on_an_edge():
             np.cross(standing[:, 1] - standing[:, 0], standing[:, 2] - standing[:, 0]), axis=1
         )
         assert area.sum() == pytest.approx(40.0**2 - 30.0**2, rel=1e-3)
-        on_edge = next(one for one in found if abs(one.way[2]) > 0.999)
+        on_edge = next(one for one in found if abs(one.direction[2]) > 0.999)
         assert on_edge.area == 0.0 and on_edge.height < found[0].height and on_edge.stable < 0.05

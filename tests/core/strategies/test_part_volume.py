@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.obstacles import Body, box
-from freecad_am.core.layers.planes.stacking import stacked
+from freecad_am.core.layers.planes.stacking import prepare_stack
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
@@ -68,7 +68,7 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_what_solids_share_counts_once(name):
     bodies, volume, tolerance = CASES[name]
-    solids = stacked(bodies, SolidParameters(layer_height=4.0, chord_error=0.01), "part")
+    solids = prepare_stack(bodies, SolidParameters(layer_height=4.0, chord_error=0.01), "part")
     assert part_volume(solids) == pytest.approx(volume, rel=max(tolerance, 1e-9))
 
 
@@ -76,6 +76,6 @@ def test_the_balance_of_a_toolpath_has_it():
     """Layers of 3 mm on a part 40 mm high come to 39 or 42 mm."""
     bodies, volume, _ = CASES["touching"]
     strategy = SolidParameters(layer_height=3.0, bead_spacing=10.0, chord_error=0.01)
-    solids = stacked(bodies, strategy, "part")
+    solids = prepare_stack(bodies, strategy, "part")
     path = plan(solids, strategy, BuildDirectionParameters(), ProcessParameters(), None)
     assert path.volumes[0] == pytest.approx(volume, rel=1e-9)

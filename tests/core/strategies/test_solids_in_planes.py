@@ -14,7 +14,7 @@ from scipy.spatial import ConvexHull, cKDTree
 from freecad_am.core.geometry.mesh.solid import SolidMesh
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import InputError, summarised
-from freecad_am.core.layers.planes.stacking import stacked
+from freecad_am.core.layers.planes.stacking import prepare_stack
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters, SeamParameters, WireParameters
@@ -76,7 +76,7 @@ def prism(outline, cap, low, high):
 def planned(*bodies, build=None, process=None, **values):
     given = {"layer_height": 4.0, "chord_error": ERROR, "bead_spacing": 4.0, **values}
     strategy = SolidParameters(**given)
-    solids = stacked(bodies, strategy, "part")
+    solids = prepare_stack(bodies, strategy, "part")
     return plan(
         solids, strategy, build or BuildDirectionParameters(), process or ProcessParameters(), None
     )
@@ -94,7 +94,7 @@ def test_progress_goes_on_layer_by_layer(order):
         )
         told = []
         plan(
-            stacked(bodies, strategy, "part"),
+            prepare_stack(bodies, strategy, "part"),
             strategy,
             BuildDirectionParameters(),
             ProcessParameters(),
@@ -522,7 +522,7 @@ def test_the_best_direction_is_the_one_that_needs_no_support():
     """A T that lies down leaves nothing over nothing, as upside down, and is lower."""
     outline = [(-5, 0), (5, 0), (5, 30), (40, 30), (40, 40), (-40, 40), (-40, 30), (-5, 30)]
     cap = [(0, 1, 2), (0, 2, 7), (6, 7, 5), (7, 2, 5), (2, 3, 4), (2, 4, 5)]
-    solids = stacked(
+    solids = prepare_stack(
         [prism(outline, cap, -10.0, 10.0)], SolidParameters(direction="auto", layer_height=2.0), "T"
     )
     np.testing.assert_allclose(solids.groups[0].base.frame[:3, 2], [0.0, 1.0, 0.0], atol=1e-12)
@@ -535,7 +535,7 @@ def test_faces_where_touching_solids_meet_lean_over_nothing():
     what leans out along Z is what the plate has beside the stem."""
 
     def told(*bodies, fuse="auto"):
-        solids = stacked(
+        solids = prepare_stack(
             bodies, SolidParameters(direction="auto", layer_height=2.0, fuse=fuse), "T"
         )
         (issue,) = [issue for issue in solids.issues if issue.code == "DIRECTION"]
@@ -838,7 +838,7 @@ def spacing_issues(overlap, model=None, **process):
         bead_overlap=overlap,
         direction="0 0 1",
     )
-    solids = stacked([box((0, 0, 0), (60, 60, 5))], strategy, "part")
+    solids = prepare_stack([box((0, 0, 0), (60, 60, 5))], strategy, "part")
     made = plan(solids, strategy, BuildDirectionParameters(), ProcessParameters(**process), model)
     return [issue for issue in made.issues if issue.code == "BEAD_SPACING"]
 

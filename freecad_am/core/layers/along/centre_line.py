@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The centre line of a bent solid: from where it stands, from the middle of one section to that of the next."""
+"""The centre line of a bent solid: from its base, from the middle of one section to the
+middle of the next.
+"""
 
 from __future__ import annotations
 
@@ -50,14 +52,14 @@ class _Plane(NamedTuple):
     normal: Array
 
     def above(self, points: Array) -> Array:
-        """How far (...,) mm points (..., 3) are above it."""
-        found: Array = (points - self.point) @ self.normal
-        return found
+        """Return the heights (...,) mm of points (..., 3) above the plane."""
+        heights: Array = (points - self.point) @ self.normal
+        return heights
 
     def mirrored(self, points: Array) -> Array:
-        """Points (n, 3) on its other side."""
-        found: Array = points - 2.0 * self.above(points)[:, None] * self.normal
-        return found
+        """Return points (n, 3) mirrored in the plane."""
+        mirror_images: Array = points - 2.0 * self.above(points)[:, None] * self.normal
+        return mirror_images
 
 
 class _Solid:
@@ -72,37 +74,43 @@ class _Solid:
         self.edges = Edges(self.triangles)
 
     def section(self, point: Array, normal: Array, reach: float | None) -> Section | None:
-        """What the plane through a point cuts within `reach` mm of it, all there is for None."""
+        """Return the section by the plane through a point, within `reach` mm of it; unlimited for
+        None.
+        """
         above = (self.vertices - point) @ normal
         side = above[self.triangles] >= 0.0
         cut = np.flatnonzero(side.any(axis=1) & ~side.all(axis=1))
         if not len(cut):
             return None
         ends = self.edges.ends
-        known, of = np.unique(self.edges.of_triangle[cut].ravel(), return_inverse=True)
-        low, high = above[ends[known, 0]], above[ends[known, 1]]
+        edge_numbers, edge_index = np.unique(
+            self.edges.of_triangle[cut].ravel(), return_inverse=True
+        )
+        low, high = above[ends[edge_numbers, 0]], above[ends[edge_numbers, 1]]
         crossed = (low >= 0.0) != (high >= 0.0)
         share = np.where(crossed, low / np.where(crossed, low - high, 1.0), 0.0)
-        at = self.vertices[ends[known, 0]] + share[:, None] * (
-            self.vertices[ends[known, 1]] - self.vertices[ends[known, 0]]
+        crossings = self.vertices[ends[edge_numbers, 0]] + share[:, None] * (
+            self.vertices[ends[edge_numbers, 1]] - self.vertices[ends[edge_numbers, 0]]
         )
-        row = np.ravel(of).reshape(-1, 3)
+        row = np.ravel(edge_index).reshape(-1, 3)
         side = side[cut]
         following = np.roll(side, -1, axis=1)
         start = np.take_along_axis(row, np.argmax(side & ~following, axis=1)[:, None], axis=1)[:, 0]
         end = np.take_along_axis(row, np.argmax(~side & following, axis=1)[:, None], axis=1)[:, 0]
-        kept = np.ones(len(start), dtype=bool)
+        is_kept = np.ones(len(start), dtype=bool)
         if reach is not None:
-            size = len(known)
+            size = len(edge_numbers)
             label = connected_components(
                 coo_matrix((np.ones(len(start)), (start, end)), (size, size)), directed=False
             )[1]
-            away = np.zeros(label.max() + 1)
-            np.maximum.at(away, label[start], np.linalg.norm(at[start] - point, axis=1))
-            kept = away[label[start]] < reach
-        if not kept.any():
+            max_distance = np.zeros(label.max() + 1)
+            np.maximum.at(
+                max_distance, label[start], np.linalg.norm(crossings[start] - point, axis=1)
+            )
+            is_kept = max_distance[label[start]] < reach
+        if not is_kept.any():
             return None
-        a, b = at[start[kept]] - point, at[end[kept]] - point
+        a, b = crossings[start[is_kept]] - point, crossings[end[is_kept]] - point
         area = 0.5 * (np.cross(a, b) @ normal)
         total = float(area.sum())
         if abs(total) < 1e-9:
@@ -111,52 +119,67 @@ class _Solid:
         return Section(
             middle,
             abs(total),
-            float(np.linalg.norm(at[start[kept]] - middle, axis=1).max()),
+            float(np.linalg.norm(crossings[start[is_kept]] - middle, axis=1).max()),
             normal,
         )
 
-    def end(self, last: Section) -> _Plane | None:
-        """The flat face in which the solid ends after a section; None where there is none."""
+    def end(self, last_section: Section) -> _Plane | None:
+        """Return the flat face in which the solid ends after a section; None if it has none."""
         corner = self.vertices[self.triangles]
         doubled = doubled_areas(corner)
         size = np.linalg.norm(doubled, axis=1)
-        near = np.linalg.norm(corner - last.middle, axis=2).max(axis=1) < 2.0 * last.reach
+        is_near = (
+            np.linalg.norm(corner - last_section.middle, axis=2).max(axis=1)
+            < 2.0 * last_section.reach
+        )
         ahead = (
-            (((corner.mean(axis=1) - last.middle) * last.normal).sum(axis=1) > 0.0)
-            & near
+            (((corner.mean(axis=1) - last_section.middle) * last_section.normal).sum(axis=1) > 0.0)
+            & is_near
             & (size > 0.0)
         )
-        facing = ahead & (doubled @ last.normal > FACING * size)
+        facing = ahead & (doubled @ last_section.normal > FACING * size)
         if not facing.any():
             return None
         total: Array = doubled[facing].sum(axis=0)
         area = float(np.linalg.norm(total))
         return (
-            _Plane(corner[facing][0, 0], total / area) if area > ENDED * 2.0 * last.area else None
+            _Plane(corner[facing][0, 0], total / area)
+            if area > ENDED * 2.0 * last_section.area
+            else None
         )
 
 
-def centre_line(bodies: Sequence[Body], start: Array, way: Array, depth: float) -> Nodes:
-    """Points and directions of the line through the middles of a solid's sections by planes normal to it. It begins where
-    the solid stands on the plane through a point `start` (3,) with the unit normal `way`; depth: mm above that of the first
-    section. InputError GUIDE_NOT_FOUND."""
+def centre_line(bodies: Sequence[Body], start: Array, direction: Array, depth: float) -> Nodes:
+    """Return points and directions of the line through the middles of a solid's sections normal
+    to it.
+
+    It begins where the solid is on the plane through a point `start` (3,) with the unit
+    normal `direction`; depth: mm above that plane of the first section. Raises InputError
+    GUIDE_NOT_FOUND.
+    """
     solid = _Solid(bodies)
     name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
-    first = solid.section(start + depth * way, way, None)
-    if first is None or len(bodies) > 1:
+    first_section = solid.section(start + depth * direction, direction, None)
+    if first_section is None or len(bodies) > 1:
         raise _not_found(
             name, "it is several solids" if len(bodies) > 1 else "no section lies where it stands"
         )
-    found = _followed(solid, first, way)
-    if len(found) < 3:
+    sections = _trace_sections(solid, first_section, direction)
+    if len(sections) < 3:
         raise _not_found(name, "the solid ends after one section")
-    nodes, areas = _smoothed(solid, found, _Plane(start, way))
+    nodes, areas = _smooth_line(solid, sections, _Plane(start, direction))
     length = np.linalg.norm(np.diff(nodes.points, axis=0), axis=1).sum()
-    led = float(length * np.mean(areas)) / SolidMesh(bodies[0].vertices, bodies[0].triangles).volume
-    if not LED < led < 2.0 - LED:
+    volume_share = (
+        float(length * np.mean(areas)) / SolidMesh(bodies[0].vertices, bodies[0].triangles).volume
+    )
+    if not LED < volume_share < 2.0 - LED:
         raise _not_found(
             name,
-            Text("the line of {:.4g} mm leads through {:.3g} % of the volume", length, 100.0 * led),
+            Text(
+                "the line of {:.4g} mm leads through {:.3g} % of the volume",
+                length,
+                100.0 * volume_share,
+            ),
         )
     return nodes
 
@@ -172,81 +195,89 @@ def _not_found(name: str, why: str) -> InputError:
     )
 
 
-def _followed(solid: _Solid, first: Section, way: Array) -> list[Section]:
-    """Sections from the first one on to where the solid ends."""
-    found, normal = [first], way
-    stride = STEP_SHARE * first.reach
-    while len(found) < MAX_SECTIONS:
-        last = found[-1]
-        here: Section | None = solid.section(
-            last.middle + stride * normal, normal, REACH * last.reach
+def _trace_sections(solid: _Solid, first_section: Section, direction: Array) -> list[Section]:
+    """Return the sections from the first one to the end of the solid."""
+    sections, normal = [first_section], direction
+    stride = STEP_SHARE * first_section.reach
+    while len(sections) < MAX_SECTIONS:
+        last_section = sections[-1]
+        section: Section | None = solid.section(
+            last_section.middle + stride * normal, normal, REACH * last_section.reach
         )
         for _ in range(2):
-            if here is None:
+            if section is None:
                 break
-            chord = (here.middle - last.middle) / max(
-                float(np.linalg.norm(here.middle - last.middle)), 1e-9
+            chord = (section.middle - last_section.middle) / max(
+                float(np.linalg.norm(section.middle - last_section.middle)), 1e-9
             )
             turned = 2.0 * (chord @ normal) * chord - normal  # as along an arc
             ahead = chord + 0.5 * (turned - chord)
             ahead /= np.linalg.norm(ahead)
-            here = solid.section(here.middle, ahead, REACH * last.reach)
+            section = solid.section(section.middle, ahead, REACH * last_section.reach)
         if (
-            here is None
-            or here.area < ENDED * last.area
-            or (here.middle - last.middle) @ normal < 0.3 * stride
+            section is None
+            or section.area < ENDED * last_section.area
+            or (section.middle - last_section.middle) @ normal < 0.3 * stride
         ):
             break
-        found.append(here)
+        sections.append(section)
         normal = ahead
-    return found
+    return sections
 
 
-def _smoothed(solid: _Solid, found: Sequence[Section], start: _Plane) -> tuple[Nodes, Array]:
-    """The smooth line through the middles of sections by planes normal to it, from the plane where the solid stands; and the
-    areas of these sections."""
-    middles = np.array([one.middle for one in found])
-    size = float(np.mean([one.reach for one in found]))
-    areas = np.array([one.area for one in found])
-    end = solid.end(found[-1])
+def _smooth_line(solid: _Solid, sections: Sequence[Section], start: _Plane) -> tuple[Nodes, Array]:
+    """Return the smooth line through the middles of sections normal to it, from the base plane,
+    and the areas of the sections.
+    """
+    middles = np.array([section.middle for section in sections])
+    size = float(np.mean([section.reach for section in sections]))
+    areas = np.array([section.area for section in sections])
+    end = solid.end(sections[-1])
     for _ in range(ROUNDS):
-        line, places = _line(middles, start, end)
-        points, along = _at(line, places)
+        line, positions = _fit_line(middles, start, end)
+        points, along = _evaluate(line, positions)
         cuts = [solid.section(point, normal, REACH * size) for point, normal in zip(points, along)]
-        kept = [
-            one for one in cuts if one is not None and one.area > ENDED * float(np.median(areas))
+        valid_cuts = [
+            section
+            for section in cuts
+            if section is not None and section.area > ENDED * float(np.median(areas))
         ]
-        if len(kept) < 3:
+        if len(valid_cuts) < 3:
             break
         middles, areas = (
-            np.array([one.middle for one in kept]),
-            np.array([one.area for one in kept]),
+            np.array([section.middle for section in valid_cuts]),
+            np.array([section.area for section in valid_cuts]),
         )
-    line, places = _line(middles, start, end)
-    before, after = (
+    line, positions = _fit_line(middles, start, end)
+    length_before, length_after = (
         0.0 if plane is None else float(plane.above(middle))
         for plane, middle in ((start, middles[0]), (end, middles[-1]))
     )
     dense = np.linspace(
-        places[0] - before, places[-1] + max(-after, 0.0), NODES * (len(places) - 1) + 1
+        positions[0] - length_before,
+        positions[-1] + max(-length_after, 0.0),
+        NODES * (len(positions) - 1) + 1,
     )
-    return Nodes(*_at(line, dense)), areas
+    return Nodes(*_evaluate(line, dense)), areas
 
 
-def _line(middles: Array, start: _Plane, end: _Plane | None) -> tuple[CubicSpline, Array]:
-    """A smooth line past points (n, 3), and their places along it. It is as near to them as its third differences allow
-    (Whittaker 1923), so that its curvature goes from one value to the next without swinging; planes in which the solid ends
-    are its mirrors, so that it is normal to them."""
+def _fit_line(middles: Array, start: _Plane, end: _Plane | None) -> tuple[CubicSpline, Array]:
+    """Return a smooth line past points (n, 3), and the positions of the points along it.
+
+    It is as near to them as its third differences allow (Whittaker 1923), so that its
+    curvature changes without oscillation. Planes in which the solid ends are mirrors of the
+    line, so that it is normal to them.
+    """
     count = min(MIRRORED, len(middles))
-    after = np.zeros((0, 3)) if end is None else end.mirrored(middles[-count:][::-1])
-    whole = np.vstack([start.mirrored(middles[:count][::-1]), middles, after])
-    third = diags([-1.0, 3.0, -3.0, 1.0], [0, 1, 2, 3], shape=(len(whole) - 3, len(whole)))
+    mirrored_end = np.zeros((0, 3)) if end is None else end.mirrored(middles[-count:][::-1])
+    extended = np.vstack([start.mirrored(middles[:count][::-1]), middles, mirrored_end])
+    third = diags([-1.0, 3.0, -3.0, 1.0], [0, 1, 2, 3], shape=(len(extended) - 3, len(extended)))
     stiff = (SMOOTH / STEP_SHARE / TURN) ** 6
-    smooth = spsolve((identity(len(whole)) + stiff * third.T @ third).tocsc(), whole)
-    places = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(smooth, axis=0), axis=1))]
-    return CubicSpline(places, smooth), places[count : count + len(middles)]
+    smooth = spsolve((identity(len(extended)) + stiff * third.T @ third).tocsc(), extended)
+    positions = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(smooth, axis=0), axis=1))]
+    return CubicSpline(positions, smooth), positions[count : count + len(middles)]
 
 
-def _at(line: CubicSpline, places: Array) -> tuple[Array, Array]:
-    points, along = line(places), line(places, 1)
+def _evaluate(line: CubicSpline, positions: Array) -> tuple[Array, Array]:
+    points, along = line(positions), line(positions, 1)
     return points, along / np.linalg.norm(along, axis=1, keepdims=True)

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The field of planes normal to a guide curve: bodies cut layer by layer, each plane through what belongs to it alone.
+"""The field of planes normal to a guide curve: bodies cut layer by layer, each plane only
+through its own part of a body.
 
-A vertex belongs to the plane in which its nearest place of the guide is. That number, mm along the guide, takes the part of
-the height in sections by parallel planes: it says which edges a plane cuts and how loops close, so that a plane that meets a
-bent part twice cuts it once. Where it cuts an edge the edge and the plane themselves say.
+A vertex belongs to the plane at its nearest position on the guide. That number, mm along
+the guide, replaces the height in sections by parallel planes: it decides which edges a
+plane cuts and how loops close, so that a plane that meets a bent part twice cuts it once.
+The edge and the plane give the point of intersection.
 """
 
 from __future__ import annotations
@@ -27,21 +29,24 @@ from .layer import AlongLayer, between
 BENDS = np.cos(
     np.radians(10.0)
 )  # between the planes of the ends of an edge; edges that see more of a bend are halved
-BEYOND = 0.02  # of the extent of a section by which the guide may be outside of what encloses it
+MAX_OUTSIDE_SHARE = 0.02  # of the extent of a section: how far the guide may be outside its hull
 HEIGHT = "LAYER_HEIGHT"
 
 
 class AlongCuts(PlaneCuts):
-    """A body in the frame of the guide, prepared for sections by planes normal to it, of which `loops` gives points (m, 2)
-    in their own frames. The height of a vertex is how far (mm) along the guide its plane is; edges are so short that planes
-    change little along each. InputError GUIDE_TIGHT."""
+    """A body in the frame of the guide, prepared for sections by planes normal to it.
+
+    `loops` gives points (m, 2) in the frames of the planes. The height of a vertex is how far
+    (mm) along the guide its plane is; edges are short enough that planes change little along
+    each. Raises InputError GUIDE_TIGHT.
+    """
 
     def __init__(self, base: Base, body: Body) -> None:
         guide = base.surface
         assert isinstance(guide, Guide)
         points, triangles = base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)
-        more = True
-        while more:
+        was_split = True
+        while was_split:
             distances = guide.distance(points)
             if (point := guide.crossing(points, triangles, distances)) is not None:
                 raise InputError(
@@ -58,25 +63,36 @@ class AlongCuts(PlaneCuts):
             def bends(ends: Index, normals: Array = normals) -> Mask:
                 return np.asarray((normals[ends[0]] * normals[ends[1]]).sum(axis=1) < BENDS)
 
-            points, triangles, more = split_edges(points, triangles, bends)
+            points, triangles, was_split = split_edges(points, triangles, bends)
         super().__init__(np.column_stack([points[:, :2], distances]), triangles)
         self.guide, self.points = guide, points
 
     def _places(self, edge: Index, height: Array) -> Array:
-        known, of = np.unique(height, return_inverse=True)
-        poses = np.stack([self.guide.frame(way) for way in known.tolist()])[np.ravel(of)]
+        levels, level_index = np.unique(height, return_inverse=True)
+        poses = np.stack([self.guide.frame(s) for s in levels.tolist()])[np.ravel(level_index)]
         below, above = (
             self.points[ends[edge]] - poses[:, :3, 3] for ends in (self._lower, self._upper)
         )
-        near, far = ((one * poses[:, :3, 2]).sum(axis=1) for one in (below, above))
-        apart = np.where(np.abs(far - near) > 1e-12, far - near, 1.0)
-        point = below + np.clip(-near / apart, 0.0, 1.0)[:, None] * (above - below)
+        height_below, height_above = (
+            (offset * poses[:, :3, 2]).sum(axis=1) for offset in (below, above)
+        )
+        difference = np.where(
+            np.abs(height_above - height_below) > 1e-12, height_above - height_below, 1.0
+        )
+        point = below + np.clip(-height_below / difference, 0.0, 1.0)[:, None] * (above - below)
         return np.asarray(np.stack([(point * poses[:, :3, k]).sum(axis=1) for k in (0, 1)], axis=1))
 
 
 def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> list[Slice]:
-    """The layers of bodies on the planes 0, h, 2 h ... mm along the guide of the base. InputError TOO_LOW, GUIDE_TIGHT,
-    GUIDE_OUTSIDE; InfeasibleError LAYER_HEIGHT where a layer is higher or lower than `band` allows."""
+    """Return the layers of bodies on the planes 0, h, 2 h ... mm along the guide of the base.
+
+    Raises
+    ------
+    InputError
+        TOO_LOW, GUIDE_TIGHT, GUIDE_OUTSIDE.
+    InfeasibleError
+        LAYER_HEIGHT if a layer is higher or lower than `band` allows.
+    """
     guide, height = base.surface, strategy.layer_height
     assert isinstance(guide, Guide)
     cuts = [AlongCuts(base, body) for body in bodies]
@@ -94,17 +110,17 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> lis
             strategy.cut_at,
             0.99 * top / max(strategy.share_of_cut, 0.001),
         )
-    made: list[Slice] = []
+    layers_cut: list[Slice] = []
     for number, regions, issues in planes.cut_together(cuts, layers, strategy):
         surface = between(guide, number * height, (number + 1) * height, strategy.share_of_cut)
         layer = Slice(number, base, surface, regions, issues)
         if guide.reaches(
             (number + strategy.share_of_cut) * height
-        ):  # beyond, slanted ends may be aside
+        ):  # beyond, slanted ends may be to one side
             _refuse_outside(layer)
-        made.append(layer._replace(heights=_heights(layer), before=number / layers))
-    _refuse_uneven(made, strategy)
-    return made
+        layers_cut.append(layer._replace(heights=_heights(layer), share_before=number / layers))
+    _refuse_uneven(layers_cut, strategy)
+    return layers_cut
 
 
 def _heights(layer: Slice) -> tuple[float, float, float]:
@@ -124,23 +140,24 @@ def _heights(layer: Slice) -> tuple[float, float, float]:
     return float(high.min()), mean, float(high.max())
 
 
-def _refuse_uneven(made: Sequence[Slice], strategy: SolidParameters) -> None:
-    """InfeasibleError LAYER_HEIGHT at the worst place of all."""
-    height, most = (
+def _refuse_uneven(layers: Sequence[Slice], strategy: SolidParameters) -> None:
+    """Raise InfeasibleError LAYER_HEIGHT at the worst point of all layers."""
+    height, max_difference = (
         strategy.layer_height,
         strategy.band * strategy.layer_height + strategy.chord_error * 1e-3,
     )
     uneven = [
-        one
-        for one in made
-        if one.heights and max(height - one.heights[0], one.heights[2] - height) > most
+        layer
+        for layer in layers
+        if layer.heights
+        and max(height - layer.heights[0], layer.heights[2] - height) > max_difference
     ]
     if not uneven:
         return
     worst = max(
         uneven,
-        key=lambda one: (
-            max(height - one.heights[0], one.heights[2] - height) if one.heights else 0.0
+        key=lambda layer: (
+            max(height - layer.heights[0], layer.heights[2] - height) if layer.heights else 0.0
         ),
     )
     assert isinstance(worst.surface, AlongLayer) and worst.heights
@@ -153,7 +170,7 @@ def _refuse_uneven(made: Sequence[Slice], strategy: SolidParameters) -> None:
         "{:g} mm at {}; strategy.band allows {:.3g} %, and {:.3g} % would be needed: raise it, or choose a guide in the "
         "middle of the part or one that bends less",
         len(uneven),
-        len(made),
+        len(layers),
         worst.number,
         worst.heights[0],
         worst.heights[2],
@@ -171,20 +188,21 @@ def _refuse_uneven(made: Sequence[Slice], strategy: SolidParameters) -> None:
 
 
 def _refuse_outside(layer: Slice) -> None:
-    """InputError GUIDE_OUTSIDE where the guide goes through a plane, at its origin, outside of what encloses the section
-    there."""
+    """Raise InputError GUIDE_OUTSIDE if the guide crosses a plane, at its origin, outside the
+    hull of the section there.
+    """
     from scipy.spatial import ConvexHull
 
     points = np.vstack([border for border, _ in layer.borders])
     hull = ConvexHull(points)
-    away = float(hull.equations[:, 2].max())
-    if away > BEYOND * float(np.ptp(points, axis=0).max()):
+    distance = float(hull.equations[:, 2].max())
+    if distance > MAX_OUTSIDE_SHARE * float(np.ptp(points, axis=0).max()):
         raise InputError(
             "GUIDE_OUTSIDE",
             "strategy.guide",
             "the guide leaves the part: at layer {} it is {:.3g} mm off it, at {}; "
             "choose a guide in the part or along one of its edges, or guide: auto",
             layer.number,
-            away,
+            distance,
             layer.where(np.zeros(2)),
         )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Edges put together to a guide curve: one after the other, without gaps, forks and corners."""
+"""Edges joined to a guide curve: end to end, without gaps, forks and corners."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from ...issues import InputError
 from ...types import Array
 
 TOUCHING = 1e-3  # mm between the ends of edges that meet
-CORNER = np.radians(1.0)
-LEAST = 1e-3  # mm; shorter edges, and guides, are none
-BACK = np.radians(120.0)  # a corner that turns by more leads back
+CORNER_RAD = np.radians(1.0)
+MIN_LENGTH_MM = 1e-3  # mm; shorter edges, and guides, are none
+MAX_TURN_RAD = np.radians(120.0)  # a corner that turns by more leads back
 WHERE = "strategy.guide"
 
 
@@ -30,37 +30,40 @@ class Nodes(NamedTuple):
         return Nodes(self.points[::-1], -self.tangents[::-1])
 
 
-def chained(edges: Sequence[Nodes]) -> Nodes:
-    """One curve of edges in any order and direction; it runs as the first of those given does.
+def chain_edges(edges: Sequence[Nodes]) -> Nodes:
+    """Return one curve of edges in any order and direction; it runs as the first given edge
+    does.
 
-    InputError GUIDE_OPEN, GUIDE_CLOSED, GUIDE_CORNER, GUIDE_DOUBLES_BACK.
+    Raises InputError GUIDE_OPEN, GUIDE_CLOSED, GUIDE_CORNER, GUIDE_DOUBLES_BACK.
     """
-    left = [
-        edge for edge in edges if np.linalg.norm(np.diff(edge.points, axis=0), axis=1).sum() > LEAST
+    remaining = [
+        edge
+        for edge in edges
+        if np.linalg.norm(np.diff(edge.points, axis=0), axis=1).sum() > MIN_LENGTH_MM
     ]
-    if not left:
+    if not remaining:
         raise InputError(
             "GUIDE_OPEN",
             WHERE,
             "the guide has no edge with a length; choose edges, a wire or a sketch",
         )
-    chain = [left.pop(0)]
-    while left:
+    chain = [remaining.pop(0)]
+    while remaining:
         ends = chain[0].points[0], chain[-1].points[-1]
-        found = next(
+        match = next(
             (
                 (k, behind, edge if straight else edge.reversed())
-                for k, edge in enumerate(left)
+                for k, edge in enumerate(remaining)
                 for behind, end in ((True, ends[1]), (False, ends[0]))
                 for straight in (True, False)
                 if np.linalg.norm(edge.points[0 if straight == behind else -1] - end) < TOUCHING
             ),
             None,
         )
-        if found is None:
-            away = min(
+        if match is None:
+            gap = min(
                 float(np.linalg.norm(edge.points[k] - end))
-                for edge in left
+                for edge in remaining
                 for k in (0, -1)
                 for end in ends
             )
@@ -69,14 +72,14 @@ def chained(edges: Sequence[Nodes]) -> Nodes:
                 WHERE,
                 "its edges are not one curve: {} of {} do not go on from where the others end, at {} "
                 "and {}, and the nearest is {:.3g} mm off; choose edges that meet end to end",
-                len(left),
+                len(remaining),
                 len(edges),
                 place(ends[0]),
                 place(ends[1]),
-                away,
+                gap,
             )
-        k, behind, edge = found
-        left.pop(k)
+        k, behind, edge = match
+        remaining.pop(k)
         chain = [*chain, edge] if behind else [edge, *chain]
     _refuse_corners(chain)
     if np.linalg.norm(chain[0].points[0] - chain[-1].points[-1]) < TOUCHING:
@@ -94,24 +97,24 @@ def chained(edges: Sequence[Nodes]) -> Nodes:
 
 
 def _refuse_corners(chain: Sequence[Nodes]) -> None:
-    for before, after in zip(chain, chain[1:]):
-        turn = float(np.arccos(np.clip(before.tangents[-1] @ after.tangents[0], -1.0, 1.0)))
-        at = place(after.points[0])
-        if turn > BACK:
+    for edge, next_edge in zip(chain, chain[1:]):
+        turn = float(np.arccos(np.clip(edge.tangents[-1] @ next_edge.tangents[0], -1.0, 1.0)))
+        position = place(next_edge.points[0])
+        if turn > MAX_TURN_RAD:
             raise InputError(
                 "GUIDE_DOUBLES_BACK",
                 WHERE,
                 "it turns back by {:.4g} deg at {}: layers would go through what was "
                 "deposited; choose edges that lead on",
                 np.degrees(turn),
-                at,
+                position,
             )
-        if turn > CORNER:
+        if turn > CORNER_RAD:
             raise InputError(
                 "GUIDE_CORNER",
                 WHERE,
                 "it has a corner of {:.3g} deg at {}, where layers would have no height on the "
                 "inside; round it with a radius, or choose guide: auto",
                 np.degrees(turn),
-                at,
+                position,
             )

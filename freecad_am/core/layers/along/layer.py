@@ -24,22 +24,22 @@ class AlongLayer(Flat):
     slope: Array
 
     def unroll(self, points: Array) -> Array:
-        """(n, 2) mm."""
-        found: Array = (points - self.pose[:3, 3]) @ self.pose[:3, :2]
-        return found
+        """Return points on the plane, (n, 2) mm."""
+        unrolled: Array = (points - self.pose[:3, 3]) @ self.pose[:3, :2]
+        return unrolled
 
     def wrap(self, flat: Array) -> Wrapped:
-        """Every point onto the plane where that stands."""
+        """Return every point at its position on the plane."""
         points = flat @ self.pose[:3, :2].T + self.pose[:3, 3]
         return Wrapped(points, np.tile(self.pose[:3, 2], (len(flat), 1)), np.zeros(len(flat)))
 
     def heights(self, flat: Array) -> Array:
-        """(n,) mm from this plane to the next at places (n, 2)."""
-        found: Array = self.height + flat @ self.slope
-        return found
+        """Return the distance (n,) mm from this plane to the next at points (n, 2)."""
+        heights: Array = self.height + flat @ self.slope
+        return heights
 
-    def followed(self, flat: Array, sheet: float) -> AlongLayer:
-        """The same plane."""
+    def for_sheet(self, flat: Array, sheet: float) -> AlongLayer:
+        """Return the same plane."""
         return self
 
     def axes(self, normals: Array) -> tuple[Array, Array]:
@@ -49,9 +49,12 @@ class AlongLayer(Flat):
 
 
 def between(guide: Guide, low: float, high: float, share: float = 0.5) -> AlongLayer:
-    """The layer on the plane at `low` mm along a guide, as high as it is to the plane at `high`, measured where it is cut, a
-    share of the way up, along the normal there."""
-    start, middle, top = (guide.frame(way) for way in (low, low + share * (high - low), high))
+    """Return the layer on the plane at `low` mm along a guide, up to the plane at `high`.
+
+    Its height is measured where it is cut, a share of the distance up, along the normal
+    there.
+    """
+    start, middle, top = (guide.frame(s) for s in (low, low + share * (high - low), high))
     height, slope = 0.0, np.zeros(2)
     for pose, sense in ((top, 1.0), (start, -1.0)):
         normal = pose[:3, 2]

@@ -18,7 +18,9 @@ OUTSIDE = -1e-6  # least share of a corner for a place that is in a triangle
 
 
 class Place(NamedTuple):
-    """Where points are in a picture: the triangle (n,) and the shares (n, 3) of its corners, below 0 beside it."""
+    """Positions in a picture: the triangle (n,) and the shares (n, 3) of its corners, negative
+    outside it.
+    """
 
     triangle: Index
     share: Array
@@ -32,62 +34,64 @@ class Chart:
     flat: Array
 
     def wrap(self, points: Array) -> Array:
-        """The places (n, 3) in the part of points (n, 2) of the picture; beside it the nearest triangle goes on."""
-        return self.at(self.find(points))
+        """Return the points (n, 3) in the part of points (n, 2) of the picture; outside it the
+        nearest triangle is extended.
+        """
+        return self.to_part(self.find(points))
 
-    def at(self, place: Place) -> Array:
-        """Where in the part (n, 3) places of the picture are."""
+    def to_part(self, location: Place) -> Array:
+        """Return the points (n, 3) in the part at locations in the picture."""
         wrapped: Array = np.einsum(
-            "nk,nkc->nc", place.share, self.mesh.vertices[self.mesh.faces[place.triangle]]
+            "nk,nkc->nc", location.share, self.mesh.vertices[self.mesh.faces[location.triangle]]
         )
         return wrapped
 
-    def heading(self, place: Place) -> Array:
-        """The way (n, 3) in the part that the picture's x runs there, not of unit length."""
+    def heading(self, location: Place) -> Array:
+        """Return the direction (n, 3) in the part of the picture's x, not of unit length."""
         corners, flat = (
-            of[self.mesh.faces[place.triangle]] for of in (self.mesh.vertices, self.flat)
+            values[self.mesh.faces[location.triangle]] for values in (self.mesh.vertices, self.flat)
         )
-        one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        edge_a, edge_b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         a, b = flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]
-        way: Array = b[:, 1, None] * one - a[:, 1, None] * other
-        return way
+        heading: Array = b[:, 1, None] * edge_a - a[:, 1, None] * edge_b
+        return heading
 
     def find(self, points: Array) -> Place:
-        """The triangles of points (n, 2), and where in them."""
-        square, here = self._squares.at(points)
+        """Return the triangles of points (n, 2), and the positions in them."""
+        square, is_covered = self._squares.find_square(points)
         count = self._squares.count[square]
-        of = np.repeat(np.arange(len(points)), count)
-        at = (
+        point_number = np.repeat(np.arange(len(points)), count)
+        index = (
             np.repeat(self._squares.first[square], count)
-            + np.arange(len(of))
+            + np.arange(len(point_number))
             - np.repeat(np.cumsum(count) - count, count)
         )
-        triangle = self._squares.triangles[at]
-        share = self._shares(triangle, points[of])
+        triangle = self._squares.triangles[index]
+        share = self._shares(triangle, points[point_number])
         inmost = share.min(axis=1)
         best = np.full(len(points), -np.inf)
-        np.maximum.at(best, of, inmost)
-        first = np.flatnonzero(inmost == best[of])[::-1]
-        chosen = np.full(len(points), -1, dtype=np.intp)
-        chosen[of[first]] = triangle[first]
-        lost = np.flatnonzero((best < OUTSIDE) | ~here)
-        if len(lost):
-            chosen[lost] = self._nearest(points[lost])
-        return Place(chosen, self._shares(chosen, points))
+        np.maximum.at(best, point_number, inmost)
+        inmost_rows = np.flatnonzero(inmost == best[point_number])[::-1]
+        best_triangle = np.full(len(points), -1, dtype=np.intp)
+        best_triangle[point_number[inmost_rows]] = triangle[inmost_rows]
+        uncovered = np.flatnonzero((best < OUTSIDE) | ~is_covered)
+        if len(uncovered):
+            best_triangle[uncovered] = self._nearest(points[uncovered])
+        return Place(best_triangle, self._shares(best_triangle, points))
 
     def _shares(self, triangle: Index, points: Array) -> Array:
         a, b, c = (self.flat[self.mesh.faces[triangle, k]] for k in range(3))
-        one, other, at = b - a, c - a, points - a
-        whole = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
-        whole = np.where(whole == 0.0, 1e-300, whole)
-        to_b = (at[:, 0] * other[:, 1] - at[:, 1] * other[:, 0]) / whole
-        to_c = (one[:, 0] * at[:, 1] - one[:, 1] * at[:, 0]) / whole
+        edge_a, edge_b, offset = b - a, c - a, points - a
+        area = edge_a[:, 0] * edge_b[:, 1] - edge_a[:, 1] * edge_b[:, 0]
+        area = np.where(area == 0.0, 1e-300, area)
+        to_b = (offset[:, 0] * edge_b[:, 1] - offset[:, 1] * edge_b[:, 0]) / area
+        to_c = (edge_a[:, 0] * offset[:, 1] - edge_a[:, 1] * offset[:, 0]) / area
         return np.stack([1.0 - to_b - to_c, to_b, to_c], axis=1)
 
     def _nearest(self, points: Array) -> Index:
-        """The triangles (n,) whose middles are nearest."""
-        found: Index = self._middles.query(points)[1].astype(np.intp)
-        return found
+        """Return the triangles (n,) with the nearest middles."""
+        triangles: Index = self._middles.query(points)[1].astype(np.intp)
+        return triangles
 
     @cached_property
     def _middles(self) -> cKDTree:
@@ -100,8 +104,11 @@ class Chart:
 
 
 class _Squares:
-    """Triangles (m, 3, 2) sorted into squares of a plane. triangles: (k,), those of each square in a row; first, count: (s,)
-    where they begin and how many they are."""
+    """Triangles (m, 3, 2) sorted into squares of a plane.
+
+    triangles: (k,), consecutive for each square; first, count: (s,) where they begin and how
+    many they are.
+    """
 
     def __init__(self, corners: Array, size: float) -> None:
         self.low, self.size = corners.min(axis=(0, 1)), size
@@ -110,22 +117,24 @@ class _Squares:
         self.shape = high.max(axis=0) + 1
         across = high - low + 1
         total = across[:, 0] * across[:, 1]
-        of = np.repeat(np.arange(len(corners)), total)
-        number = np.arange(len(of)) - np.repeat(np.cumsum(total) - total, total)
+        triangle = np.repeat(np.arange(len(corners)), total)
+        number = np.arange(len(triangle)) - np.repeat(np.cumsum(total) - total, total)
         square = (
-            (low[of, 0] + number // across[of, 1]) * self.shape[1]
-            + low[of, 1]
-            + number % across[of, 1]
+            (low[triangle, 0] + number // across[triangle, 1]) * self.shape[1]
+            + low[triangle, 1]
+            + number % across[triangle, 1]
         )
         order = np.argsort(square, kind="stable")
-        self.triangles = of[order]
+        self.triangles = triangle[order]
         self.count = np.bincount(square, minlength=int(self.shape.prod()))
         self.first = np.cumsum(self.count) - self.count
 
-    def at(self, points: Array) -> tuple[Index, Mask]:
-        """The square (n,) of points (n, 2), and whether there is one with triangles; else any."""
+    def find_square(self, points: Array) -> tuple[Index, Mask]:
+        """Return the square (n,) of points (n, 2), and whether it exists and has triangles; if not,
+        any square.
+        """
         cell = np.floor((points - self.low) / self.size).astype(np.intp)
-        here = ((cell >= 0) & (cell < self.shape)).all(axis=1)
+        is_inside = ((cell >= 0) & (cell < self.shape)).all(axis=1)
         cell = np.clip(cell, 0, self.shape - 1)
         square = cell[:, 0] * self.shape[1] + cell[:, 1]
-        return square, here & (self.count[square] > 0)
+        return square, is_inside & (self.count[square] > 0)

@@ -10,13 +10,16 @@ from ..curved.geodesic import GeodesicField
 from .chart import Place
 from .charted import Charted
 
-CHORD = 1.0  # steps of the grid; edges are looked at so often
+CHORD = 1.0  # steps of the grid between tests of an edge
 
 
 @dataclass(frozen=True, eq=False)
 class ChartLayer(Charted):
-    """chart: of the piece, where the part was cut. distance: mm through the part at which its beads lie. It is stretched by
-    no more than `geodesic.Piece.stretch`."""
+    """A layer on the chart of a piece, where the part was cut.
+
+    distance: mm through the part to its beads. Its stretch is at most
+    `geodesic.Piece.stretch`.
+    """
 
     field: GeodesicField
     distance: float
@@ -31,7 +34,7 @@ class ChartLayer(Charted):
         """It bends as ways through the part lead round corners."""
         return True
 
-    def in_part(self, place: Place) -> tuple[Array, Array]:
-        """Through the chart onto the cut, and along the way through the part to where beads lie."""
-        cut = self.chart.at(place)
+    def in_part(self, location: Place) -> tuple[Array, Array]:
+        """Map the chart onto the cut, and from there through the part to the position of the beads."""
+        cut = self.chart.to_part(location)
         return self.field.onto(cut, self.distance), self.field.directions(cut)

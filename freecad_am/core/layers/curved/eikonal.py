@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Distance by the way through a solid, on a grid: |grad u| = 1 inside, u given at seeds.
+"""Distance through a solid, on a grid: |grad u| = 1 inside, u given at seeds.
 
-Solved by the fast iterative method (Jeong and Whitaker 2008), which updates whole fronts at once, with Godunov's upwind
-scheme; then once more, band by band outwards, with second differences where there are any (Sethian 1999, 4.1).
+Solved by the fast iterative method (Jeong and Whitaker 2008), which updates whole fronts
+at once, with Godunov's upwind scheme. A second pass, band by band outwards, uses second
+differences where they exist (Sethian 1999, 4.1).
 """
 
 from __future__ import annotations
@@ -20,21 +21,26 @@ ROUNDS = 3  # in a band
 
 
 class Links(NamedTuple):
-    """Nodes inside, numbered through: nodes (n,) of the flat grid; beside (6, n) the neighbours behind and ahead along x,
-    along y, along z; n where there is none inside."""
+    """Consecutively numbered nodes inside.
+
+    nodes: (n,) of the flat grid. neighbours: (6, n) behind and ahead along x, along y, along
+    z; n where there is no node inside.
+    """
 
     nodes: Index
     neighbours: Index
 
-    def beyond(self, side: int, nodes: Index) -> Index:
-        """The second neighbours (k,) of nodes (k,) on one of the six sides; n where there is none."""
+    def second_neighbours(self, side: int, nodes: Index) -> Index:
+        """Return the second neighbours (k,) of nodes (k,) on one of the six sides; n where none
+        exists.
+        """
         column = np.append(self.neighbours[side], len(self.nodes))
-        found: Index = column[column[nodes]]
-        return found
+        second: Index = column[column[nodes]]
+        return second
 
 
 def links(grid: Voxels) -> Links:
-    """The neighbours of all nodes inside."""
+    """Return the neighbours of all nodes inside."""
     nodes = grid.nodes
     number = np.full(grid.solid.size + 1, len(nodes), dtype=np.intp)
     number[nodes] = np.arange(len(nodes))
@@ -45,28 +51,30 @@ def links(grid: Voxels) -> Links:
 
 
 def arrival(linked: Links, step: float, seeds: Index, values: Array) -> Array:
-    """How far (n,) mm nodes are from the seeds (k,), of which the values (k,) are known; inf where no way leads."""
+    """Return the distances (n,) mm of nodes from the seeds (k,) with the values (k,); inf where
+    no path leads.
+    """
     u = np.full(len(linked.nodes) + 1, np.inf)
     u[seeds] = values
     fixed = np.zeros(len(u), dtype=bool)
     fixed[seeds] = fixed[-1] = True
-    active = _around(linked, seeds, fixed)
+    active = _find_active(linked, seeds, fixed)
     while len(active):
-        found = _godunov(
+        updated = _godunov(
             u[linked.neighbours[0::2, active]], u[linked.neighbours[1::2, active]], step
         )
-        better = found < u[active] - CONVERGED * step
-        u[active[better]] = found[better]
-        active = _around(linked, active[better], fixed)
-    return _sharpened(linked, step, u, fixed)[:-1]
+        better = updated < u[active] - CONVERGED * step
+        u[active[better]] = updated[better]
+        active = _find_active(linked, active[better], fixed)
+    return _refine_second_order(linked, step, u, fixed)[:-1]
 
 
-def _around(linked: Links, nodes: Index, fixed: Mask) -> Index:
-    """The nodes beside some, without those that are fixed."""
+def _find_active(linked: Links, nodes: Index, fixed: Mask) -> Index:
+    """Return the nodes adjacent to the given ones, without fixed nodes."""
     marked = np.zeros(len(fixed), dtype=bool)
     marked[linked.neighbours[:, nodes]] = True
-    found: Index = np.flatnonzero(marked & ~fixed)
-    return found
+    active_nodes: Index = np.flatnonzero(marked & ~fixed)
+    return active_nodes
 
 
 def _godunov(behind: Array, ahead: Array, step: float) -> Array:
@@ -75,61 +83,72 @@ def _godunov(behind: Array, ahead: Array, step: float) -> Array:
 
 
 def _root(values: Array, steps: Array) -> Array:
-    """The larger root u (k,) of sum ((u - v) / h)^2 = 1 over those of three v (3, k) with steps h that are below u."""
+    """Return the larger root u (k,) of sum ((u - v) / h)^2 = 1 over the v (3, k) below u, with
+    steps h.
+    """
     order = np.argsort(values, axis=0, kind="stable")
     v, h = np.take_along_axis(values, order, axis=0), np.take_along_axis(steps, order, axis=0)
-    found: Array = v[0] + h[0]
-    weight, first, second = np.zeros(v.shape[1]), np.zeros(v.shape[1]), np.zeros(v.shape[1])
+    root_value: Array = v[0] + h[0]
+    weight, first_moment, second_moment = (
+        np.zeros(v.shape[1]),
+        np.zeros(v.shape[1]),
+        np.zeros(v.shape[1]),
+    )
     base = np.where(
         np.isfinite(v[0]), v[0], 0.0
-    )  # relative to the least: far from the seeds squares would lose digits
+    )  # relative to the smallest value: far from the seeds squares would lose digits
     for k in range(3):
-        use = (found > v[k]) & np.isfinite(v[k])
+        use = (root_value > v[k]) & np.isfinite(v[k])
         relative = np.where(use, v[k] - base, 0.0)
         share = np.where(use, h[k] ** -2, 0.0)
-        weight, first, second = (
+        weight, first_moment, second_moment = (
             weight + share,
-            first + share * relative,
-            second + share * relative**2,
+            first_moment + share * relative,
+            second_moment + share * relative**2,
         )
-        inside = first**2 - weight * (second - 1.0)
-        root = base + (first + np.sqrt(np.maximum(inside, 0.0))) / np.maximum(weight, 1e-300)
-        found = np.where(use & (inside >= 0.0), root, found)
-    return found
+        inside = first_moment**2 - weight * (second_moment - 1.0)
+        root = base + (first_moment + np.sqrt(np.maximum(inside, 0.0))) / np.maximum(weight, 1e-300)
+        root_value = np.where(use & (inside >= 0.0), root, root_value)
+    return root_value
 
 
-def _sharpened(linked: Links, step: float, u: Array, fixed: Mask) -> Array:
-    """The same distances (n + 1,) with second differences, from the seeds outwards."""
+def _refine_second_order(linked: Links, step: float, u: Array, fixed: Mask) -> Array:
+    """Return the same distances (n + 1,) with second differences, from the seeds outwards."""
     free = np.flatnonzero(~fixed & np.isfinite(u))
     order = free[np.argsort(u[free], kind="stable")]
     band = np.floor(u[order] / (BAND * step))
     sharp = u.copy()
-    for some in np.split(order, np.flatnonzero(np.diff(band)) + 1):
-        if not len(some):
+    for block in np.split(order, np.flatnonzero(np.diff(band)) + 1):
+        if not len(block):
             continue
-        nearest, steps = _upwind(linked, step, u, sharp, some)
+        nearest, steps = _upwind(linked, step, u, sharp, block)
         for _ in range(ROUNDS):
-            sharp[some] = _root(nearest, steps)
-            nearest, steps = _upwind(linked, step, u, sharp, some)
+            sharp[block] = _root(nearest, steps)
+            nearest, steps = _upwind(linked, step, u, sharp, block)
     return sharp
 
 
 def _upwind(
-    linked: Links, step: float, first: Array, sharp: Array, nodes: Index
+    linked: Links, step: float, first_order: Array, sharp: Array, nodes: Index
 ) -> tuple[Array, Array]:
-    """What stands for the neighbour along each axis, and its step, (3, k): of second order where the second node behind it
-    is no farther from the seeds. `first` decides which neighbour is upwind."""
+    """Return the upwind value along each axis and its step, (3, k).
+
+    They are of second order where the second node is no farther from the seeds. `first_order`
+    decides which neighbour is upwind.
+    """
     values, steps = np.full((3, len(nodes)), np.inf), np.full((3, len(nodes)), step)
     for axis in range(3):
         sides = linked.neighbours[2 * axis : 2 * axis + 2, nodes]
-        lower = np.argmin(first[sides], axis=0)
-        near = sides[lower, np.arange(len(nodes))]
-        far = np.where(
-            lower == 0, linked.beyond(2 * axis, nodes), linked.beyond(2 * axis + 1, nodes)
+        lower = np.argmin(first_order[sides], axis=0)
+        first_node = sides[lower, np.arange(len(nodes))]
+        second_node = np.where(
+            lower == 0,
+            linked.second_neighbours(2 * axis, nodes),
+            linked.second_neighbours(2 * axis + 1, nodes),
         )
-        upwind = first[near] < first[nodes]
-        two = upwind & (first[far] <= first[near])
-        a, b = sharp[near], np.where(two, sharp[far], 0.0)
+        upwind = first_order[first_node] < first_order[nodes]
+        two = upwind & (first_order[second_node] <= first_order[first_node])
+        a, b = sharp[first_node], np.where(two, sharp[second_node], 0.0)
         values[axis] = np.where(
             two, (4.0 * np.where(two, a, 0.0) - b) / 3.0, np.where(upwind, a, np.inf)
         )

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The fields of curved layers: by the way through the part from where it stands (geodesic), or straight from there
-(offset)."""
+"""The fields of curved layers: distance through the part from its start (geodesic), or
+straight from there (offset).
+"""
 
 from __future__ import annotations
 
@@ -19,15 +20,21 @@ from . import geodesic
 from .geodesic import GeodesicField
 from .grid import COARSE, step_of
 
-STANDING = 0.05  # layer heights from the plane or the substrate; facets so near to it stand there
+CONTACT_HEIGHTS = (
+    0.05  # layer heights from the plane or the substrate; facets this near to it are on it
+)
 UNREACHED = 0.002  # share of a part that no way need lead to: rounding at corners
 FACETS = 1.5  # chord errors between triangles of a face, however made
-REPORTED_DISTORTION = 0.05  # distortion of a piece that is told
+REPORTED_DISTORTION = 0.05  # distortion of a piece above which it is reported
 
 
 def slices(solids: SolidsOnHub, group: Group, strategy: SolidParameters) -> Iterator[Slice]:
-    """The layers of a group of solids outwards from the plane of its base and the surroundings that they touch, or from the
-    start faces; several of one number where a layer is in pieces. InputError TOO_FINE, NOT_STANDING, NOT_CONNECTED."""
+    """Yield the layers of a group of solids, outwards from the base plane and the surroundings
+    they touch, or from start faces.
+
+    A layer in pieces gives several slices of one number. Raises InputError TOO_FINE,
+    NOT_STANDING, NOT_CONNECTED.
+    """
     _refuse(strategy)
     base, bodies = group.base, group.bodies
     start = (
@@ -39,7 +46,7 @@ def slices(solids: SolidsOnHub, group: Group, strategy: SolidParameters) -> Iter
     ]
     name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
     worst, height, cut = 0.0, strategy.layer_height, max(strategy.share_of_cut, 1e-3)
-    volume = sum(one.volume for one in meshes)
+    volume = sum(solid.volume for solid in meshes)
     step = step_of(volume, height)
     if step > COARSE * height:
         raise InputError(
@@ -84,17 +91,17 @@ def slices(solids: SolidsOnHub, group: Group, strategy: SolidParameters) -> Iter
                 ChartLayer(chart, field, number * height),
                 regions,
                 issues,
-                before=number / layers,
+                share_before=number / layers,
             )
 
 
 def _refuse(strategy: SolidParameters) -> None:
-    """InputError NOT_FOR_FAMILY for what only plane layers have."""
-    for key, given, instead in (
+    """Raise InputError NOT_FOR_FAMILY for parameters that only plane layers have."""
+    for key, is_set, instead in (
         ("margin", strategy.margin != 0.0, "0 mm"),
         ("solid_layers", strategy.solid_layers != 0, "0"),
     ):
-        if given:
+        if is_set:
             raise InputError(
                 "NOT_FOR_FAMILY",
                 f"strategy.{key}",
@@ -107,28 +114,39 @@ def _field(
     solids: Sequence[SolidMesh],
     substrate: Sequence[Array],
     name: str,
-    chosen: Array | None,
+    start_faces: Array | None,
     step: float,
     strategy: SolidParameters,
 ) -> GeodesicField:
-    near = STANDING * strategy.layer_height
-    if chosen is None:
-        below = [triangles for triangles in substrate if triangles[:, :, 2].min() < -near]
-        # what is carried by something that reaches below it has its lowest place in the air, not on the platform
-        held = any(len(_standing(one, below, near, plane=False)) for one in solids)
-        start = np.concatenate([_standing(one, substrate, near, plane=not held) for one in solids])
+    tolerance = CONTACT_HEIGHTS * strategy.layer_height
+    if start_faces is None:
+        below = [triangles for triangles in substrate if triangles[:, :, 2].min() < -tolerance]
+        # the lowest point of a part on a body that reaches below it is in the air, not on the platform
+        is_carried = any(
+            len(_find_start_faces(solid, below, tolerance, plane=False)) for solid in solids
+        )
+        start = np.concatenate(
+            [
+                _find_start_faces(solid, substrate, tolerance, plane=not is_carried)
+                for solid in solids
+            ]
+        )
     else:
-        near = max(near, FACETS * strategy.chord_error)
-        start = np.concatenate([_standing(one, [chosen], near, plane=False) for one in solids])
+        tolerance = max(tolerance, FACETS * strategy.chord_error)
+        start = np.concatenate(
+            [_find_start_faces(solid, [start_faces], tolerance, plane=False) for solid in solids]
+        )
         if not len(start):
-            away = min(float(np.abs(_to(chosen, one.vertices, near)).min()) for one in solids)
+            gap = min(
+                float(np.abs(_to(start_faces, solid.vertices, tolerance)).min()) for solid in solids
+            )
             raise InputError(
                 "NOT_STANDING",
                 "strategy.start_faces",
                 "no face of {} lies on the faces chosen to start from, which are "
                 "{:.4g} mm away; choose faces that it touches, or none",
                 name,
-                away,
+                gap,
             )
     try:
         field = geodesic.field(solids, start, step, through=strategy.layers == "geodesic")
@@ -151,24 +169,29 @@ def _field(
     return field
 
 
-def _standing(
-    solid: SolidMesh, substrate: Sequence[Array], near: float, plane: bool = True
+def _find_start_faces(
+    solid: SolidMesh, substrate: Sequence[Array], tolerance: float, plane: bool = True
 ) -> Array:
-    """The triangles (k, 3, 3) of a solid that lie on the plane z = 0 facing down, or on triangles of the substrate, to
-    `near` mm."""
+    """Return the triangles (k, 3, 3) of a solid on the plane z = 0 facing down, or on triangles
+    of the substrate, to `tolerance` mm.
+    """
     corners = solid.vertices[solid.triangles]
-    chosen = plane & (np.abs(corners[:, :, 2]) < near).all(axis=1) & (solid.units[:, 2] < -0.5)
+    is_start = (
+        plane & (np.abs(corners[:, :, 2]) < tolerance).all(axis=1) & (solid.units[:, 2] < -0.5)
+    )
     for triangles in substrate:
-        low, high = triangles.min(axis=(0, 1)) - near, triangles.max(axis=(0, 1)) + near
-        asked = np.flatnonzero(((corners > low) & (corners < high)).all(axis=(1, 2)))
-        if len(asked):
-            away = np.abs(_to(triangles, corners[asked].reshape(-1, 3), near)).reshape(-1, 3)
-            chosen[asked[(away < near).all(axis=1)]] = True
-    found: Array = corners[chosen]
-    return found
+        low, high = triangles.min(axis=(0, 1)) - tolerance, triangles.max(axis=(0, 1)) + tolerance
+        candidates = np.flatnonzero(((corners > low) & (corners < high)).all(axis=(1, 2)))
+        if len(candidates):
+            distance = np.abs(
+                _to(triangles, corners[candidates].reshape(-1, 3), tolerance)
+            ).reshape(-1, 3)
+            is_start[candidates[(distance < tolerance).all(axis=1)]] = True
+    start_triangles: Array = corners[is_start]
+    return start_triangles
 
 
-def _to(triangles: Array, points: Array, near: float) -> Array:
-    """Distances (n,) mm of points from triangles (k, 3, 3), with a sign."""
+def _to(triangles: Array, points: Array, tolerance: float) -> Array:
+    """Return signed distances (n,) mm of points from triangles (k, 3, 3)."""
     under = SolidMesh(triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3))
-    return Search(under, 4.0 * near).signed(points)[0]
+    return Search(under, 4.0 * tolerance).signed(points)[0]

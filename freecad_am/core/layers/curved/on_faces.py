@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The field of layers on faces: each a layer height above the one before, along the faces' normals.
+"""The field of layers on faces: each a layer height above the one before, along the faces'
+normals.
 
-Faces are cut into pieces that can be laid flat once; every layer lays its own surface flat, so that beads are as far apart
-as they are measured there, on the outermost layer of a bent face too.
+Faces are cut once into pieces that can be flattened. Every layer flattens its own
+surface, so beads have the right spacing there, on the outermost layer of a bent face too.
 """
 
 from __future__ import annotations
@@ -26,16 +27,14 @@ from ...parameters.filled import CladdingParameters
 from ...types import Array
 from ..charts.chart import Chart, Place
 from ..charts.charted import Charted, axes
-from ..charts.flattening import flattened
-from ..charts.parted import borders, parted, stretch_of
+from ..charts.flattening import flatten
+from ..charts.parted import borders, split_flattenable, stretch_of
 from ..margins import BORDER
 from ..surface import Slice
 
 PART = Base("the part", Plane(), np.eye(4))  # charts are in its coordinates
 FOLDED = 0.05  # share of its area that a triangle keeps in a layer that does not fold
-PROBE = (
-    0.15  # of the extent of a picture, about the middle of it, along which its direction is told
-)
+PROBE = 0.15  # of the extent of a picture: length about its middle along which its direction is measured
 ROUNDS = 5  # of turning it: between bent ends the way is not the picture's
 HALVES = 4  # of an edge of a border, where that bows
 
@@ -55,58 +54,65 @@ class FaceLayer(Charted):
         """A usual edge of the mesh."""
         return self.chart.mesh.typical_edge
 
-    def in_part(self, place: Place) -> tuple[Array, Array]:
-        """The exact places above the faces, and their normals."""
-        near = np.einsum(
-            "nk,nkc->nc", place.share, self.feet[self.chart.mesh.faces[place.triangle]]
+    def in_part(self, location: Place) -> tuple[Array, Array]:
+        """Return the exact points above the faces, and their normals."""
+        approximate = np.einsum(
+            "nk,nkc->nc", location.share, self.feet[self.chart.mesh.faces[location.triangle]]
         )
-        feet, normals = self.sheet.project(near)
+        feet, normals = self.sheet.project(approximate)
         return feet + self.distance * normals, normals
 
 
 class Piece(NamedTuple):
-    """Of a sheet, what is laid flat as one: vertices (n, 3) on it and unit normals (n, 3) there, and how they are joined."""
+    """A piece of a sheet flattened as one: vertices (n, 3) on it with unit normals (n, 3), and
+    their triangles.
+    """
 
     mesh: Mesh
     normals: Array
 
 
 def pieces(sheet: PatchWall, strategy: CladdingParameters) -> list[Piece]:
-    """A sheet in pieces that can be laid flat within the distortion allowed."""
-    made = []
-    for part in parted(sheet.mesh, strategy.distortion):
-        feet, normals = sheet.project(part.vertices)
-        made.append(Piece(Mesh(feet, part.faces), normals))
-    return made
+    """Return a sheet in pieces that can be flattened within the distortion allowed."""
+    sheet_pieces = []
+    for submesh in split_flattenable(sheet.mesh, strategy.distortion):
+        feet, normals = sheet.project(submesh.vertices)
+        sheet_pieces.append(Piece(Mesh(feet, submesh.faces), normals))
+    return sheet_pieces
 
 
-def slices(sheet: PatchWall, piece: Piece, strategy: CladdingParameters) -> Iterator[Slice]:
-    """The layers of a piece outwards, each on a FaceLayer. InputError FOLDED where they reach over a hollow's middle."""
-    mesh = piece.mesh
+def slices(sheet: PatchWall, sheet_piece: Piece, strategy: CladdingParameters) -> Iterator[Slice]:
+    """Yield the layers of a piece outwards, each on a FaceLayer. Raises InputError FOLDED if
+    they reach over a hollow's middle.
+    """
+    mesh = sheet_piece.mesh
     for number in range(strategy.layers):
         distance = number * strategy.layer_height
-        here = Mesh(mesh.vertices + distance * piece.normals, mesh.faces)
-        _refuse_folded(mesh, here, number, sheet.label, strategy)
-        flat = flattened(here)
+        layer_mesh = Mesh(mesh.vertices + distance * sheet_piece.normals, mesh.faces)
+        _refuse_folded(mesh, layer_mesh, number, sheet.label, strategy)
+        flat = flatten(layer_mesh)
         surface = _along_x(
             FaceLayer(
-                Chart(here, flat.points),
+                Chart(layer_mesh, flat.points),
                 sheet,
                 mesh.vertices,
                 distance,
-                stretch_of(flat, here.areas),
+                stretch_of(flat, layer_mesh.areas),
             )
         )
-        found = tuple(
-            one.simple(BORDER * strategy.chord_error)
-            for one in _regions(surface.chart, strategy.chord_error)
+        filled_regions = tuple(
+            region.simple(BORDER * strategy.chord_error)
+            for region in _regions(surface.chart, strategy.chord_error)
         )
-        yield Slice(number, PART, surface, found)
+        yield Slice(number, PART, surface, filled_regions)
 
 
 def _along_x(layer: FaceLayer) -> FaceLayer:
-    """The layer with its picture about the origin, turned so that its x runs as the part's X does in the middle of it, or as
-    Y does where it looks along X there."""
+    """Return the layer with its picture about the origin, turned so that in its middle x runs as
+    the part's X does.
+
+    Where the layer is normal to X there, the part's Y replaces X.
+    """
     flat = layer.chart.flat - layer.chart.flat.mean(axis=0)
     for _ in range(ROUNDS):
         chart = Chart(layer.chart.mesh, flat)
@@ -116,30 +122,36 @@ def _along_x(layer: FaceLayer) -> FaceLayer:
         points, normals = layer.in_part(
             chart.find(middle + reach * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, 0.0]]))
         )
-        first, second = axes(normals[2:])
-        way = points[1] - points[0]
-        angle = np.arctan2(second[0] @ way, first[0] @ way)
+        axis_x, axis_y = axes(normals[2:])
+        direction = points[1] - points[0]
+        angle = np.arctan2(axis_y[0] @ direction, axis_x[0] @ direction)
         cos, sin = np.cos(angle), np.sin(angle)
         flat = flat @ np.array([[cos, sin], [-sin, cos]])
     return replace(layer, chart=Chart(layer.chart.mesh, flat))
 
 
 def _regions(chart: Chart, chord_error: float) -> tuple[Region, ...]:
-    """What of the picture is the piece. Its borders are smooth through the vertices, which lie on the edges of the faces."""
+    """Return the picture of the piece. Its borders are smooth through the vertices, which are on
+    the edges of the faces.
+    """
     return regions([_smooth(chart.flat[border], chord_error) for border in borders(chart.mesh)])
 
 
 def _smooth(loop: Array, chord_error: float) -> Array:
-    """A loop (n, 2) with points between those of edges that bow."""
+    """Return a loop (n, 2) with points added on edges that bow."""
     points = np.column_stack([np.vstack([loop, loop[:1]]), np.zeros(len(loop) + 1)])
     curve = estimate_outline(points, True)
     segment = np.arange(len(loop))
     bow = np.linalg.norm(curve.at(segment, 0.5)[0] - 0.5 * (points[:-1] + points[1:]), axis=1)
-    parts = np.clip(np.ceil(np.sqrt(bow / (BORDER * chord_error))), 1, 4 * HALVES).astype(np.intp)
-    of = np.repeat(segment, parts)
-    number = np.arange(len(of)) - np.repeat(np.cumsum(parts) - parts, parts)
-    found: Array = curve.at(of, number / parts[of])[0][:, :2]
-    return found
+    piece_count = np.clip(np.ceil(np.sqrt(bow / (BORDER * chord_error))), 1, 4 * HALVES).astype(
+        np.intp
+    )
+    segment_number = np.repeat(segment, piece_count)
+    number = np.arange(len(segment_number)) - np.repeat(
+        np.cumsum(piece_count) - piece_count, piece_count
+    )
+    smooth_loop: Array = curve.at(segment_number, number / piece_count[segment_number])[0][:, :2]
+    return smooth_loop
 
 
 def _refuse_folded(
@@ -151,7 +163,7 @@ def _refuse_folded(
     big = mesh.areas > 0.01 * np.median(mesh.areas)
     if (share[big] > FOLDED).all():
         return
-    at = int(np.argmin(np.where(big, share, np.inf)))
+    worst = int(np.argmin(np.where(big, share, np.inf)))
     raise InputError(
         "FOLDED",
         "strategy.layers",
@@ -160,6 +172,6 @@ def _refuse_folded(
         layer,
         label,
         layer * strategy.layer_height,
-        place(mesh.vertices[mesh.faces[at]].mean(axis=0)),
+        place(mesh.vertices[mesh.faces[worst]].mean(axis=0)),
         layer,
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A solid as the nodes of a cubic grid that lie inside of it."""
+"""A solid as the nodes of a cubic grid inside it."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ import numpy as np
 
 from ...types import Array, Index, Mask
 
-RIM = 3  # nodes about the solid's box, for fields that are carried on a little past its surface
-# of a step; columns of nodes stand aside of round coordinates by that, so that they run along no edge that anyone draws
-ASIDE = np.array([0.0311457, 0.0213793, 0.0171353])
+MARGIN_NODES = (
+    3  # nodes about the solid's box, for fields that are carried on a little past its surface
+)
+# of a step; offset of the columns of nodes from round coordinates, so that they do not run along drawn edges
+OFFSET_SHARE = np.array([0.0311457, 0.0213793, 0.0171353])
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,15 +28,15 @@ class Voxels:
     @cached_property
     def nodes(self) -> Index:
         """The nodes inside (n,), as numbers of the flat grid."""
-        found: Index = np.flatnonzero(self.solid)
-        return found
+        inside: Index = np.flatnonzero(self.solid)
+        return inside
 
     def places(self, nodes: Index) -> Array:
-        """Where nodes (n,) of the flat grid are, (n, 3) mm."""
-        at: Array = self.origin + self.step * np.stack(
+        """Return the positions (n, 3) mm of nodes (n,) of the flat grid."""
+        positions: Array = self.origin + self.step * np.stack(
             np.unravel_index(nodes, self.solid.shape), axis=1
         )
-        return at
+        return positions
 
     def strides(self) -> tuple[int, int, int]:
         """By how much the number of a node grows with each of its coordinates."""
@@ -43,47 +45,55 @@ class Voxels:
 
 
 def voxels(vertices: Array, triangles: Index, step: float) -> Voxels:
-    """The grid of a closed mesh: vertices (n, 3) mm, triangles (m, 3) counter-clockwise seen from outside.
+    """Return the grid of a closed mesh: vertices (n, 3) mm, triangles (m, 3) counter-clockwise
+    seen from outside.
 
-    A node is inside where the mesh winds about it at least once: bodies that overlap are one, cavities are left out.
+    A node is inside where the mesh winds around it at least once: overlapping bodies are one,
+    cavities are left out.
     """
     low, high = vertices.min(axis=0), vertices.max(axis=0)
-    origin = low - (RIM + ASIDE) * step
-    shape = np.ceil((high - origin) / step).astype(np.intp) + 1 + RIM
+    origin = low - (MARGIN_NODES + OFFSET_SHARE) * step
+    shape = np.ceil((high - origin) / step).astype(np.intp) + 1 + MARGIN_NODES
     corners = (vertices[triangles] - origin) / step
-    column, height, way = _crossings(corners, shape)
-    first = np.clip(np.ceil(height).astype(np.intp), 0, shape[2] - 1)
+    column, height, sense = _crossings(corners, shape)
+    first_node = np.clip(np.ceil(height).astype(np.intp), 0, shape[2] - 1)
     change = np.bincount(
-        column * shape[2] + first, weights=-way, minlength=int(shape.prod())
+        column * shape[2] + first_node, weights=-sense, minlength=int(shape.prod())
     ).reshape(shape)
     return Voxels(origin, step, np.cumsum(change, axis=2) > 0.5)
 
 
 def _crossings(corners: Array, shape: Index) -> tuple[Index, Array, Array]:
-    """Where upright columns of nodes cross triangles (m, 3, 3) given in steps: the column's number, the height in steps, and
-    1 where the column leaves the solid there, -1 where it enters."""
+    """Return where vertical columns of nodes cross triangles (m, 3, 3) given in steps.
+
+    Returns the column's number, the height in steps, and 1 where the column leaves the solid,
+    -1 where it enters.
+    """
     low = np.maximum(np.ceil(corners[:, :, :2].min(axis=1)).astype(np.intp), 0)
     count = np.maximum(np.floor(corners[:, :, :2].max(axis=1)).astype(np.intp) - low + 1, 0)
     total = count[:, 0] * count[:, 1]
-    of = np.repeat(np.arange(len(corners)), total)
-    number = np.arange(len(of)) - np.repeat(np.cumsum(total) - total, total)
-    at = low[of] + np.stack(
-        [number // np.maximum(count[of, 1], 1), number % np.maximum(count[of, 1], 1)], axis=1
+    triangle = np.repeat(np.arange(len(corners)), total)
+    number = np.arange(len(triangle)) - np.repeat(np.cumsum(total) - total, total)
+    node = low[triangle] + np.stack(
+        [number // np.maximum(count[triangle, 1], 1), number % np.maximum(count[triangle, 1], 1)],
+        axis=1,
     )
-    offset = corners[of, :, :2] - at[:, None]
-    after = np.roll(offset, -1, axis=1)
-    # the column against each edge: twice the area, the same to the last bit for both triangles beside the edge
-    area = np.roll(_side(offset, after), -1, axis=1)
-    way = np.where((area >= 0.0).all(axis=1), 1.0, 0.0) - np.where(
+    offset = corners[triangle, :, :2] - node[:, None]
+    next_offset = np.roll(offset, -1, axis=1)
+    # the column against each edge: twice the area, exactly the same for both triangles at the edge
+    area = np.roll(_side(offset, next_offset), -1, axis=1)
+    sense = np.where((area >= 0.0).all(axis=1), 1.0, 0.0) - np.where(
         (area < 0.0).all(axis=1), 1.0, 0.0
     )
-    hit = way != 0.0
-    of, at, area, way = of[hit], at[hit], area[hit], way[hit]
-    whole = area.sum(axis=1)
-    flat = whole == 0.0
-    share = area / np.where(flat, 1.0, whole)[:, None]
-    height = np.where(flat, corners[of, :, 2].mean(axis=1), (share * corners[of, :, 2]).sum(axis=1))
-    return at[:, 0] * shape[1] + at[:, 1], height, np.where(flat, 0.0, way)
+    hit = sense != 0.0
+    triangle, node, area, sense = triangle[hit], node[hit], area[hit], sense[hit]
+    total_area = area.sum(axis=1)
+    flat = total_area == 0.0
+    share = area / np.where(flat, 1.0, total_area)[:, None]
+    height = np.where(
+        flat, corners[triangle, :, 2].mean(axis=1), (share * corners[triangle, :, 2]).sum(axis=1)
+    )
+    return node[:, 0] * shape[1] + node[:, 1], height, np.where(flat, 0.0, sense)
 
 
 def _side(start: Array, end: Array) -> Array:

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The field of parallel planes: bodies that stand on the lowest of them cut layer by layer, as one or each by itself."""
+"""The field of parallel planes: bodies on the lowest plane cut layer by layer, together or
+separately.
+"""
 
 from __future__ import annotations
 
@@ -20,25 +22,37 @@ from ..margins import sections
 from ..surface import Slice
 from .layer import PlaneLayer
 
-ASIDE = 0.02  # of the chord error, mm, at least; a plane keeps that far from faces that lie in it
-ROUNDING = 4e-7  # of the extent of what is cut: that of vertices kept as 32-bit numbers
+CLEARANCE_SHARE = 0.02  # of the chord error, mm, minimum; clearance of a plane from faces in it
+ROUNDING = 4e-7  # of the extent of the body: rounding of vertices stored as 32-bit numbers
 EXACT = 1e-6  # of a layer
-FLAT = 1e-3  # largest share of a facet's size that it may rise and still lie in a plane
+MAX_RISE_SHARE = (
+    1e-3  # largest rise of a facet, as a share of its size, with which it counts as plane
+)
 
 
 def count(top: float, strategy: SolidParameters) -> int:
-    """How many layers a part gets that reaches to `top` mm above the first plane: those that are cut below that, a cut in
-    their tops at it too, and what the margin adds."""
+    """Return the number of layers of a part that reaches to `top` mm above the first plane.
+
+    It counts the layers cut below the top, a cut at the top if layers are cut in their tops,
+    and the layers of the margin.
+    """
     levels = top / strategy.layer_height - strategy.share_of_cut
-    whole = (
+    layers_cut = (
         math.floor(levels + EXACT) + 1 if strategy.cut_at == "top" else math.ceil(levels - EXACT)
     )
-    return whole + max(round_up(strategy.margin / strategy.layer_height) - 1, 0) if whole > 0 else 0
+    return (
+        layers_cut + max(round_up(strategy.margin / strategy.layer_height) - 1, 0)
+        if layers_cut > 0
+        else 0
+    )
 
 
 def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
-    """The layers of bodies upwards, on the planes 0, h, 2 h ... mm above that of the base; those without any region are left
-    out. InputError TOO_LOW where no layer reaches into them."""
+    """Yield the layers of bodies upwards, on the planes 0, h, 2 h ... mm above the base; layers
+    without regions are left out.
+
+    Raises InputError TOO_LOW if no layer reaches into the bodies.
+    """
     cuts = [PlaneCuts(base.inside(body.vertices), body.triangles) for body in bodies]
     top = max(cut.top for cut in cuts)
     layers = count(top, strategy)
@@ -63,14 +77,14 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Ite
             PlaneLayer(number * strategy.layer_height),
             regions,
             issues,
-            before=number / layers,
+            share_before=number / layers,
         )
 
 
 def cut_together(
     cuts: Sequence[PlaneCuts], layers: int, strategy: SolidParameters
 ) -> Iterator[tuple[int, tuple[Region, ...], tuple[Issue, ...]]]:
-    """So many layers of bodies that have any region: number, regions, what was mended."""
+    """Yield the first `layers` layers of bodies that have regions: number, regions, repairs."""
     heights: Array = strategy.layer_height * (
         np.arange(layers, dtype=np.float64) + strategy.share_of_cut
     )
@@ -78,16 +92,22 @@ def cut_together(
 
 
 def _off_faces(cut: PlaneCuts, heights: Array, strategy: SolidParameters) -> Array:
-    """The heights, those moved up by a hair, or down where the top of a layer is cut, in whose plane facets lie: what a cut
-    through such facets is, rounding decides."""
+    """Return the heights, moved slightly up where facets are in their planes, or down if layers
+    are cut in their tops.
+
+    Rounding would decide a cut through such facets.
+    """
     aside = max(
-        ASIDE * strategy.chord_error, ROUNDING * float(np.abs(cut.vertices).max(initial=0.0))
+        CLEARANCE_SHARE * strategy.chord_error,
+        ROUNDING * float(np.abs(cut.vertices).max(initial=0.0)),
     )
     corners = cut.vertices[cut.faces]
     low, high = corners[..., 2].min(axis=1), corners[..., 2].max(axis=1)
     size = np.ptp(corners[..., :2], axis=1).max(axis=1)
-    lying = np.sort(0.5 * (low + high)[(high - low < aside) & (high - low <= FLAT * size)])
-    near = np.searchsorted(lying, heights - aside) < np.searchsorted(
+    lying = np.sort(
+        0.5 * (low + high)[(high - low < aside) & (high - low <= MAX_RISE_SHARE * size)]
+    )
+    is_near = np.searchsorted(lying, heights - aside) < np.searchsorted(
         lying, heights + aside, side="right"
     )
-    return np.where(near, heights + (-2.0 if strategy.cut_at == "top" else 2.0) * aside, heights)
+    return np.where(is_near, heights + (-2.0 if strategy.cut_at == "top" else 2.0) * aside, heights)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What planes have in common as layers, whichever way they lie."""
+"""The common base of planes as layers, whatever their orientation."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class Flat:
         """It does not bend."""
         return False
 
-    def turned(self, azimuth: float) -> float:
-        """It lies one way alone."""
+    def plane_rotation(self, azimuth: float) -> float:
+        """Return 0: the plane has only one orientation."""
         return 0.0
 
     def pieces(self, flat: Array, chord_error: float) -> Index:

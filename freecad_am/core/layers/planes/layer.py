@@ -14,8 +14,9 @@ from .flat import Flat
 
 @dataclass(frozen=True)
 class PlaneLayer(Flat):
-    """The plane at a height (mm) along the Z of its frame; the x and y of the frame are those of the plane. As
-    `LayerSurface`."""
+    """The plane at a height (mm) along the Z of its frame, with the x and y of the frame. As
+    `LayerSurface`.
+    """
 
     height: float
 
@@ -32,8 +33,8 @@ class PlaneLayer(Flat):
     def heights(self, flat: Array) -> None:
         """The layer height everywhere."""
 
-    def followed(self, flat: Array, sheet: float) -> PlaneLayer:
-        """The same plane."""
+    def for_sheet(self, flat: Array, sheet: float) -> PlaneLayer:
+        """Return the same plane."""
         return self
 
     def axes(self, normals: Array) -> tuple[Array, Array]:

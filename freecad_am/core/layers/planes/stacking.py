@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Bodies made ready to be cut by planes: which way these are stacked, and the plane that the bodies stand on."""
+"""Bodies prepared for cuts by planes: the stacking direction, and the plane under the
+bodies.
+"""
 
 from __future__ import annotations
 
@@ -21,42 +23,50 @@ from ...types import Array, Index
 AXES = np.array(
     [[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], dtype=np.float64
 )
-LARGEST = 12  # flat faces that the part may be laid on, beside the axes
+MAX_FACES = 12  # flat faces on which the part may be placed, in addition to the axes
 PARALLEL = np.cos(np.radians(2.0))
-STANDING = 0.5  # layer heights above the lowest place; what is no higher stands there
-STABLE = float(np.radians(5.0))  # by which a part may lean without falling over
-LEANS = 72  # directions in which it may
-CLOSE = 0.01  # of the area of the part; areas nearer together are the same
-LEVEL = 1e-3  # of a height; heights nearer together are the same, whatever chords a mesh has
-PLACES = 20_000  # on all facets of a part of several bodies, at which it is looked whether others cover them, about
+CONTACT_HEIGHTS = 0.5  # layer heights above the lowest point; facets no higher are on the platform
+MIN_STABILITY_RAD = float(np.radians(5.0))  # by which a part may lean without falling over
+LEAN_DIRECTIONS = 72  # directions in which it may
+AREA_TOLERANCE = 0.01  # of the area of the part; areas nearer together are the same
+HEIGHT_TOLERANCE = (
+    1e-3  # of a height; heights nearer together are the same, whatever chords a mesh has
+)
+SAMPLES = 20_000  # on all facets of a part of several bodies, at which it is looked whether others cover them, about
 MAX_PIECES = 64  # parts of an edge of a facet between such places
 
 
 class Stacked(NamedTuple):
-    """What a direction is judged by: unit vector (3,), area over nothing, mm2, height, mm, and by how many rad the part may
-    lean before it falls over, 0 or less where it falls over as it stands."""
+    """Figures of a stacking direction: unit vector (3,), unsupported area, mm2, height, mm, and
+    stability, rad.
 
-    way: Array
+    stable: lean at which the part falls over, 0 or less where it falls over as it is.
+    """
+
+    direction: Array
     area: float
     height: float
     stable: float = np.inf
 
 
-def stacked(
+def prepare_stack(
     bodies: Sequence[Body], strategy: SolidParameters, label: str, issues: tuple[Issue, ...] = ()
 ) -> SolidsOnHub:
-    """The bodies standing on the plane through their lowest place, with a frame whose Z is the stacking direction, in the
-    middle under them. With the direction `auto` a note says which it is and why."""
-    asked = strategy.stacking()
-    if asked is None:
-        found = best(bodies, strategy)
-        way, issues = (
-            found[0].way,
-            (*issues, _note(found, label, np.degrees(strategy.max_overhang))),
+    """Return the bodies on the plane through their lowest point.
+
+    The Z of the frame is the stacking direction, its origin in the middle under them. With
+    the direction `auto` a note reports the choice and its reason.
+    """
+    requested = strategy.stacking()
+    if requested is None:
+        ranking = rank_directions(bodies, strategy)
+        direction, issues = (
+            ranking[0].direction,
+            (*issues, _note(ranking, label, np.degrees(strategy.max_overhang))),
         )
     else:
-        way = np.array(asked) / np.linalg.norm(asked)
-    turned = upright(np.zeros(3), way)
+        direction = np.array(requested) / np.linalg.norm(requested)
+    turned = upright(np.zeros(3), direction)
     local = np.vstack([body.vertices for body in bodies]) @ turned[:3, :3]
     low, high = local.min(axis=0), local.max(axis=0)
     turned[:3, 3] = turned[:3, :3] @ np.array(
@@ -66,154 +76,211 @@ def stacked(
     return SolidsOnHub(label, (Group(base, tuple(bodies)),), strategy.chord_error, (), issues)
 
 
-def best(bodies: Sequence[Body], strategy: SolidParameters) -> list[Stacked]:
-    """The axes and the directions out of large flat faces, the best first: of those in which the part stands by STABLE, or of
-    all where it does in none, those with the least area over nothing, but for CLOSE, of these the one with the least height,
-    but for LEVEL, and of these the first; then of the others likewise. Any mesh of the same part has the same order."""
+def rank_directions(bodies: Sequence[Body], strategy: SolidParameters) -> list[Stacked]:
+    """Return the axes and the directions normal to large flat faces, best first.
+
+    Directions in which the part is stable by MIN_STABILITY_RAD come first, then the others.
+    Within each, the order is by unsupported area within AREA_TOLERANCE, then by height within
+    HEIGHT_TOLERANCE, then by the given order. Any mesh of the same part gives the same order.
+    """
     vertices, normals, areas = facets(
         bodies, strategy.chord_error if strategy.fuse == "auto" else None
     )
-    ways = _candidates(normals, areas)
-    steep, standing = float(np.sin(strategy.max_overhang)), STANDING * strategy.layer_height
+    directions = _candidates(normals, areas)
+    steep, standing = float(np.sin(strategy.max_overhang)), CONTACT_HEIGHTS * strategy.layer_height
     middle = _centre_of_mass(bodies)
-    found = [
-        judged(way, vertices, normals, areas, steep, standing)._replace(
-            stable=_stability(vertices, way, standing, middle)
+    candidates = [
+        evaluate_direction(direction, vertices, normals, areas, steep, standing)._replace(
+            stable=_stability(vertices, direction, standing, middle)
         )
-        for way in ways
+        for direction in directions
     ]
-    return _ranked([one for one in found if one.stable >= STABLE], areas) + _ranked(
-        [one for one in found if one.stable < STABLE], areas
+    return _ranked(
+        [candidate for candidate in candidates if candidate.stable >= MIN_STABILITY_RAD], areas
+    ) + _ranked(
+        [candidate for candidate in candidates if candidate.stable < MIN_STABILITY_RAD], areas
     )
 
 
-def _ranked(found: list[Stacked], areas: Array) -> list[Stacked]:
-    """Directions, the best first, whatever the part stands on."""
+def _ranked(candidates: list[Stacked], areas: Array) -> list[Stacked]:
+    """Return directions, best first, whatever the part is on."""
     ranked: list[Stacked] = []
-    while found:
-        least = min(one.area for one in found) + CLOSE * float(areas.sum())
-        few = [one for one in found if one.area <= least]
-        low = min(one.height for one in few)
-        ranked.append(next(one for one in few if one.height <= low * (1.0 + LEVEL)))
-        found = [one for one in found if one is not ranked[-1]]
+    while candidates:
+        max_area = min(candidate.area for candidate in candidates) + AREA_TOLERANCE * float(
+            areas.sum()
+        )
+        finalists = [candidate for candidate in candidates if candidate.area <= max_area]
+        low = min(candidate.height for candidate in finalists)
+        ranked.append(
+            next(
+                candidate
+                for candidate in finalists
+                if candidate.height <= low * (1.0 + HEIGHT_TOLERANCE)
+            )
+        )
+        candidates = [candidate for candidate in candidates if candidate is not ranked[-1]]
     return ranked
 
 
 def _centre_of_mass(bodies: Sequence[Body]) -> Array:
-    """(3,) of closed bodies; of their surfaces where these enclose nothing."""
+    """Return the centre of mass (3,) of closed bodies, or of their surfaces if they enclose no
+    volume.
+    """
     corners = np.concatenate([body.corners() for body in bodies])
     origin = corners.reshape(-1, 3).mean(axis=0)
-    seen = corners - origin
-    weights = np.einsum("mk,mk->m", seen[:, 0], np.cross(seen[:, 1], seen[:, 2]))
-    centres = seen.sum(axis=1) / 4.0
-    if abs(weights.sum()) <= 1e-9 * float(np.ptp(seen.reshape(-1, 3), axis=0).max()) ** 3:
-        weights, centres = np.linalg.norm(doubled_areas(corners), axis=1), seen.mean(axis=1)
-    whole = float(weights.sum())
-    middle: Array = origin + weights @ centres / (whole or 1e-300)
+    local = corners - origin
+    weights = np.einsum("mk,mk->m", local[:, 0], np.cross(local[:, 1], local[:, 2]))
+    centres = local.sum(axis=1) / 4.0
+    if abs(weights.sum()) <= 1e-9 * float(np.ptp(local.reshape(-1, 3), axis=0).max()) ** 3:
+        weights, centres = np.linalg.norm(doubled_areas(corners), axis=1), local.mean(axis=1)
+    total_weight = float(weights.sum())
+    middle: Array = origin + weights @ centres / (total_weight or 1e-300)
     return middle
 
 
-def _stability(corners: Array, way: Array, standing: float, middle: Array) -> float:
-    """By how many rad a part of triangles (m, 3, 3) may lean, in any direction, before its centre of mass (3,) is no longer over
-    what lies no higher than `standing` mm above its lowest place along a direction (3,)."""
-    frame = upright(np.zeros(3), way)[:3, :3]
+def _stability(corners: Array, direction: Array, standing: float, middle: Array) -> float:
+    """Return the lean, rad, at which the centre of mass (3,) of triangles (m, 3, 3) leaves the
+    contact area.
+
+    The contact area is the part no higher than `standing` mm above the lowest point along a
+    direction (3,); the lean is the smallest over all directions.
+    """
+    frame = upright(np.zeros(3), direction)[:3, :3]
     local = corners @ frame
     foot = float(local[..., 2].min())
     level = foot + standing
     points = [local[local[..., 2] <= level][:, :2]]
-    for k in range(3):  # where edges cross that height
+    for k in range(3):  # where edges cross the contact height
         start, end = local[:, k], local[:, k - 1]
-        some = (start[:, 2] <= level) != (end[:, 2] <= level)
-        share = (level - start[some, 2]) / (end[some, 2] - start[some, 2])
-        points.append(start[some, :2] + share[:, None] * (end - start)[some, :2])
+        crosses_level = (start[:, 2] <= level) != (end[:, 2] <= level)
+        share = (level - start[crosses_level, 2]) / (
+            end[crosses_level, 2] - start[crosses_level, 2]
+        )
+        points.append(start[crosses_level, :2] + share[:, None] * (end - start)[crosses_level, :2])
     flat, centre = np.concatenate(points), middle @ frame
-    angle = np.linspace(0.0, 2.0 * np.pi, LEANS, endpoint=False)
+    angle = np.linspace(0.0, 2.0 * np.pi, LEAN_DIRECTIONS, endpoint=False)
     towards = np.stack([np.cos(angle), np.sin(angle)])
     reach = ((flat - centre[:2]) @ towards).max(axis=0)
     return float(np.arctan2(reach.min(), max(float(centre[2]) - foot, 1e-9)))
 
 
 def facets(bodies: Sequence[Body], slit: float | None) -> tuple[Array, Array, Array]:
-    """Corners (m, 3, 3), unit normals (m, 3) and areas (m,) of all triangles with an area; what of them another body covers,
-    within a slit of so many mm, does not count: touching bodies are one. None: each body is one by itself."""
+    """Return corners (m, 3, 3), unit normals (m, 3) and areas (m,) of all triangles with an
+    area.
+
+    Area covered by another body, within a slit of `slit` mm, does not count: touching bodies
+    are one. None: each body counts separately.
+    """
     corners = np.concatenate([body.corners() for body in bodies])
     normal = doubled_areas(corners)
     doubled = np.linalg.norm(normal, axis=1)
-    some = doubled > 1e-12
-    corners, normal, area = corners[some], normal[some] / doubled[some, None], 0.5 * doubled[some]
+    has_area = doubled > 1e-12
+    corners, normal, area = (
+        corners[has_area],
+        normal[has_area] / doubled[has_area, None],
+        0.5 * doubled[has_area],
+    )
     if len(bodies) > 1 and slit is not None:
-        own = np.repeat(np.arange(len(bodies)), [len(body.triangles) for body in bodies])[some]
-        area = area * _free(bodies, own, corners, normal, area, slit)
+        body_number = np.repeat(np.arange(len(bodies)), [len(body.triangles) for body in bodies])[
+            has_area
+        ]
+        area = area * _free_share(bodies, body_number, corners, normal, area, slit)
     return corners, normal, area
 
 
-def _free(
-    bodies: Sequence[Body], own: Index, corners: Array, normals: Array, areas: Array, slit: float
+def _free_share(
+    bodies: Sequence[Body],
+    body_number: Index,
+    corners: Array,
+    normals: Array,
+    areas: Array,
+    slit: float,
 ) -> Array:
-    """The share (m,) of each triangle, of the body `own` (m,), a slit (mm) outside of which no other body is."""
-    parts = np.clip(np.ceil(np.sqrt(PLACES * areas / areas.sum())), 1, MAX_PIECES).astype(np.intp)
+    """Return the share (m,) of each triangle of the body `body_number` (m,) that no other body
+    covers, tested `slit` mm outside.
+    """
+    divisions = np.clip(np.ceil(np.sqrt(SAMPLES * areas / areas.sum())), 1, MAX_PIECES).astype(
+        np.intp
+    )
     covered = np.zeros(len(areas))
     insides = [inside_of(body) for body in bodies]
-    for count in np.unique(parts):
-        some = np.flatnonzero(parts == count)
+    for count in np.unique(divisions):
+        group_rows = np.flatnonzero(divisions == count)
         shares = _middles(int(count))
-        places = np.einsum("pk,mkc->mpc", shares, corners[some]) + slit * normals[some, None]
-        held = np.zeros(places.shape[:2], dtype=bool)
+        samples = (
+            np.einsum("pk,mkc->mpc", shares, corners[group_rows]) + slit * normals[group_rows, None]
+        )
+        is_covered = np.zeros(samples.shape[:2], dtype=bool)
         for number, inside in enumerate(insides):
-            others = np.flatnonzero(own[some] != number)
-            if inside is not None and len(others):
-                held[others] |= inside.holds(places[others].reshape(-1, 3)).reshape(len(others), -1)
-        covered[some] = held.mean(axis=1)
+            foreign = np.flatnonzero(body_number[group_rows] != number)
+            if inside is not None and len(foreign):
+                is_covered[foreign] |= inside.holds(samples[foreign].reshape(-1, 3)).reshape(
+                    len(foreign), -1
+                )
+        covered[group_rows] = is_covered.mean(axis=1)
     return 1.0 - covered
 
 
 def _middles(count: int) -> Array:
-    """Shares (count^2, 3) of the corners at the middles of the parts of a triangle whose edges are cut in so many."""
+    """Return shares (count^2, 3) of the corners at the middles of the parts of a triangle whose
+    edges are cut in `count`.
+    """
     i, j = (grid.ravel() for grid in np.meshgrid(np.arange(count), np.arange(count), indexing="ij"))
     up = i + j < count
-    first = np.where(up, i + 1.0 / 3.0, count - 1 - i + 2.0 / 3.0)
-    other = np.where(up, j + 1.0 / 3.0, count - 1 - j + 2.0 / 3.0)
-    found: Array = np.stack([first, other, count - first - other], axis=1) / count
-    return found
+    share_a = np.where(up, i + 1.0 / 3.0, count - 1 - i + 2.0 / 3.0)
+    share_b = np.where(up, j + 1.0 / 3.0, count - 1 - j + 2.0 / 3.0)
+    shares: Array = np.stack([share_a, share_b, count - share_a - share_b], axis=1) / count
+    return shares
 
 
 def _candidates(normals: Array, areas: Array) -> list[Array]:
-    """Unit directions to look at: the axes first, then against the normals of the largest flat faces, in the same order
-    whatever triangles these are made of."""
+    """Return unit directions to evaluate: the axes first, then against the normals of the
+    largest flat faces.
+
+    The order does not depend on the triangulation.
+    """
     keys = np.round(normals, 4) + 0.0
     faces, number = np.unique(keys, axis=0, return_inverse=True)
     size = np.bincount(np.ravel(number), weights=areas)
-    ways = list(AXES)
+    directions = list(AXES)
     shares = np.round(size / max(float(areas.sum()), 1e-300), 3)
-    # of faces as large as one another the first comes by its direction, of which a mesh has no more than some digits
-    for k in np.lexsort(np.vstack([columns(faces.round(2)), -shares]))[: 4 * LARGEST]:
-        way = -faces[k] / np.linalg.norm(faces[k])
-        if size[k] > CLOSE * areas.sum() and max(float(way @ other) for other in ways) < PARALLEL:
-            ways.append(way)
-        if len(ways) >= len(AXES) + LARGEST:
+    # equal faces are ordered by direction, rounded to the digits that a mesh has
+    for k in np.lexsort(np.vstack([columns(faces.round(2)), -shares]))[: 4 * MAX_FACES]:
+        direction = -faces[k] / np.linalg.norm(faces[k])
+        if (
+            size[k] > AREA_TOLERANCE * areas.sum()
+            and max(float(direction @ accepted) for accepted in directions) < PARALLEL
+        ):
+            directions.append(direction)
+        if len(directions) >= len(AXES) + MAX_FACES:
             break
-    return ways
+    return directions
 
 
-def judged(
-    way: Array, corners: Array, normals: Array, areas: Array, steep: float, standing: float
+def evaluate_direction(
+    direction: Array, corners: Array, normals: Array, areas: Array, steep: float, standing: float
 ) -> Stacked:
-    """A unit direction (3,) by the facets of a part: what of them leans out by more than `steep`, the sine of an angle from
-    the direction, and reaches more than `standing` mm above the lowest place."""
-    heights = corners @ way
+    """Return the figures of a unit direction (3,) from the facets of a part.
+
+    Unsupported facets overhang by more than `steep`, the sine of an angle from the direction,
+    and reach more than `standing` mm above the lowest point.
+    """
+    heights = corners @ direction
     low, high = float(heights.min()), float(heights.max())
-    over = (normals @ way < -steep - 1e-9) & (heights.max(axis=1) > low + standing)
-    return Stacked(way, float(areas[over].sum()), high - low)
+    over = (normals @ direction < -steep - 1e-9) & (heights.max(axis=1) > low + standing)
+    return Stacked(direction, float(areas[over].sum()), high - low)
 
 
-def _note(found: Sequence[Stacked], label: str, lean: float) -> Issue:
-    chosen = found[0]
+def _note(ranking: Sequence[Stacked], label: str, lean: float) -> Issue:
+    best_direction = ranking[0]
     upright_one = next(
-        one for one in found if one.way is AXES[0] or np.array_equal(one.way, AXES[0])
+        candidate
+        for candidate in ranking
+        if candidate.direction is AXES[0] or np.array_equal(candidate.direction, AXES[0])
     )
-    other = (
+    comparison = (
         ""
-        if chosen is upright_one
+        if best_direction is upright_one
         else (
             Text(
                 "; along (0, 0, 1) it would be {:.4g} mm^2 and {:.4g} mm",
@@ -222,7 +289,7 @@ def _note(found: Sequence[Stacked], label: str, lean: float) -> Issue:
             )
         )
     )
-    x, y, z = (round(float(value), 6) + 0.0 for value in chosen.way)
+    x, y, z = (round(float(value), 6) + 0.0 for value in best_direction.direction)
     return Issue(
         NOTE,
         "DIRECTION",
@@ -233,9 +300,9 @@ def _note(found: Sequence[Stacked], label: str, lean: float) -> Issue:
             x,
             y,
             z,
-            chosen.area,
+            best_direction.area,
             lean,
-            chosen.height,
-            Word(other),
+            best_direction.height,
+            Word(comparison),
         ),
     )

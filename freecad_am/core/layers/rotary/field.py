@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The field of equidistant cylinders or cones about a hub: a solid cut, laid flat, grown by the margin (Dai 2020, section
-2)."""
+"""The field of equidistant cylinders or cones around a hub: cut, unroll, grow by the margin
+(Dai 2020, section 2).
+"""
 
 from __future__ import annotations
 
@@ -20,7 +21,7 @@ from ...slicing.solids.equidistant import Facets, Loop
 from ...slicing.solids.unrolled import count, cut, unroll_layers
 from ...types import Array
 from ..margins import ARCS, regions_of, within_margin
-from ..over_and_under import under_and_over
+from ..over_and_under import common_regions
 from ..surface import Slice
 from .layer import RoundLayer
 
@@ -86,7 +87,7 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
             )
             if thick:
                 layer = layer._replace(
-                    buried=under_and_over(
+                    buried=common_regions(
                         [
                             grow_regions(regions(borders), strategy.margin, ARCS * error)
                             for borders in flat.borders[len(lots) :]
@@ -94,20 +95,24 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
                     )
                 )
         if layer.regions:
-            yield layer._replace(before=number / layers)
+            yield layer._replace(share_before=number / layers)
 
 
 def _neighbours(
     below: Sequence[list[Loop]], ahead: Sequence[list[Loop]], thick: int
 ) -> list[tuple[int, list[Loop]]]:
-    """So many layers under and over the last one below: how many layers over it, and loops, none of those that are not there
-    or that go round the hub."""
-    here = len(below) - 1
-    found = []
+    """Return the `thick` layers under and over the last one below: offset in layers, and loops.
+
+    Loops of missing layers and loops around the hub are left out.
+    """
+    current = len(below) - 1
+    neighbours = []
     for k in (k for step in range(1, thick + 1) for k in (-step, step)):
-        there = below[here + k] if -here <= k < 0 else ahead[k - 1] if 0 < k <= len(ahead) else []
-        found.append((k, [loop for loop in there if not loop.turns]))
-    return found
+        layer_loops = (
+            below[current + k] if -current <= k < 0 else ahead[k - 1] if 0 < k <= len(ahead) else []
+        )
+        neighbours.append((k, [loop for loop in layer_loops if not loop.turns]))
+    return neighbours
 
 
 def _apex(loops: Sequence[Loop], surface: Developable) -> Array:
@@ -121,9 +126,11 @@ def _apex(loops: Sequence[Loop], surface: Developable) -> Array:
 def _all_round(
     lots: Sequence[tuple[float, list[Loop]]], surface: Developable, strategy: DevelopableParameters
 ) -> tuple[Region | Strip, ...]:
-    """The strips and regions of a layer that runs all the way round the hub; above what ends below there is no margin."""
+    """Return the strips and regions of a layer that goes all around the hub; above a surface
+    that ends below it has no margin.
+    """
     margin, loops = next((lot for lot in lots if lot[1]), lots[0])
-    found = strips(
+    bands = strips(
         [(surface.unroll(loop.points), loop.turns) for loop in loops], RoundLayer(surface).period
     )
-    return found if margin == 0.0 else grow_regions(found, margin, ARCS * strategy.chord_error)
+    return bands if margin == 0.0 else grow_regions(bands, margin, ARCS * strategy.chord_error)

@@ -54,21 +54,24 @@ class RoundLayer:
     def heights(self, flat: Array) -> None:
         """The layer height everywhere."""
 
-    def followed(self, flat: Array, sheet: float) -> RoundLayer:
-        """On a wide cone a curve may have come farther round than the plane alone tells, behind the apex."""
+    def for_sheet(self, flat: Array, sheet: float) -> RoundLayer:
+        """Return the surface for a curve about `sheet`: on a wide cone a curve may pass behind the
+        apex, which the plane does not show.
+        """
         if self.surface.is_cylinder:
             return replace(self, middle=self.middle + 0.0)
         sine = math.sin(self.surface.taper)
-        away = sheet / self.surface.slant - float(_unwrapped(flat, self.surface)[0].mean()) * sine
-        return replace(self, middle=self.middle + TURN * round(away / TURN) / sine)
+        angle = sheet / self.surface.slant - float(_unwrapped(flat, self.surface)[0].mean()) * sine
+        return replace(self, middle=self.middle + TURN * round(angle / TURN) / sine)
 
-    def turned(self, azimuth: float) -> float:
-        """Of a cone; a cylinder's plane is only moved."""
+    def plane_rotation(self, azimuth: float) -> float:
+        """Return the rotation for a cone; the plane of a cylinder is only shifted."""
         return (self.middle - azimuth) * math.sin(self.surface.taper)
 
     def pieces(self, flat: Array, chord_error: float) -> Index:
-        """An edge is a geodesic: its curvature is that of the surface around the axis, by the square of its share of that
-        way."""
+        """Return the pieces of each edge, a geodesic: its curvature is that of the surface around
+        the axis times its squared share of that direction.
+        """
         edge = np.diff(flat, axis=0)
         length = np.linalg.norm(edge, axis=1)
         theta, z = _unwrapped(flat, self.surface)
@@ -83,8 +86,8 @@ class RoundLayer:
             else ((self.surface.height - z) * math.tan(self.surface.taper))
         )
         # an edge comes nearer to the apex than its ends by no more than its sagitta seen from there
-        least = np.minimum(rho[:-1], rho[1:]) * np.cos(0.5 * np.abs(np.diff(phi)))
-        curvature = math.cos(self.surface.taper) * share**2 / least
+        min_rho = np.minimum(rho[:-1], rho[1:]) * np.cos(0.5 * np.abs(np.diff(phi)))
+        curvature = math.cos(self.surface.taper) * share**2 / min_rho
         count = np.maximum(np.ceil(length * np.sqrt(curvature / (8.0 * chord_error)) - 1e-9), 1.0)
         return np.asarray(count.astype(np.intp))
 

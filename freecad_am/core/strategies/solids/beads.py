@@ -65,7 +65,7 @@ def bead_of(
         line, error, None if share is None else select_significant(arcs(line), share, SHARES)
     )
     flat = divide_edges(flat, surface.pieces(flat, error))[0]
-    course = Course(flat, curve.closed, surface.followed(flat, curve.sheet))
+    course = Course(flat, curve.closed, surface.for_sheet(flat, curve.sheet))
     flat, points, normals, tool, turned = held(
         course, leaning(curve, layer, strategy, build), build, strategy.chord_error
     )

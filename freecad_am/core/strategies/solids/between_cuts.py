@@ -24,7 +24,7 @@ from ...geometry.on_hub import Group, SolidsOnHub
 from ...geometry.plane import Plane
 from ...geometry.step_count import step_counts
 from ...issues import WARNING, Issue, Text
-from ...layers.planes.field import ASIDE, EXACT
+from ...layers.planes.field import CLEARANCE_SHARE, EXACT
 from ...parameters.filled import FilledParameters
 from ...process.order import RankedBead
 from ...toolpath import Bead
@@ -124,7 +124,7 @@ def _levels(group: Group, points: Array) -> Array:
 
 def _is_cut(low: float, high: float, strategy: FilledParameters) -> bool:
     """Whether a layer is cut between two levels, mm; a cut in a face of a solid is moved aside as `planes.field` does it."""
-    aside = ASIDE * strategy.chord_error
+    aside = CLEARANCE_SHARE * strategy.chord_error
     share = getattr(strategy, "share_of_cut", 0.0)
     if getattr(strategy, "cut_at", "bottom") == "top":
         low, high = low + 2.0 * aside, high + 2.0 * aside

@@ -195,7 +195,7 @@ class Pictures:
     def _filling(self, layer: Slice) -> _Filling:
         """What a layer is filled with: the same picture wherever round the hub its solid is, turned from layer to layer."""
         strategy, process = self._strategy, self._process
-        turned = layer.surface.turned(layer.azimuth)  # the picture, by the cutting line
+        turned = layer.surface.plane_rotation(layer.azimuth)  # the picture, by the cutting line
         beads = Beads(
             strategy.bead_spacing,
             strategy.gap * strategy.bead_spacing,

@@ -68,7 +68,9 @@ def plan(
     for done, stack in enumerate(stacks):
         order.below = None  # no layer of this stack yet
         for layer in stack.layers:
-            progress((done + layer.before) / len(stacks), f"{stack.name} layer {layer.number}")
+            progress(
+                (done + layer.share_before) / len(stacks), f"{stack.name} layer {layer.number}"
+            )
             picture = pictures.filled(layer, stack.name)
             issues += [(stack, issue) for issue in (*layer.issues, *picture.issues)]
             if picture.bare and not picture.curves:

@@ -64,7 +64,7 @@ def of_slabs(solids: SolidsOnHub, strategy: FilledParameters) -> Array | None:
     group = group_of(solids)
     if group is None or getattr(strategy, "layers", "planes") != "planes":
         return None  # curved layers may begin on a plane too
-    return slabs(group, strategy.layer_height, np.zeros((0, 3)), np.zeros(0)).part
+    return slabs(group, strategy.layer_height, np.zeros((0, 3)), np.zeros(0)).part_volume
 
 
 def twice(

@@ -15,8 +15,8 @@ from freecad_am.core.types import Array
 from ....core.issues import AmError
 from ....core.layers.along import field as along
 from ....core.layers.along import guide_edges
-from ....core.layers.leaning import Leaning, leaning
-from ....core.layers.planes.stacking import STANDING, stacked
+from ....core.layers.leaning import Leaning, find_leaning
+from ....core.layers.planes.stacking import CONTACT_HEIGHTS, prepare_stack
 from ....core.parameters.filled import SolidParameters
 from ....core.strategies import size
 from ....objects.fields.shown_units import in_user_units
@@ -143,9 +143,9 @@ class SolidPanel(PickPanel):
             self.nodes.set_overhang(np.zeros((0, 3, 3)))
             self.overhung.setText(tr("Overhang > {}°").format(angle))
             return
-        corners, area = self.leaning.beyond(math.radians(angle))
+        corners, area = self.leaning.steeper_than(math.radians(angle))
         self.nodes.set_overhang(corners)
-        share = 100.0 * area / max(self.leaning.whole, 1e-300)
+        share = 100.0 * area / max(self.leaning.total_area, 1e-300)
         self.overhung.setText(
             in_user_units(
                 tr("Overhang > {}°: {:.4g} cm² ({:.0f} %)").format(angle, area / MM2_PER_CM2, share)
@@ -203,12 +203,14 @@ class SolidPanel(PickPanel):
             made = kept[1] if kept is not None and kept[0] == key else work()
             self.kept = (key, made)
             bodies = made.value.groups[0].bodies
-            solids = made.value if guided else stacked(bodies, strategy, made.value.label)
+            solids = made.value if guided else prepare_stack(bodies, strategy, made.value.label)
             size.refuse_absurd(size.of_solids(solids, strategy), strategy)
             if guided:  # at once what is higher or lower than allowed
                 list(along.slices(solids.groups[0].base, bodies, strategy))
             slit = strategy.chord_error if strategy.fuse == "auto" else None
-            lean = leaning(bodies, solids.groups[0].base, STANDING * strategy.layer_height, slit)
+            lean = find_leaning(
+                bodies, solids.groups[0].base, CONTACT_HEIGHTS * strategy.layer_height, slit
+            )
             asked = round(math.degrees(strategy.max_overhang))
             return Outcome(solids, solids.issues), (drawing(solids), lean, min(asked, STEEPEST))
 
