@@ -314,11 +314,11 @@ def _heights_as_run(
     path: JointsOfBeads, toolpath: Toolpath, process: ProcessParameters
 ) -> list[Issue]:
     """What a bead model predicts of the heights where beads are slowed, in place of what the toolpath told."""
-    model = None if toolpath.law is None else bead_table.of_process(process)
+    model = None if toolpath.law is None else bead_table.process_model(process)
     if model is None or not any(issue.code == SLOWED for issue in path.issues):
         return []
     beads = [one.bead for one in path.beads]
-    return [predicted.with_heights(beads, toolpath.layer_height, process, model, as_run=True)]
+    return [predicted.height_issue(beads, toolpath.layer_height, process, model, as_run=True)]
 
 
 def _sums(

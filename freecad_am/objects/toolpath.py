@@ -134,7 +134,9 @@ class Toolpath(Stage):
             made = planned(given[0]) if fit is None else planned(given[0], fit)
             toolpath = looked_at(made, given[0], sources)
             more = deposit_balance.issues(
-                deposit_balance.of_toolpath(given[0].wall, toolpath, given[0].process.bead_width)
+                deposit_balance.toolpath_balance(
+                    given[0].wall, toolpath, given[0].process.bead_width
+                )
             )
             other = in_planes(given[0], fit) if fixed is None else fixed
             return _outcome(

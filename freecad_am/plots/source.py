@@ -102,7 +102,7 @@ class Source:
         """The table of the bead model and its fit; None without one. InputError where the table cannot be read."""
         if self.process.bead_model == "none":
             return None
-        measured = bead_table.measured(self.process.bead_model)
+        measured = bead_table.read_table(self.process.bead_model)
         return measured, bead_model.fit(*measured)
 
     def segments(self, layers: tuple[int, int]) -> predicted.Segments:

@@ -79,10 +79,10 @@ def made(job: Job, results: Results, cell: Cell | None, timed: Timed, tell: Tell
         if results.planned is not None and cell is not None:
             figures.add_joints(found, results.planned.joint_path, cell, job.joints, results.seconds)
         balances = [
-            deposit_balance.of_toolpath(one.shape(), part, one.process.bead_width)
+            deposit_balance.toolpath_balance(one.shape(), part, one.process.bead_width)
             for one, (part, _) in zip(job.features, toolpath.parts, strict=True)
         ]
-        found["deposit"] = deposit_balance.as_dict(deposit_balance.together(balances))
+        found["deposit"] = deposit_balance.as_dict(deposit_balance.sum_balances(balances))
     with timed("preflight"):  # after what can be done while some of it is still looked for
         found["preflight"] = [one.as_dict() for one in results.preflight()]
     distances = results.distances()

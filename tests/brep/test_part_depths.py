@@ -52,7 +52,7 @@ def bracket():
 
 def balance(shape, wall="outer", width=WIDTH, faces=()):
     found = find_wall(shape, faces, wall)
-    return deposit_balance.of_wall(revolved_depths(shape, found, "Part"), width)
+    return deposit_balance.wall_balance(revolved_depths(shape, found, "Part"), width)
 
 
 def codes(found):
@@ -84,8 +84,8 @@ SOLID = {
 def test_a_solid_laid_as_a_skin_is_told_with_what_of_it_is_missing(name):
     shape, within = (make() for make in SOLID[name])
     found = balance(shape)
-    assert found.part == pytest.approx(shape.Volume, rel=1e-9)
-    assert found.part - found.left_out == pytest.approx(within.Volume, rel=0.04)
+    assert found.part_volume == pytest.approx(shape.Volume, rel=1e-9)
+    assert found.part_volume - found.left_out == pytest.approx(within.Volume, rel=0.04)
     assert codes(found) == ["NOT_DEPOSITED"] and found.outside == 0.0
 
 
@@ -115,7 +115,9 @@ def test_a_sheet_has_no_volume_and_its_other_faces_are_named():
     assert codes(balance(sheet)) == []
     found = balance(sheet, faces=names[:1])
     assert (
-        found.part is None and found.faces == tuple(names[1:]) and codes(found) == ["NOT_DEPOSITED"]
+        found.part_volume is None
+        and found.faces == tuple(names[1:])
+        and codes(found) == ["NOT_DEPOSITED"]
     )
 
 
@@ -136,7 +138,7 @@ def test_a_bowl_has_its_floor_left_out_and_a_bead_thicker_than_its_wall():
         (28, 0), (34, 0), (40, 6), (40, 8), (28, 8)
     )  # under the rounded edge it reaches farther in
     at_most, at_least = shape.common(ring.fuse(low)).Volume, shape.common(ring).Volume
-    assert 0.98 * at_least < found.part - found.left_out < 1.02 * at_most
+    assert 0.98 * at_least < found.part_volume - found.left_out < 1.02 * at_most
     assert found.outside == pytest.approx(found.beads * (1 - 4.7 / WIDTH), rel=0.1)
     texts = [issue.message for issue in deposit_balance.issues(found)]
     assert all(name in texts[0] for name in floor) and "4.7 mm thick" in texts[1]
@@ -155,7 +157,7 @@ def test_parts_of_any_size_take_little_memory(radius, height, width):
         assert tracemalloc.get_traced_memory()[1] < 100e6
     finally:
         tracemalloc.stop()
-    left = deposit_balance.of_wall(depths, width).left_out / shape.Volume
+    left = deposit_balance.wall_balance(depths, width).left_out / shape.Volume
     assert left == pytest.approx(max(1.0 - width / radius, 0.0) ** 2, abs=0.02)
 
 
@@ -168,9 +170,9 @@ def test_what_lies_in_the_substrate_does_not_count():
     ]
     points, corners = Part.makeBox(100, 100, 10, Vector(-50, -50, 0)).tessellate(0.1)
     ground = Body("Plate", np.array([tuple(p) for p in points]), np.array(corners, dtype=np.int64))
-    found = deposit_balance.of_wall(face_depths(shape, skin, "Part", ground), WIDTH)
-    assert found.part == pytest.approx(0.75 * shape.Volume, rel=0.03)
-    assert found.part - found.left_out == pytest.approx(tube(30, 22, 30.0).Volume, rel=0.05)
+    found = deposit_balance.wall_balance(face_depths(shape, skin, "Part", ground), WIDTH)
+    assert found.part_volume == pytest.approx(0.75 * shape.Volume, rel=0.03)
+    assert found.part_volume - found.left_out == pytest.approx(tube(30, 22, 30.0).Volume, rel=0.05)
 
 
 def test_of_solids_that_touch_the_one_of_revolution_is_not_taken_for_all():
@@ -201,7 +203,7 @@ def test_the_one_solid_of_revolution_that_is_most_of_a_part_is_taken_and_the_res
 def test_a_solid_left_aside_is_told_however_small():
     shape = Part.Compound([tube(30, 22), Part.makeBox(5, 5, 5, Vector(40, 0, 0))])
     found = balance(shape)
-    assert found.left_out < deposit_balance.NEGLIGIBLE * found.part
+    assert found.left_out < deposit_balance.NEGLIGIBLE * found.part_volume
     assert "1 solid(s) (Solid2)" in deposit_balance.issues(found)[0].message and codes(found) == [
         "NOT_DEPOSITED"
     ]

@@ -184,7 +184,7 @@ def test_what_a_bead_model_predicts(modelled):
         and width.across()[0] < 4.8
         and width.across()[1] > 5.2
     )
-    measured = bead_table.measured("csw")
+    measured = bead_table.read_table("csw")
     model = bead_model.fit(*measured)
     (fit,) = catalogue.picture("fit", modelled).charts
     for radius, line, dots in zip(np.unique(measured.radius), fit.curves[::2], fit.curves[1::2]):

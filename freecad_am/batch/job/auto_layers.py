@@ -11,7 +11,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.process.model import bead_table
-from freecad_am.core.process.model.wire import with_model
+from freecad_am.core.process.model.wire import model_wire_feed
 from freecad_am.sections import quantity
 
 WORD = "auto"
@@ -28,7 +28,7 @@ def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, A
     spacing times layer height is the wire that a millimetre of bead gets, for then what is fed is what fills the layer.
     InputError BAD_VALUE without a bead model, or where beads would lie farther apart than they are wide."""
     key = HEIGHT if section.get(HEIGHT) == WORD else SPACING
-    model = bead_table.of_process(process)
+    model = bead_table.process_model(process)
     if model is None:
         raise InputError(
             "BAD_VALUE",
@@ -50,7 +50,7 @@ def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, A
                 "{:g} mm is out of range; give more than 0 mm",
                 height,
             )
-        spacing = process.wire.section * with_model(process, model) / speed / height
+        spacing = process.wire.section * model_wire_feed(process, model) / speed / height
         if spacing > process.bead_width:
             raise InputError(
                 "BAD_VALUE",

@@ -103,9 +103,14 @@ def once(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
     how = "what of beads of one layer is wider than they are apart, against 10 % of the beads"
     if balance.filled:
         how = "volume of the beads, as wide as they are apart, less what they cover, against 10 % of the part"
-    whole = (balance.part or 0.0) - balance.hub if balance.filled else balance.beads or 0.0
+    whole = (balance.part_volume or 0.0) - balance.hub if balance.filled else balance.beads or 0.0
     return Promise(
-        what, how, not found, balance.twice / MM3, "cm3", deposit_balance.MUCH * whole / MM3
+        what,
+        how,
+        not found,
+        balance.twice / MM3,
+        "cm3",
+        deposit_balance.TWICE_WARNING_SHARE * whole / MM3,
     )
 
 

@@ -26,13 +26,12 @@ LEANS = ("lead", "tilt")
 _OF_KIND = {"contour": CONTOUR, "connected": CONTOUR, "closing": CLOSING}  # of a bead of a filling
 
 
-def of_filled(kind: str, layer: int) -> str:
-    """The class of a bead of a filling, by what it is there and its layer: all of the lowest layer is `first_layer`; of the
-    rest contours are of a class, what closes gaps of another, and the rest fills."""
+def fill_bead_class(kind: str, layer: int) -> str:
+    """The class of a bead of a filling, by its role and its layer: every bead of the lowest layer is `first_layer`."""
     return FIRST_LAYER if layer == 0 else _OF_KIND.get(kind, FILL)
 
 
-def of_wall(layer: int, closing: bool = False) -> str:
+def wall_bead_class(layer: int, closing: bool = False) -> str:
     """The class of a bead that is all of a wall's thickness, or a curve."""
     return FIRST_LAYER if layer == 0 else CLOSING if closing else WALL
 
@@ -41,19 +40,19 @@ def leaning(
     build: BuildDirectionParameters, process: ProcessParameters, name: str
 ) -> BuildDirectionParameters:
     """The build direction with the lead and tilt of a class."""
-    own: dict[str, Any] = {
+    lean_values: dict[str, Any] = {
         key: value for key, value in process.of_class(name).own_values().items() if key in LEANS
     }
-    return replace(build, **own) if own else build
+    return replace(build, **lean_values) if lean_values else build
 
 
 def refuse_speeds(process: ProcessParameters) -> None:
     """InputError NOT_FOR_FAMILY where classes have travel speeds and a bead model sets these."""
-    own = ("travel_speed", "start_travel_speed", "end_travel_speed")
+    speed_keys = ("travel_speed", "start_travel_speed", "end_travel_speed")
     named = [
         f"process.classes.{name}"
         for name in CLASSES
-        if any(process.of_class(name).own_values().get(key) for key in own)
+        if any(process.of_class(name).own_values().get(key) for key in speed_keys)
     ]
     named += [
         f"process.{end}" for end in (START, END) if getattr(process, end).travel_speed is not None
@@ -67,7 +66,7 @@ def refuse_speeds(process: ProcessParameters) -> None:
         )
 
 
-def with_ends(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
+def set_bead_ends(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     """The toolpath with the lengths, speeds and ramps of the phases at the ends of its beads. InputError PHASE_LENGTH where
     they are longer than a bead, BAD_VALUE for a ramp from no speed."""
     of_class = {name: _ends(process.for_class(name), name) for name in (*CLASSES, "")}
@@ -77,7 +76,7 @@ def with_ends(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     for number, layer in enumerate(toolpath.layers):
         for bead in layer.beads:
             ends = of_class[bead.bead_class]
-            used, more = (
+            used, ramp_text = (
                 ends[0] + ends[2] + sum(ends[4:]) if ends else 0.0,
                 " with their ramps" if ends[4:] else "",
             )
@@ -88,7 +87,7 @@ def with_ends(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
                     "start and end take {:.4g} mm{}, and a bead of this class in layer {} is {:.4g} mm long; make them "
                     "shorter for the class, or lay no beads as short as that",
                     used,
-                    Word(more),
+                    Word(ramp_text),
                     number,
                     bead.length,
                 )

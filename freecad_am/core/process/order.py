@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""In which order the beads of several solids are laid, and how long the machine waits for what lies below to cool.
+"""Order of deposit of the beads of several solids, and waits for the deposit below to cool.
 
 Around the axis (Dai 2020, section 5) the heat is spread: the same layer of all solids on a base in turn, the same ring of
-each, the inner rings first. Solid by solid is the other way. A plane layer is laid island by island, the nearest next, from
-inside out in each.
+each, the inner rings first. Solid by solid is the other order. A plane layer is deposited island by island, the nearest next,
+from inside out in each.
 """
 
 from __future__ import annotations
@@ -31,33 +31,33 @@ class RankedBead(NamedTuple):
 
 
 class Course(NamedTuple):
-    """Layers in the order of deposit, and for each the solid (group, solid) of each of its beads. numbers: those of the
-    layers here, by group, solid (0 for all that are deposited together) and layer of that stack."""
+    """Layers in the order of deposit, and for each the solid (group, solid) of each of its beads. numbers: layer number here, by
+    group, solid (0 if several are deposited together) and layer of that stack.
+    """
 
     layers: tuple[Layer, ...]
     solids: tuple[tuple[tuple[int, int], ...], ...]
     numbers: Mapping[tuple[int, int, int], int] = MappingProxyType({})
 
     def number(self, group: int, solid: int, layer: int) -> int | None:
-        """The number here of a layer of a stack; None where nothing is deposited in it nor above it."""
+        """The number here of a layer of a stack; None if neither it nor a layer above has deposit."""
         return self.numbers.get((group, solid, layer), self.numbers.get((group, 0, layer)))
 
 
 @dataclasses.dataclass
 class IslandOrder:
-    """In which order the islands of one layer after the other are laid: the nearest next, or as those under them were.
+    """Order of the islands of consecutive layers: the nearest next, or the order of the islands below.
 
-    as_below: the latter, so that all of them cool for as long as a layer takes. point: (3,) mm, where the torch is; None:
-    the first island comes first. below: middles (k, 3) of the islands of the layer before, in their order; None: no layer is
-    below.
+    as_below: the latter, so that all islands cool for the time of a layer. point: (3,) mm, the torch position; None: the first
+    island comes first. below: middles (k, 3) of the islands of the layer before, in their order; None: no layer is below.
     """
 
     as_below: bool = False
     point: Array | None = None
     below: Array | None = None
 
-    def of(self, beads: Sequence[Bead], islands: Sequence[Sequence[int]]) -> list[Bead]:
-        """The beads of a layer in the order of deposit. islands: the numbers of those of each, from inside out."""
+    def order_islands(self, beads: Sequence[Bead], islands: Sequence[Sequence[int]]) -> list[Bead]:
+        """The beads of a layer in the order of deposit. islands: the bead numbers of each island, from inside out."""
         if self.as_below and islands:
             middle = [
                 np.vstack([beads[number].points for number in sorted(island)]).mean(axis=0)
@@ -84,13 +84,13 @@ class IslandOrder:
         return [beads[number] for number in order]
 
 
-def ordered(beads: Sequence[RankedBead], order: str) -> Course:
+def order_beads(beads: Sequence[RankedBead], order: str) -> Course:
     """Beads as layers: group by group, and in each around the axis layer by layer, or solid by solid ('feature').
 
-    A layer of a group, or of a solid, in which no bead lies stays as a layer without beads, so that each keeps its number.
+    A layer of a group, or of a solid, without beads stays as an empty layer, so that each keeps its number.
     """
 
-    def place(ranked: RankedBead) -> tuple[int, ...]:
+    def rank(ranked: RankedBead) -> tuple[int, ...]:
         if order == "feature":
             return ranked.group, ranked.solid, ranked.layer, -ranked.ring
         return ranked.group, ranked.layer, -ranked.ring, ranked.solid
@@ -100,7 +100,7 @@ def ordered(beads: Sequence[RankedBead], order: str) -> Course:
 
     layers: list[list[RankedBead]] = []
     reached: dict[tuple[int, int], int] = {}  # the layer each solid has come to
-    for ranked in sorted(beads, key=place):
+    for ranked in sorted(beads, key=rank):
         solid = ranked.group, ranked.solid
         if reached.get(solid, ranked.layer) != ranked.layer:
             ranked = ranked._replace(bead=dataclasses.replace(ranked.bead, returns=True))
@@ -108,70 +108,70 @@ def ordered(beads: Sequence[RankedBead], order: str) -> Course:
         if not layers or layer_of(layers[-1][0]) != layer_of(ranked):
             layers.append([])
         layers[-1].append(ranked)
-    made: list[Layer] = []
+    layers_: list[Layer] = []
     solids: list[tuple[tuple[int, int], ...]] = []
     numbers: dict[tuple[int, int, int], int] = {}
-    before, expected = None, 0
+    previous_stack, expected = None, 0
     for layer in layers:
-        *one, number = layer_of(layer[0])
-        expected = expected if one == before else 0
+        *stack, number = layer_of(layer[0])
+        expected = expected if stack == previous_stack else 0
         for missing in range(expected, number):
-            numbers[one[0], one[1], missing] = len(made)
-            made.append(Layer(()))
+            numbers[stack[0], stack[1], missing] = len(layers_)
+            layers_.append(Layer(()))
             solids.append(())
-        numbers[one[0], one[1], number] = len(made)
-        made.append(Layer(tuple(ranked.bead for ranked in layer), first=one != before))
+        numbers[stack[0], stack[1], number] = len(layers_)
+        layers_.append(Layer(tuple(ranked.bead for ranked in layer), first=stack != previous_stack))
         solids.append(tuple((ranked.group, ranked.solid) for ranked in layer))
-        before, expected = one, number + 1
-    return Course(tuple(made), tuple(solids), numbers)
+        previous_stack, expected = stack, number + 1
+    return Course(tuple(layers_), tuple(solids), numbers)
 
 
-def waited(
-    course: Course, wait: float, rapid_speed: float, least: float = 0.0
+def add_waits(
+    course: Course, wait: float, rapid_speed: float, min_layer_time: float = 0.0
 ) -> tuple[Layer, ...]:
-    """The layers with so much time before each that no solid is returned to sooner than `wait` s after its layer before, and
-    that none begins sooner than `least` s after the one before it.
+    """The layers with waits before them.
 
-    Rapids count with the straight way between beads alone, so that what is waited is rather too long.
+    No solid is returned to sooner than `wait` s after its layer before, and no layer begins sooner than `min_layer_time` s after
+    the one before. Rapids count as straight moves between beads, so waits are rather too long.
     """
     now, layers = 0.0, []
-    ended: dict[tuple[int, int], float] = {}
-    at: Array | None = None
-    time = least
+    end_times: dict[tuple[int, int], float] = {}
+    position: Array | None = None
+    time = min_layer_time
     for layer, solids in zip(course.layers, course.solids, strict=True):
         starts: dict[tuple[int, int], float] = {}
         ends: dict[tuple[int, int], float] = {}
-        short = 0.0 if layer.first else least - time  # of the layer before
+        short = 0.0 if layer.first else min_layer_time - time  # of the layer before
         time = 0.0
         for bead, solid in zip(layer.beads, solids, strict=True):
-            if at is not None:
-                time += float(np.linalg.norm(bead.points[0] - at)) / rapid_speed
+            if position is not None:
+                time += float(np.linalg.norm(bead.points[0] - position)) / rapid_speed
             starts.setdefault(solid, time)
             time += float(
                 (np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / bead.speed[1:]).sum()
             )
-            ends[solid], at = time, bead.points[-1]
+            ends[solid], position = time, bead.points[-1]
         pause = max(
             (
-                ended[solid] + wait - now - start
+                end_times[solid] + wait - now - start
                 for solid, start in starts.items()
-                if solid in ended
+                if solid in end_times
             ),
             default=0.0,
         )
         pause = max(pause, short, 0.0)
         layers.append(dataclasses.replace(layer, wait=pause))
-        ended.update({solid: now + pause + end for solid, end in ends.items()})
+        end_times.update({solid: now + pause + end for solid, end in ends.items()})
         now += pause + time
     return tuple(layers)
 
 
-def no_shorter(toolpath: Toolpath, least: float, rapid_speed: float) -> Toolpath:
-    """The toolpath with waits before its layers, so that none takes less than `least` s, and a note of them."""
-    if least <= 0.0:
+def enforce_layer_time(toolpath: Toolpath, min_layer_time: float, rapid_speed: float) -> Toolpath:
+    """The toolpath with waits before its layers, so that none takes less than `min_layer_time` s, and a note about the waits."""
+    if min_layer_time <= 0.0:
         return toolpath
     solids = tuple(((0, 0),) * len(layer.beads) for layer in toolpath.layers)
-    layers = waited(Course(toolpath.layers, solids), 0.0, rapid_speed, least)
+    layers = add_waits(Course(toolpath.layers, solids), 0.0, rapid_speed, min_layer_time)
     waits = [layer.wait for layer in layers if layer.wait > 0.0]
     text = (
         [
@@ -185,7 +185,7 @@ def no_shorter(toolpath: Toolpath, least: float, rapid_speed: float) -> Toolpath
                     len(layers),
                     max(waits),
                     sum(waits),
-                    least,
+                    min_layer_time,
                 ),
             )
         ]

@@ -13,7 +13,7 @@ from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.filled import CladdingParameters
 from ..parameters.process import ProcessParameters
 from ..process.model.bead_model import BeadModel
-from ..process.order import IslandOrder, RankedBead, ordered, waited
+from ..process.order import IslandOrder, RankedBead, add_waits, order_beads
 from ..toolpath import Bead, Toolpath
 from .progress import Progress, silent
 from .solids.beads import MadeBead, bead_of
@@ -61,7 +61,7 @@ def plan(
             for curve in picture.curves:
                 made.append(bead_of(curve, layer, strategy, build, process, model))
                 beads.append(made[-1].bead)
-            beads = order.of(beads, picture.islands)
+            beads = order.order_islands(beads, picture.islands)
             ranked += [
                 RankedBead(0, number, layer.number, -rank, bead) for rank, bead in enumerate(beads)
             ]
@@ -73,8 +73,11 @@ def plan(
             "spacing, or thin = single",
             strategy.least_bead,
         )
-    layers = waited(
-        ordered(ranked, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time
+    layers = add_waits(
+        order_beads(ranked, strategy.order),
+        strategy.wait,
+        process.rapid_speed,
+        strategy.min_layer_time,
     )
     noted = [
         one

@@ -83,7 +83,7 @@ def _classed(
     label: str,
 ) -> Bead:
     """The bead at a place, layer and number in it, as its class is laid."""
-    name = classes.of_wall(place[0])
+    name = classes.wall_bead_class(place[0])
     own = classes.leaning(build, process, name), process.for_class(name)
     return replace(_bead(curve, fixed, height, again, sum(place), *own, label), bead_class=name)
 

@@ -17,7 +17,7 @@ from ..geometry.on_hub import Base, SolidsOnHub
 from ..geometry.plane import Plane
 from ..issues import WARNING, Issue, Text, Word
 from ..process.deposit import support
-from ..process.deposit.pieces import Pieces, cut
+from ..process.deposit.pieces import Pieces, cut_beads
 from ..toolpath import Toolpath
 from ..types import Array, Mask
 
@@ -44,7 +44,7 @@ def with_support(
     hub is known by its surface alone. The first layer of a wall lies by its making where the wall begins, and is carried.
     """
     ground = _Ground(toolpath, planes, bodies, bases)
-    open_, issues = support.carried(
+    open_, issues = support.find_unsupported(
         toolpath, ground, toolpath.family in BY_ITSELF, _lowest(toolpath, toolpath.family, 0)
     )
     return replace(
@@ -64,7 +64,7 @@ def of_feature(
     part, numbers = toolpath.parts[number]
     ground = _Ground(part, planes, bodies, bases)
     whole = replace(toolpath, layer_height=part.layer_height)
-    return support.carried(
+    return support.find_unsupported(
         whole,
         ground,
         part.family in BY_ITSELF,
@@ -91,7 +91,7 @@ def over_edge(
     """A warning where beads of the first layer lie on the plane of the platform, a disc of `diameter` mm about the origin of
     the frame (4, 4) in part coordinates, or of solids below it, and beyond its edge by more than half of their width, on
     none of the bodies. feature: the frame that `cell.mount: feature` would have instead, which is tried."""
-    first = cut(replace(toolpath, layers=toolpath.layers[:1]), support.PIECE)
+    first = cut_beads(replace(toolpath, layers=toolpath.layers[:1]), support.PIECE)
     beyond = _beyond(toolpath, first, frame, diameter)
     out = np.flatnonzero(beyond > 0.5 * first.width)
     out = out[~_Ground(toolpath, (), bodies, ())(first.middle[out], first.build[out])]
@@ -152,7 +152,7 @@ def stands_on(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> bool:
 def above(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> list[Issue]:
     """A warning where most of the first layer lies above the plane of the platform, z = 0 of the frame (4, 4) in part
     coordinates, and on none of the bodies."""
-    first = cut(replace(toolpath, layers=toolpath.layers[:1]), support.PIECE)
+    first = cut_beads(replace(toolpath, layers=toolpath.layers[:1]), support.PIECE)
     height = (first.middle - frame[:3, 3]) @ frame[:3, 2]
     up = np.flatnonzero(height > support.REACH * toolpath.layer_height)
     up = up[~_Ground(toolpath, (), bodies, ())(first.middle[up], first.build[up])]

@@ -49,7 +49,7 @@ def _balance(
         base = None if under is None or not chosen else (under, chosen)
         faces = chosen if under is None else ()
         solids = found_in(parts, faces, under, base, DevelopableParameters(chord_error=COARSE))
-        return deposit_balance.of_feature(solids, width)
+        return deposit_balance.feature_balance(solids, width)
     if found.kind not in (REVOLUTION, SURFACE) or first.shape is None:
         return None
     shape = first.shape.copy(False)
@@ -62,4 +62,4 @@ def _balance(
         depths = part_depths.face_depths(
             shape, faces, first.label, None if under is None else under.body()
         )
-    return None if depths is None else deposit_balance.of_wall(depths, width)
+    return None if depths is None else deposit_balance.wall_balance(depths, width)

@@ -101,7 +101,7 @@ class ToolpathPanel(StagePanel):
         if name in ("", NONE):
             return
         try:
-            measured = bead_table.measured(name)
+            measured = bead_table.read_table(name)
             model = bead_model.fit(*measured)
         except InputError as error:
             note.setText(translated_error(error))

@@ -15,7 +15,7 @@ from ..stage import stage_of
 def expected(value: Any, feature: Any = None) -> tuple[Issue, ...]:
     """Findings about the result of a feature, of its object where there is one: with the beads of the toolpath made of it,
     else with those of a new one."""
-    return deposit_balance.issues(deposit_balance.of_feature(value, bead_width(feature)))
+    return deposit_balance.issues(deposit_balance.feature_balance(value, bead_width(feature)))
 
 
 def bead_width(feature: Any = None) -> float:

@@ -25,7 +25,7 @@ def looked_at(toolpath: CoreToolpath, of: Given, sources: Sequence[Taken]) -> Co
     if kind == "curves" and of.wall.edges is None:  # the table itself is the part
         return toolpath
     progress.report(LOOKED, "looking whether the deposit lies on the part")
-    places = on_part.places(toolpath)
+    places = on_part.sample_places(toolpath)
     if kind == "curves":
         return _on_edges(toolpath, of, sources[0], places)
     if kind == "cladding":
@@ -35,7 +35,7 @@ def looked_at(toolpath: CoreToolpath, of: Given, sources: Sequence[Taken]) -> Co
     ):  # where the part was cut, above the surface that beads of the layer lie on
         up = of.strategy.share_of_cut * of.strategy.layer_height * places.build
         places = places._replace(points=places.points + up)
-    limit = on_part.allowed(toolpath, getattr(of.strategy, "margin", 0.0))
+    limit = on_part.allowed_distance(toolpath, getattr(of.strategy, "margin", 0.0))
     middle = getattr(of.strategy, "wall", "") == "middle"  # between two faces, on neither
     if middle and not sources[0].shape.Solids:
         return toolpath
@@ -54,7 +54,7 @@ def looked_at(toolpath: CoreToolpath, of: Given, sources: Sequence[Taken]) -> Co
         from ...core.inspection.fit_layers import moved_most  # jobs without a scan need none of it
 
         off = np.maximum(off - moved_most(toolpath.fitted, places.layer), 0.0)
-    return on_part.judged(toolpath, places, off, limit)
+    return on_part.check_on_part(toolpath, places, off, limit)
 
 
 def _on_faces(
@@ -69,7 +69,7 @@ def _on_faces(
     else:
         body = source.body()
         off = np.maximum(off_facets(body.vertices, body.triangles, feet) - of.wall.smoothing, 0.0)
-    return on_part.judged(toolpath, places, off, limit)
+    return on_part.check_on_part(toolpath, places, off, limit)
 
 
 def _on_edges(
@@ -79,7 +79,7 @@ def _on_edges(
     up = places.layer // (len(toolpath.layers) // of.strategy.repeat) * of.strategy.layer_height
     limit = toolpath.chord_error + on_part.ROUNDED
     off = off_edges(source.shape, of.wall.edges, places.points - up[:, None] * places.build)
-    return on_part.judged(toolpath, places, off, limit)
+    return on_part.check_on_part(toolpath, places, off, limit)
 
 
 def _off_solid(source: Taken, points: Any, limit: float) -> Any:

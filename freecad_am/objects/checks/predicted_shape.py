@@ -20,8 +20,16 @@ from ...core.process.deposit.spacing import is_spiral, turns_of
 from ...core.process.shape import compare
 from ...core.process.shape.compare import Compared
 from ...core.process.shape.deviation import deviation_map
-from ...core.process.shape.faces import BOTH, OUTSIDE, Faces, faces, thinned, together, uncovered
-from ...core.process.shape.laying import PredictedDeposit, parts_of, predicted_deposit
+from ...core.process.shape.faces import (
+    BOTH,
+    OUTSIDE,
+    Faces,
+    faces,
+    join_faces,
+    thin_faces,
+    uncovered_faces,
+)
+from ...core.process.shape.laying import PredictedDeposit, feature_parts, predicted_deposit
 from ...core.strategies.families import family_of
 from ...core.toolpath import Toolpath as CoreToolpath
 from ..planned.toolpaths import Given
@@ -94,7 +102,7 @@ def predicted(
 ) -> tuple[PredictedDeposit, Compared]:
     """The deposit of a toolpath, and the faces of its features against it. InputError NO_PREDICTION."""
     processes: list[ProcessParameters] = [target.given.process for target in targets]
-    parts = parts_of(toolpath, processes)
+    parts = feature_parts(toolpath, processes)
     if any(part.toolpath.bead_width is None for part in parts):
         raise InputError(
             NOTHING, "toolpath", "it is not known how wide its beads count; plan it again"
@@ -111,7 +119,7 @@ def predicted(
         parts, lambda share, text: report(0.8 * share, Text("predicting the deposit, {}", text))
     )
     report(0.8, "comparing the predicted deposit with the part")
-    found = compare.compared(deposit, uncovered(asked))
+    found = compare.compare_deposit(deposit, uncovered_faces(asked))
     if not len(found.faces):
         raise InputError(
             NOTHING,
@@ -167,10 +175,10 @@ def _faces(target: Target) -> Faces:
     """The faces of a feature that its deposit is to cover. InputError NO_FACES."""
     if target.kind in ("solid", "developable"):
         bodies = [body for group in target.given.wall.groups for body in group.bodies]
-        return thinned(together([faces(body.vertices, body.triangles) for body in bodies]))
+        return thin_faces(join_faces([faces(body.vertices, body.triangles) for body in bodies]))
     names = target.given.wall.faces if target.kind == "cladding" else target.chosen
-    return thinned(
-        together(
+    return thin_faces(
+        join_faces(
             [_of_source(source, names if k == 0 else ()) for k, source in enumerate(target.sources)]
         )
     )
@@ -191,7 +199,7 @@ def _of_source(source: Taken, names: Sequence[str]) -> Faces:
             source.label,
         )
     side = OUTSIDE if shape.Solids else BOTH
-    return together(
+    return join_faces(
         [faces(*triangles_of(face, DEFLECTION), side) for face in chosen or known.values()]
     )
 

@@ -151,9 +151,9 @@ def _survey(toolpath: Any, run: _Run | None) -> Survey:
 
     def survey() -> Surveyed:
         made = planned()
-        balance = deposit_balance.together(
+        balance = deposit_balance.sum_balances(
             [
-                deposit_balance.of_toolpath(shape(), part, width)
+                deposit_balance.toolpath_balance(shape(), part, width)
                 for shape, width, (part, _) in zip(shapes, widths, made.parts, strict=True)
             ]
         )

@@ -144,7 +144,7 @@ def _judged(
     sequence.refuse_floating(toolpath, number, lengths)
     given = dataclasses.replace(one.given, stands=stands)
     seen = looked_at(part if planes else over_edge(part, given), one.given, one.sources)
-    balance = deposit_balance.of_toolpath(one.given.wall, part, one.given.process.bead_width)
+    balance = deposit_balance.toolpath_balance(one.given.wall, part, one.given.process.bead_width)
     seen = dataclasses.replace(seen, unsupported=math.fsum(lengths.values()))
     own = (*(above_platform(part, given) if bases else ()), *seen.issues)
     more = (*deposit_balance.issues(balance), *found, *sequence.renumbered(own, numbers))

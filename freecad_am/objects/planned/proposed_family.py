@@ -30,7 +30,7 @@ from ...core.layers.curved.field import CONTACT_HEIGHTS
 from ...core.layers.planes.stacking import evaluate_direction, facets, rank_directions
 from ...core.parameters.filled import GEODESIC, PLANES, DevelopableParameters, SolidParameters
 from ...core.parameters.strategy import SurfaceParameters
-from ...core.process.deposit.balance import MM3, NEGLIGIBLE, of_wall
+from ...core.process.deposit.balance import MM3, NEGLIGIBLE, wall_balance
 from ..developable_feature import found_in
 from ..shapes.bodies import Taken
 from .on_bends import carried, on_bend
@@ -149,9 +149,9 @@ def proposed(
                 "revolution", "", Text("{} is a skin that turns about one axis", part.label)
             )
         deep = part_depths.revolved_depths(shape, wall, part.label)
-        balance = None if deep is None else of_wall(deep, width)
+        balance = None if deep is None else wall_balance(deep, width)
         out = 0.0 if balance is None else balance.left_out or 0.0
-        if balance is None or out <= NEGLIGIBLE * (balance.part or 0.0):
+        if balance is None or out <= NEGLIGIBLE * (balance.part_volume or 0.0):
             why = Text(
                 "{} turns about one axis, and its wall is one bead of {:.4g} mm", part.label, width
             )
@@ -159,7 +159,7 @@ def proposed(
         left = Text(
             "; it turns about one axis, but a wall of one bead would leave out {:.3g} of its {:.3g} cm3",
             out / MM3,
-            (balance.part or 0.0) / MM3,
+            (balance.part_volume or 0.0) / MM3,
         )
     if names and shape.Solids and not _thin(part, width, names):
         return Proposal(
@@ -414,13 +414,14 @@ def _thin(part: Taken, width: float, chosen: Sequence[str] = ()) -> bool:
         deep = part_depths.face_depths(part.shape, names, part.label, None)
     except (InputError, *kernel.FAULTS):
         return False
-    balance = None if deep is None else of_wall(deep, width)
+    balance = None if deep is None else wall_balance(deep, width)
     return (
         balance is not None
-        and (balance.left_out or 0.0) <= NEGLIGIBLE * (balance.part or 0.0)
+        and (balance.left_out or 0.0) <= NEGLIGIBLE * (balance.part_volume or 0.0)
         and (
             bool(chosen)
-            or (balance.beads or 0.0) - (balance.outside or 0.0) <= TWOFOLD * (balance.part or 0.0)
+            or (balance.beads or 0.0) - (balance.outside or 0.0)
+            <= TWOFOLD * (balance.part_volume or 0.0)
         )
     )
 

@@ -25,9 +25,9 @@ from ...core.process import classes
 from ...core.process.deposit.twice import deposited_twice
 from ...core.process.model import bead_table, held_width
 from ...core.process.model.bead_model import BeadModel
-from ...core.process.model.material import with_speed_issues
-from ...core.process.model.wire import fed
-from ...core.process.order import no_shorter
+from ...core.process.model.material import check_speeds
+from ...core.process.model.wire import set_wire_feed
+from ...core.process.order import enforce_layer_time
 from ...core.strategies import support
 from ...core.strategies.clearance import look as clearance_look
 from ...core.strategies.families import family_of
@@ -62,7 +62,7 @@ class Given:
     @property
     def model(self) -> BeadModel | None:
         """The bead model of the process."""
-        return bead_table.of_process(self.process)
+        return bead_table.process_model(self.process)
 
 
 def seen_of(cell: CellParameters) -> CellParameters:
@@ -138,10 +138,12 @@ def layers_of(of: Given) -> CoreToolpath:
     family = family_of(of.strategy)
     layers, model = _PLANNERS[family.kind].layers(of), of.model
     if model is not None and not family.filled:
-        layers = held_width.held(layers, process, model)
-    made = classes.with_ends(layers, process)
+        layers = held_width.hold_widths(layers, process, model)
+    made = classes.set_bead_ends(layers, process)
     if not family.filled:
-        made = no_shorter(made, getattr(of.strategy, "min_layer_time", 0.0), process.rapid_speed)
+        made = enforce_layer_time(
+            made, getattr(of.strategy, "min_layer_time", 0.0), process.rapid_speed
+        )
     twice = made.twice if family.filled else deposited_twice(made)
     return dataclasses.replace(
         made, max_from_vertical=of.build.max_from_vertical, twice=twice, retreat=process.retreat
@@ -158,7 +160,7 @@ def kept_clear(
 
 def with_wire(toolpath: CoreToolpath, of: Given) -> CoreToolpath:
     """The toolpath with the speed of its wire, and whether its beads are laid as their material is."""
-    return with_speed_issues(fed(toolpath, of.process, of.model), of.process)
+    return check_speeds(set_wire_feed(toolpath, of.process, of.model), of.process)
 
 
 def bases_of(of: Given) -> list[Any]:

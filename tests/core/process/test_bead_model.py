@@ -148,7 +148,7 @@ def test_the_height_of_beads_of_one_section():
     heights = model.heights_of_section(widths, 9.5)
     straight = model.straight_speed(9.5)
     assert straight * 60.0 == pytest.approx((model.width.m / (9.5 - model.width.t)) ** 3, rel=1e-12)
-    section = 9.5 * float(model.height.at(np.array([straight]), np.array([np.inf]))[0])
+    section = 9.5 * float(model.height.value_at(np.array([straight]), np.array([np.inf]))[0])
     np.testing.assert_allclose(heights * widths, section, rtol=1e-12)
     # asked for outside of the table: the section of the straight bead that is really laid
     slow = model.heights_of_section(widths, 50.0) * widths
@@ -247,7 +247,7 @@ def test_speeds_a_machine_can_follow():
     asked = rng.uniform(5.0, 15.0, 301)
     asked[-1] = asked[0]
     for closed in (True, False):
-        got = bead_speed.followed(points, asked, closed, 20.0)
+        got = bead_speed.limit_acceleration(points, asked, closed, 20.0)
         step = np.linalg.norm(np.diff(points, axis=0), axis=1)
         assert (got <= asked).all()
         assert (np.abs(np.diff(got**2)) <= 2.0 * 20.0 * step + 1e-9).all()

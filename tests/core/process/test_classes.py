@@ -11,7 +11,7 @@ from freecad_am.core.parameters import bead_classes
 from freecad_am.core.parameters.bead_classes import CLASSES, BeadClass, classes, text_of
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.process.classes import leaning, of_filled, of_wall
+from freecad_am.core.process.classes import fill_bead_class, leaning, wall_bead_class
 
 KEYS = {
     "travel_speed": (0.1, 50.0),
@@ -77,8 +77,12 @@ def test_a_class_changes_what_it_names_alone():
 
 def test_which_class_a_bead_is_of():
     kinds = ("contour", "connected", "line", "zigzag", "spiral", "centre", "closing")
-    assert [of_filled(kind, 3) for kind in kinds] == ["contour"] * 2 + ["fill"] * 4 + ["closing"]
+    assert [fill_bead_class(kind, 3) for kind in kinds] == ["contour"] * 2 + ["fill"] * 4 + [
+        "closing"
+    ]
     assert (
-        {of_filled(kind, 0) for kind in kinds} == {of_wall(0), of_wall(0, True)} == {"first_layer"}
+        {fill_bead_class(kind, 0) for kind in kinds}
+        == {wall_bead_class(0), wall_bead_class(0, True)}
+        == {"first_layer"}
     )
-    assert (of_wall(2), of_wall(2, True)) == ("wall", "closing")
+    assert (wall_bead_class(2), wall_bead_class(2, True)) == ("wall", "closing")

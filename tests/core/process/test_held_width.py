@@ -63,7 +63,7 @@ def toolpath(beads):
 def test_rings_are_as_wide_as_asked_for_at_the_speed_of_the_model():
     process = ProcessParameters(bead_model="csw", bead_width=9.5)
     path = toolpath([made(*ring(radius, 0.3), True) for radius in (31.0, 45.0, 80.0)])
-    found = held_width.held(path, process, bead_table.of_process(process))
+    found = held_width.hold_widths(path, process, bead_table.process_model(process))
     for (_, _, bead), radius in zip(found, (31.0, 45.0, 80.0), strict=True):
         speed = (M / (9.5 - P * math.cos(0.3) / radius - T)) ** 3 / 60.0
         np.testing.assert_allclose(bead.speed, speed, rtol=5e-4)
@@ -81,7 +81,7 @@ def test_where_a_bead_bends_its_speed_changes_no_faster_than_asked_for():
     points = np.c_[flat, np.zeros(len(flat))]
     process = ProcessParameters(bead_model="csw", bead_width=9.5, acceleration=5.0)
     path = toolpath([made(points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), False)])
-    ((_, _, bead),) = held_width.held(path, process, bead_table.of_process(process))
+    ((_, _, bead),) = held_width.hold_widths(path, process, bead_table.process_model(process))
     assert bead.speed.max() > 1.4 * bead.speed.min()
     time = np.linalg.norm(np.diff(points, axis=0), axis=1) / bead.speed[1:]
     change = np.abs(np.diff(bead.speed[1:])) / (0.5 * (time[1:] + time[:-1]))
@@ -92,7 +92,10 @@ def test_wire_in_proportion_keeps_the_section_of_every_ring():
     wire = WireParameters(feed_mode="proportional")
     process = ProcessParameters(bead_model="csw", bead_width=9.5, wire=wire)
     path = toolpath([made(*ring(radius, 0.0), True) for radius in (31.0, 80.0)])
-    beads = [bead for _, _, bead in held_width.held(path, process, bead_table.of_process(process))]
+    beads = [
+        bead
+        for _, _, bead in held_width.hold_widths(path, process, bead_table.process_model(process))
+    ]
     sections = np.concatenate([bead.width * bead.height for bead in beads])
     np.testing.assert_allclose(sections, sections[0], rtol=1e-9)
     straight = (M / (9.5 - T)) ** 3 / 60.0
@@ -147,7 +150,7 @@ def test_straight_beads_at_several_wire_feeds_count_by_their_wire():
 
 def test_the_process_says_at_which_feed_the_model_is_asked():
     process = ProcessParameters(bead_model="li-2025", wire=WireParameters(feed=8000.0 / 60.0))
-    assert bead_table.of_process(process).wire_feed == pytest.approx(8000.0 / 60.0)
+    assert bead_table.process_model(process).wire_feed == pytest.approx(8000.0 / 60.0)
     auto = dataclasses.replace(process, wire=WireParameters())
-    assert bead_table.of_process(auto).wire_feed == pytest.approx(7000.0 / 60.0)
-    assert bead_table.of_process(ProcessParameters()) is None
+    assert bead_table.process_model(auto).wire_feed == pytest.approx(7000.0 / 60.0)
+    assert bead_table.process_model(ProcessParameters()) is None

@@ -11,7 +11,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.process import ProcessParameters, WireParameters
 from freecad_am.core.process.shape import compare
 from freecad_am.core.process.shape.faces import BOTH, faces
-from freecad_am.core.process.shape.laying import parts_of, predicted_deposit
+from freecad_am.core.process.shape.laying import feature_parts, predicted_deposit
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 WIDE, HIGH, SPEED = 6.0, 2.0, 8.0
@@ -62,7 +62,7 @@ def toolpath(layers, height=HIGH, width=WIDE, **more):
 
 def deposit(path, process=PROCESS, edge=None):
     return predicted_deposit(
-        parts_of(path, [process] * len(path.parts)), lambda share, text: None, edge
+        feature_parts(path, [process] * len(path.parts)), lambda share, text: None, edge
     )
 
 
@@ -98,7 +98,7 @@ def tube(inner, outer, height, sides=720):
 def first_air(grid, start, way, reach):
     """How far the deposit goes on from a point, by places one hundredth of a cube apart."""
     steps = np.arange(0.0, reach, 0.01 * grid.edge)
-    air = grid.at(np.asarray(start) + steps[:, None] * np.asarray(way)) < 0.5
+    air = grid.fill_at(np.asarray(start) + steps[:, None] * np.asarray(way)) < 0.5
     return steps[np.argmax(air)]
 
 
@@ -150,7 +150,7 @@ def test_it_holds_what_is_fed(feed):
         0.17 * edge,
         0.73 * edge,
     ]
-    assert abs(edge**3 * found.grid.at(lattice).sum() / fed - 1.0) < 1e-9
+    assert abs(edge**3 * found.grid.fill_at(lattice).sum() / fed - 1.0) < 1e-9
     assert abs(found.fed / fed - 1.0) < 1e-9 and abs(found.deposited / fed - 1.0) < 1e-9
     assert found.grid.filled.min() >= 0.0 and found.grid.filled.max() <= 1.0 + 1e-12
 
@@ -202,7 +202,7 @@ def test_a_wall_has_straight_sides_and_a_round_top(turn):
 def test_a_tube_is_known_from_both_faces():
     """Of a tube 3 mm thick beads of 6 mm leave 1.5 mm on either side, and no height is lost in a closed wall."""
     found = deposit(toolpath([[ring(30.0, k * HIGH)] for k in range(8)]), edge=0.75)
-    told = compare.compared(found, faces(*tube(28.5, 31.5, 15.0)))
+    told = compare.compare_deposit(found, faces(*tube(28.5, 31.5, 15.0)))
     middle = told.faces.points[:, 2] < 12.0
     assert len(told.deviation) > 5000 and not told.bare.any()
     assert np.abs(told.deviation[middle] - 1.5).max() < KNOWN * 0.75
@@ -274,7 +274,9 @@ def test_what_the_wire_feeds_makes_the_height(share):
     assert np.abs(found.drift - expected).max() < 0.25
     assert abs(np.polyfit(np.arange(9), found.drift, 1)[0] - (share - 1.0) * HIGH) < 0.02 * HIGH
     first = np.arange(9) == 0
-    shape = compare.figures(found, compare.compared(found, faces(*tube(38.0, 42.0, 14.0))), 0.0)
+    shape = compare.figures(
+        found, compare.compare_deposit(found, faces(*tube(38.0, 42.0, 14.0))), 0.0
+    )
     drift = next(
         one
         for one in compare.issues(shape, path.layer_heights, first, "{}")
@@ -330,13 +332,13 @@ def test_where_the_part_sticks_out_is_told():
         box((12.0, 4.0, 0.0), (48.0, 36.0, 13.0)),
         box((26.0, 36.0, 4.0), (34.0, 46.0, 10.0)),
     )
-    told = compare.compared(found, faces(*inner))
+    told = compare.compare_deposit(found, faces(*inner))
     assert told.faces.normals[:, 2].min() > -0.5  # what it stands on is not machined
     shape = compare.figures(found, told, 0.5)
     assert shape.least > 0.5 and not compare.issues(
         shape, np.full(8, HIGH), np.arange(8) == 0, "{}"
     )
-    both = compare.compared(
+    both = compare.compare_deposit(
         found, faces(np.vstack([inner[0], boss[0]]), np.vstack([inner[1], boss[1] + 8]))
     )
     shape = compare.figures(found, both, 0.5)
@@ -368,7 +370,7 @@ def test_of_an_open_face_the_side_with_less_counts():
     )
     sheet = np.array([(-40, 1, 2), (40, 1, 2), (40, 1, 11), (-40, 1, 11)], float)
     for turned in (1, -1):
-        told = compare.compared(
+        told = compare.compare_deposit(
             found, faces(sheet, np.array([(0, 1, 2), (0, 2, 3)])[:, ::turned], BOTH)
         )
         assert np.abs(told.deviation - 2.0).max() < KNOWN * 0.75

@@ -12,8 +12,8 @@ from freecad_am.core.parameters.bead_classes import BeadEnd, BeadStart
 from freecad_am.core.parameters.process import MaterialParameters, ProcessParameters, WireParameters
 from freecad_am.core.preflight import deposit
 from freecad_am.core.process.model import bead_table, wire_taken
-from freecad_am.core.process.model.material import with_speed_issues
-from freecad_am.core.process.model.wire import fed
+from freecad_am.core.process.model.material import check_speeds
+from freecad_am.core.process.model.wire import set_wire_feed
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 ENDS = np.array([[0.0, 0.0, 0.0], [100.0, 0.0, 0.0]])
@@ -29,15 +29,15 @@ def process(feed, **more):
 def test_auto_feeds_what_the_bead_takes():
     """8 x 1 mm at 6 mm/s: 48 mm3/s, of a wire of 1.1310 mm2."""
     assert ProcessParameters().wire.feed == "auto"
-    made = fed(PATH, ProcessParameters(), None)
+    made = set_wire_feed(PATH, ProcessParameters(), None)
     assert made.wire_feed * math.pi * 0.6**2 == pytest.approx(48.0)
     assert made.issues == ()
-    narrow = fed(replace(PATH, bead_width=3.0), process("auto", diameter=0.8), None)
+    narrow = set_wire_feed(replace(PATH, bead_width=3.0), process("auto", diameter=0.8), None)
     assert narrow.wire_feed * math.pi * 0.4**2 == pytest.approx(18.0)
 
 
 def test_a_feed_that_does_not_balance_is_told_with_the_one_that_would():
-    made = fed(PATH, process(10.0), None)
+    made = set_wire_feed(PATH, process(10.0), None)
     assert made.wire_feed == 10.0
     (issue,) = made.issues
     assert (issue.level, issue.code) == ("warning", "FEED_BALANCE")
@@ -53,17 +53,17 @@ def test_a_feed_that_does_not_balance_is_told_with_the_one_that_would():
 )
 def test_a_tenth_is_tolerated_and_no_wire_is_no_fault(off, told):
     balanced = 48.0 / (math.pi * 0.6**2)
-    assert bool(fed(PATH, process(off * balanced), None).issues) == told
+    assert bool(set_wire_feed(PATH, process(off * balanced), None).issues) == told
 
 
 def test_beads_of_a_model_are_fed_as_they_were_measured():
     model = bead_table.load("csw")
     assert (
-        fed(PATH, process("auto"), model).wire_feed
+        set_wire_feed(PATH, process("auto"), model).wire_feed
         == model.wire_feed
         == pytest.approx(6500.0 / 60.0)
     )
-    assert fed(PATH, process(50.0), model).wire_feed == 50.0
+    assert set_wire_feed(PATH, process(50.0), model).wire_feed == 50.0
 
 
 @pytest.mark.parametrize("diameter", [0.0, 1e-308, 9e-4])
@@ -88,7 +88,7 @@ def path_of(phase=None, **more):
 
 def test_classes_at_speeds_of_their_own_are_held_against_the_wire():
     of = replace(process("auto"), classes="contour: travel_speed 9")
-    made = fed(path_of(), of, None)
+    made = set_wire_feed(path_of(), of, None)
     (issue,) = made.issues
     assert (issue.level, issue.code, issue.layer, issue.bead) == ("warning", "FEED_BALANCE", 1, 0)
     assert "feeds 48 mm3/s" in issue.message and "take contour 72 mm3/s" in issue.message
@@ -99,7 +99,7 @@ def test_classes_at_speeds_of_their_own_are_held_against_the_wire():
         and tuple(promise.place) == (1, 0, None)
     )
     own = replace(process("auto"), classes="contour: travel_speed 9, schedule 3")
-    made = fed(path_of(), own, None)
+    made = set_wire_feed(path_of(), own, None)
     assert made.issues == ()
     promise = deposit.fed(made, own)  # what that schedule feeds nobody knows
     assert (
@@ -109,7 +109,7 @@ def test_classes_at_speeds_of_their_own_are_held_against_the_wire():
     )
     near = replace(process("auto"), classes="contour: travel_speed 6.5")
     bead = replace(BEAD, bead_class="contour", speed=np.full(2, 6.5))
-    made = fed(replace(PATH, layers=(Layer((bead,)),)), near, None)
+    made = set_wire_feed(replace(PATH, layers=(Layer((bead,)),)), near, None)
     assert made.issues == () and deposit.fed(made, near).worst == pytest.approx(
         100.0 * (1.0 - 6.0 / 6.5)
     )
@@ -123,7 +123,7 @@ def test_starts_and_ends_at_speeds_of_their_own_are_held_against_the_wire(planne
         end=BeadEnd(5.0, 12.0),
         classes="contour: travel_speed 9",
     )
-    made = fed(path_of((20.0, 3.0, 5.0, 12.0)), of, None)
+    made = set_wire_feed(path_of((20.0, 3.0, 5.0, 12.0)), of, None)
     (issue,) = made.issues
     told = {
         "fill.start": 24.0,
@@ -172,18 +172,20 @@ def test_starts_and_ends_at_speeds_of_their_own_are_held_against_the_wire(planne
 def test_a_schedule_of_a_start_is_not_known_and_no_wire_is_not_checked():
     own = "contour: travel_speed 9, schedule 3"
     of = replace(process("auto"), schedule=2, start=BeadStart(20.0, 3.0, 4), classes=own)
-    made = fed(path_of((20.0, 3.0, 0.0, 0.0)), of, None)
+    made = set_wire_feed(path_of((20.0, 3.0, 0.0, 0.0)), of, None)
     assert made.issues == ()
     assert deposit.fed(made, of).how.endswith("feed of contour, contour.start, fill.start")
     none = process(0.0)
-    promise = deposit.fed(fed(PATH, none, None), none)
+    promise = deposit.fed(set_wire_feed(PATH, none, None), none)
     assert promise.ok is None and promise.how.startswith("not checked")
 
 
 def test_beads_of_other_widths_and_heights_at_speeds_that_follow_balance():
     """What is narrower is laid as much faster; thinner layers too."""
     bead = replace(BEAD, width=np.full(2, 4.0), height=np.full(2, 0.8), speed=np.full(2, 15.0))
-    path = fed(replace(PATH, layers=(Layer((BEAD,)), Layer((bead,)))), ProcessParameters(), None)
+    path = set_wire_feed(
+        replace(PATH, layers=(Layer((BEAD,)), Layer((bead,)))), ProcessParameters(), None
+    )
     assert deposit.fed(path, ProcessParameters()).worst < 1e-9
     one = replace(path, layer_height=2.0, wire_feed=2.0 * path.wire_feed)
     slow = replace(bead, speed=np.full(2, 7.5))
@@ -199,9 +201,9 @@ def test_starts_and_ends_count_among_the_speeds_of_a_material():
     of = replace(
         ProcessParameters(), material=MaterialParameters(name="clay", slowest=4.0, fastest=10.0)
     )
-    assert with_speed_issues(PATH, of).issues == ()
+    assert check_speeds(PATH, of).issues == ()
     for ends, low, high in (((5.0, 3.0, 0.0, 0.0), "3", "6"), ((0.0, 0.0, 5.0, 11.0), "6", "11")):
-        (issue,) = with_speed_issues(path_of(ends), of).issues
+        (issue,) = check_speeds(path_of(ends), of).issues
         assert (
             issue.code == "MATERIAL_SPEED"
             and f"at {low} to {high.replace('6', '9')} mm/s" in issue.message

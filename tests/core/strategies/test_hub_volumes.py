@@ -123,7 +123,7 @@ def test_a_thin_collar_is_told_to_lie_beside_and_a_wide_one_is_no_news():
 
     def told(low, high):
         made = solids(CYLINDER, ring(40.0, 57.0, low, high)[0])
-        balance = deposit_balance.of_toolpath(made, planned(made), 6.0)
+        balance = deposit_balance.toolpath_balance(made, planned(made), 6.0)
         return balance, [one.code for one in deposit_balance.issues(balance)]
 
     balance, codes = told(10.0, 13.0)

@@ -20,7 +20,7 @@ from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters, SeamParameters, WireParameters
 from freecad_am.core.process.deposit import spacing
 from freecad_am.core.process.model import bead_table
-from freecad_am.core.process.model.wire import fed
+from freecad_am.core.process.model.wire import set_wire_feed
 from freecad_am.core.strategies.solids.plan import plan
 
 ERROR = 0.05
@@ -878,7 +878,7 @@ def test_a_feed_for_the_room_of_beads_that_overlap_balances(share, codes):
     made = planned(
         box((0, 0, 0), (160, 160, 5)), layer_height=2.5, bead_overlap=0.5, process=process
     )
-    issues = fed(replace(made, issues=()), process, None).issues
+    issues = set_wire_feed(replace(made, issues=()), process, None).issues
     assert [issue.code for issue in issues] == codes
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What of a part its beads do not deposit, and what of them lies beside it: figures and findings, before there is a bead."""
+"""Volume balance of a part against its beads: missed and stray volume, as figures and issues, before beads exist."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ...toolpath import Toolpath
 
 LEFT_OUT, OUTSIDE, TWICE = "NOT_DEPOSITED", "DEPOSITED_BESIDE", "DEPOSITED_TWICE"
 CODES = (LEFT_OUT, OUTSIDE, TWICE)
-MUCH = 0.1  # of a part that is filled, laid over beads of the same layer
+TWICE_WARNING_SHARE = 0.1  # share of a filled part that beads deposit twice in a layer
 SINGLE_BEAD_WIDTHS = 1.25  # bead widths; a wall about as thick as a bead is deposited by one
 UNFILLED = 0.03  # of a part that is filled
 NEGLIGIBLE = 0.02  # of a part
@@ -26,13 +26,16 @@ MM3 = 1000.0  # in a cm3
 
 @dataclass(frozen=True)
 class Balance:
-    """Volumes in mm3, estimates but for solids; None where the part has none. faces: those left out; solids: those left out,
-    with mm3. width: of a bead, mm, 0 of solids, which are filled. thick: mm, of the part there.
-    filled: beads fill the part. twice: of beads laid over others of their layer. hub: of what is left out and of the part,
-    the hub that is there before. lines: the part is curves, which have no volume to leave out."""
+    """Volumes of a part and its beads in mm3, None where the part has none; estimates except for solids.
+
+    faces: names of the faces left out; solids: names and volumes (mm3) of the solids left out. width: mm of a bead, 0 for
+    solids, which are filled. thick: mm of the part there. filled: the beads fill the part. twice: volume of beads deposited
+    over others in their layer. hub: volume of the hub, which is there before and counts in left_out and part_volume. lines: the
+    part is curves, which have no volume to leave out.
+    """
 
     label: str
-    part: float | None
+    part_volume: float | None
     left_out: float | None
     beads: float | None = None
     outside: float | None = None
@@ -46,30 +49,30 @@ class Balance:
     lines: bool = False
 
 
-def of_feature(value: Any, width: float) -> Balance | None:
-    """Of what a feature has found, its wall or its solids, with beads of a width, mm; None where nothing is known."""
+def feature_balance(value: Any, width: float) -> Balance | None:
+    """The balance of a feature's wall or solids with beads of a width, mm; None if nothing is known."""
     if isinstance(value, SolidsOnHub):
-        return _of_solids(value)
-    return None if value.depths is None else of_wall(value.depths, width)
+        return _solids_balance(value)
+    return None if value.depths is None else wall_balance(value.depths, width)
 
 
-def of_toolpath(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
-    """The same once there are beads, which know better what they cover where they fill a part."""
+def toolpath_balance(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
+    """The balance once beads exist, which give the covered volume exactly where they fill a part."""
     if toolpath.volumes is None:
-        return _of_beads(value, toolpath, width)
-    part, left, outside = toolpath.volumes
-    own = value.own if isinstance(value, SolidsOnHub) else None
-    hub = own.hub if own else 0.0
-    if own:  # what else of the part is within the surface that solids stand on
-        left += max(own.volume - hub - part, 0.0)
-        part = max(own.volume - hub, part)
+        return _beads_balance(value, toolpath, width)
+    part_volume, left_out, outside = toolpath.volumes
+    own_hub = value.own if isinstance(value, SolidsOnHub) else None
+    hub = own_hub.hub if own_hub else 0.0
+    if own_hub:  # the rest of the part within the surface under the solids
+        left_out += max(own_hub.volume - hub - part_volume, 0.0)
+        part_volume = max(own_hub.volume - hub, part_volume)
     return Balance(
         value.label,
-        part + hub,
-        left + hub,
-        part - left + outside,
+        part_volume + hub,
+        left_out + hub,
+        part_volume - left_out + outside,
         outside,
-        solids=own.apart if own else (),
+        solids=own_hub.apart if own_hub else (),
         width=toolpath.bead_width or 0.0,
         filled=True,
         twice=toolpath.twice,
@@ -77,49 +80,53 @@ def of_toolpath(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
     )
 
 
-def _of_beads(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
-    """Of beads that fill nothing, which know what of them is laid twice; of curves they are all that is known."""
-    known = of_feature(value, width)
+def _beads_balance(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
+    """The balance of beads that fill nothing, with the volume deposited twice. Curves have no other figures."""
+    balance = feature_balance(value, width)
     if toolpath.twice is None:
-        return known
+        return balance
     length = math.fsum(bead.length for _, _, bead in toolpath)
     beads = length * (toolpath.bead_width or width) * toolpath.layer_height
-    if known is None:
+    if balance is None:
         return Balance(
             value.label, None, None, beads, width=width, twice=toolpath.twice, lines=True
         )
-    return replace(known, beads=beads if known.beads is None else known.beads, twice=toolpath.twice)
-
-
-def together(balances: Sequence[Balance | None]) -> Balance | None:
-    """What the balances of several features come to; the one there is of a single feature. None where nothing is known."""
-    known = [one for one in balances if one is not None]
-    if len(balances) == 1 or not known:
-        return balances[0] if balances else None
-
-    def total(name: str) -> float | None:
-        values = [value for one in known if (value := getattr(one, name)) is not None]
-        return sum(values) if values else None
-
-    return Balance(
-        ", ".join(one.label for one in known),
-        total("part"),
-        total("left_out"),
-        total("beads"),
-        total("outside"),
-        tuple(f"{one.label} {face}" for one in known for face in one.faces),
-        tuple(solid for one in known for solid in one.solids),
-        width=known[0].width,
-        thick=known[0].thick,
-        filled=all(one.filled for one in known),
-        twice=total("twice"),
-        hub=total("hub") or 0.0,
-        lines=all(one.lines for one in known),
+    return replace(
+        balance, beads=beads if balance.beads is None else balance.beads, twice=toolpath.twice
     )
 
 
-def of_wall(depths: PartDepths, width: float) -> Balance:
-    """Of a wall of one bead of a width, mm."""
+def sum_balances(balances: Sequence[Balance | None]) -> Balance | None:
+    """The sum of the balances of several features; None if nothing is known."""
+    known_balances = [balance for balance in balances if balance is not None]
+    if len(balances) == 1 or not known_balances:
+        return balances[0] if balances else None
+
+    def total(name: str) -> float | None:
+        values = [
+            value for balance in known_balances if (value := getattr(balance, name)) is not None
+        ]
+        return sum(values) if values else None
+
+    return Balance(
+        ", ".join(balance.label for balance in known_balances),
+        total("part_volume"),
+        total("left_out"),
+        total("beads"),
+        total("outside"),
+        tuple(f"{balance.label} {face}" for balance in known_balances for face in balance.faces),
+        tuple(solid for balance in known_balances for solid in balance.solids),
+        width=known_balances[0].width,
+        thick=known_balances[0].thick,
+        filled=all(balance.filled for balance in known_balances),
+        twice=total("twice"),
+        hub=total("hub") or 0.0,
+        lines=all(balance.lines for balance in known_balances),
+    )
+
+
+def wall_balance(depths: PartDepths, width: float) -> Balance:
+    """The balance of a single-bead wall with beads of a width, mm."""
     total = sum(depths.face_areas)
     faces = tuple(
         name
@@ -132,44 +139,46 @@ def of_wall(depths: PartDepths, width: float) -> Balance:
         return Balance(depths.label, None, None, faces=faces, solids=depths.aside, width=width)
     outside, beads = depths.outside(width), depths.area * width
     thick = float(depths.thickness[len(depths.thickness) // 2]) if len(depths.thickness) else 0.0
-    left = depths.volume - depths.volume_within(width)
-    rest = depths.volume - depths.volume_within(SINGLE_BEAD_WIDTHS * width)
-    if not faces and not depths.aside and rest < NEGLIGIBLE * depths.volume:
-        left = 0.0
+    left_out = depths.volume - depths.volume_within(width)
+    unfilled = depths.volume - depths.volume_within(SINGLE_BEAD_WIDTHS * width)
+    if not faces and not depths.aside and unfilled < NEGLIGIBLE * depths.volume:
+        left_out = 0.0
     if outside < (SINGLE_BEAD_WIDTHS - 1.0) / SINGLE_BEAD_WIDTHS * beads:
         outside = 0.0
     return Balance(
-        depths.label, depths.volume, left, beads, outside, faces, depths.aside, width, thick
+        depths.label, depths.volume, left_out, beads, outside, faces, depths.aside, width, thick
     )
 
 
-def _of_solids(solids: SolidsOnHub) -> Balance | None:
-    """Of solids that are filled: all but the hub."""
+def _solids_balance(solids: SolidsOnHub) -> Balance | None:
+    """The balance of solids that are filled: everything except the hub is deposited."""
     if solids.own is None:
         return None
-    own = solids.own
-    return Balance(solids.label, own.volume, own.hub, solids=own.apart)
+    own_hub = solids.own
+    return Balance(solids.label, own_hub.volume, own_hub.hub, solids=own_hub.apart)
 
 
 def issues(balance: Balance | None) -> tuple[Issue, ...]:
-    """What is to be told, at most one finding of each kind."""
+    """The issues of a balance, at most one of each kind."""
     if balance is None:
         return ()
     if balance.filled:
-        return _of_filling(balance)
-    found = []
-    left = balance.left_out or 0.0
-    share = left > NEGLIGIBLE * (balance.part or 0.0) and left > 0.0
+        return _filling_issues(balance)
+    issues_ = []
+    left_out = balance.left_out or 0.0
+    share = left_out > NEGLIGIBLE * (balance.part_volume or 0.0) and left_out > 0.0
     if balance.solids or balance.faces or share:
         why = (
             Text("a wall of one bead, {:.4g} mm wide, is planned", balance.width)
             if balance.width
             else ("solids are built up on the hub, which is there before")
         )
-        found.append(Issue(WARNING, LEFT_OUT, Text("{}: {}", _left_out(balance, share), Word(why))))
+        issues_.append(
+            Issue(WARNING, LEFT_OUT, Text("{}: {}", _left_out(balance, share), Word(why)))
+        )
     if balance.outside:
         assert balance.beads is not None
-        found.append(
+        issues_.append(
             Issue(
                 WARNING,
                 OUTSIDE,
@@ -186,7 +195,7 @@ def issues(balance: Balance | None) -> tuple[Issue, ...]:
         )
     twice, beads = balance.twice or 0.0, balance.beads or 0.0
     if twice > UNFILLED * beads:
-        found.append(
+        issues_.append(
             Issue(
                 _much(twice, beads),
                 TWICE,
@@ -200,80 +209,84 @@ def issues(balance: Balance | None) -> tuple[Issue, ...]:
                 ),
             )
         )
-    return tuple(found)
+    return tuple(issues_)
 
 
-def _much(twice: float, whole: float) -> str:
-    return WARNING if twice > MUCH * whole else NOTE
+def _much(twice: float, total: float) -> str:
+    return WARNING if twice > TWICE_WARNING_SHARE * total else NOTE
 
 
-def _of_filling(of: Balance) -> tuple[Issue, ...]:
-    found: list[Issue] = []
-    part = (of.part or 0.0) - of.hub
-    if of.hub > NEGLIGIBLE * (of.part or 0.0):
-        found += issues(
-            replace(of, left_out=of.hub, outside=None, twice=None, width=0.0, filled=False)
+def _filling_issues(balance: Balance) -> tuple[Issue, ...]:
+    filling_issues: list[Issue] = []
+    part_volume = (balance.part_volume or 0.0) - balance.hub
+    if balance.hub > NEGLIGIBLE * (balance.part_volume or 0.0):
+        filling_issues += issues(
+            replace(
+                balance, left_out=balance.hub, outside=None, twice=None, width=0.0, filled=False
+            )
         )
-    of = replace(of, part=part, left_out=(of.left_out or 0.0) - of.hub)
-    if (of.left_out or 0.0) > UNFILLED * part:
-        found.append(
+    balance = replace(
+        balance, part_volume=part_volume, left_out=(balance.left_out or 0.0) - balance.hub
+    )
+    if (balance.left_out or 0.0) > UNFILLED * part_volume:
+        filling_issues.append(
             Issue(
                 WARNING,
                 LEFT_OUT,
                 Text(
                     "{}: beads of {:.4g} mm do not reach into what is narrower, layers not above the last "
                     "cut, and nothing is laid within a hub; use narrower beads, or lower layers",
-                    _left_out(of, True),
-                    of.width,
+                    _left_out(balance, True),
+                    balance.width,
                 ),
             )
         )
-    if (of.outside or 0.0) > UNFILLED * part:
-        found.append(
+    if (balance.outside or 0.0) > UNFILLED * part_volume:
+        filling_issues.append(
             Issue(
                 WARNING,
                 OUTSIDE,
                 Text(
                     "about {:.3g} cm3 of beads lie outside the {:.3g} cm3 of {}: beads of {:.4g} mm stand "
                     "out where it is narrower; use narrower beads, or machine it off",
-                    (of.outside or 0.0) / MM3,
-                    part / MM3,
-                    of.label,
-                    of.width,
+                    (balance.outside or 0.0) / MM3,
+                    part_volume / MM3,
+                    balance.label,
+                    balance.width,
                 ),
             )
         )
-    twice = of.twice or 0.0
-    if twice > UNFILLED * part:
-        found.append(
+    twice = balance.twice or 0.0
+    if twice > UNFILLED * part_volume:
+        filling_issues.append(
             Issue(
-                _much(twice, part),
+                _much(twice, part_volume),
                 TWICE,
                 Text(
                     "about {:.3g} cm3 of beads are laid over others of their layer, {:.2g} % of {}: "
                     "where lines and their links meet contours, and where room is left for less than a bead; layers get higher "
                     "there. Use fill: contours, narrower beads, or a wider strategy.gap",
                     twice / MM3,
-                    100.0 * twice / part,
-                    of.label,
+                    100.0 * twice / part_volume,
+                    balance.label,
                 ),
             )
         )
-    return tuple(found)
+    return tuple(filling_issues)
 
 
 def as_dict(balance: Balance | None) -> dict[str, Any] | None:
-    """The key `deposit` of report.json: volumes in cm3, None where the part has none."""
+    """The key `deposit` of report.json: volumes in cm3, None for a part without volume."""
     if balance is None:
         return None
-    left = (
+    deposited = (
         None
-        if balance.part is None or balance.left_out is None
-        else balance.part - balance.left_out
+        if balance.part_volume is None or balance.left_out is None
+        else balance.part_volume - balance.left_out
     )
     volumes = {
-        "part_cm3": balance.part,
-        "deposited_cm3": left,
+        "part_cm3": balance.part_volume,
+        "deposited_cm3": deposited,
         "left_out_cm3": balance.left_out,
         "beside_cm3": balance.outside,
         "twice_cm3": balance.twice,
@@ -286,41 +299,53 @@ def as_dict(balance: Balance | None) -> dict[str, Any] | None:
     }
 
 
-def _left_out(of: Balance, share: bool) -> str:
-    """What is not deposited, as the beginning of a sentence."""
-    left, part = (of.left_out or 0.0) / MM3, (of.part or 0.0) / MM3
-    if of.filled:
-        return Text("about {:.3g} of the {:.3g} cm3 of {} are not deposited", left, part, of.label)
-    if not of.width and not of.solids:
+def _left_out(balance: Balance, share: bool) -> str:
+    """The left-out volume as the beginning of a sentence."""
+    left_cm3, part_cm3 = (balance.left_out or 0.0) / MM3, (balance.part_volume or 0.0) / MM3
+    if balance.filled:
+        return Text(
+            "about {:.3g} of the {:.3g} cm3 of {} are not deposited",
+            left_cm3,
+            part_cm3,
+            balance.label,
+        )
+    if not balance.width and not balance.solids:
         return Text(
             "about {:.3g} of the {:.3g} cm3 of {}, all that lies within its hub, are not deposited",
-            left,
-            part,
-            of.label,
+            left_cm3,
+            part_cm3,
+            balance.label,
         )
-    if not of.width:
+    if not balance.width:
         return Text(
             "{}, {:.4g} of {:.4g} cm3 of {}, are not deposited",
-            _names([name for name, _ in of.solids]),
-            left,
-            part,
-            of.label,
+            _names([name for name, _ in balance.solids]),
+            left_cm3,
+            part_cm3,
+            balance.label,
         )
-    if of.solids:
-        what = Text("{} solid(s) ({})", len(of.solids), _names([name for name, _ in of.solids]))
+    if balance.solids:
+        what = Text(
+            "{} solid(s) ({})", len(balance.solids), _names([name for name, _ in balance.solids])
+        )
     else:
-        what = Text("{} face(s) ({})", len(of.faces), _names(of.faces))
+        what = Text("{} face(s) ({})", len(balance.faces), _names(balance.faces))
     if not share:
-        return Text("{} of {} are not deposited", Word(what), of.label)
-    if of.solids or of.faces:
+        return Text("{} of {} are not deposited", Word(what), balance.label)
+    if balance.solids or balance.faces:
         return Text(
             "{}, about {:.3g} cm3 of the {:.3g} cm3 of {}, are not deposited",
             Word(what),
-            left,
-            part,
-            of.label,
+            left_cm3,
+            part_cm3,
+            balance.label,
         )
-    return Text("about {:.3g} cm3 of the {:.3g} cm3 of {} are not deposited", left, part, of.label)
+    return Text(
+        "about {:.3g} cm3 of the {:.3g} cm3 of {} are not deposited",
+        left_cm3,
+        part_cm3,
+        balance.label,
+    )
 
 
 def _names(names: Sequence[str]) -> str:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How high filled layers that are not planes lie over each other: how far the nearest bead below is tells how beads lie by
-each other, so the height is taken along its build direction."""
+"""Heights of filled non-planar layers over each other.
+
+The nearest bead below gives the spacing within a layer, so the height is taken along the build direction of that bead.
+"""
 
 from __future__ import annotations
 
@@ -18,36 +20,40 @@ STEP = 0.5  # of a layer height, between two places on the beads below that are 
 
 
 def over_layers(toolpath: Toolpath) -> tuple[Array, ...]:
-    """Per layer but those that nothing of their feature lies below, (n,) mm: the height of each of its points over the
-    nearest place of the beads of the layer before, along the build direction there. Beads that close gaps are left out."""
+    """Per layer, (n,) mm: the height of each point over the nearest position on the beads of the layer before.
+
+    Measured along the build direction there. Layers with nothing of their feature below, and beads that close gaps, are left out.
+    """
     if toolpath.features:
         return tuple(
-            chain.from_iterable(over_layers(part) for part, _ in toolpath.parts if part.layers)
+            chain.from_iterable(
+                over_layers(feature) for feature, _ in toolpath.parts if feature.layers
+            )
         )
     toolpath = toolpath.deposited
-    found = []
+    heights = []
     for below, layer in zip(toolpath.layers, toolpath.layers[1:], strict=False):
         points = [bead.points for bead in layer.beads if not bead.closing]
         if layer.first or not points:
             continue
-        place, build = _along(below, STEP * toolpath.layer_height)
+        positions, build = _sample_chords(below, STEP * toolpath.layer_height)
         above = np.concatenate(points)
-        near = cKDTree(place).query(above)[1]
-        found.append(dots(above - place[near], build[near]))
-    return tuple(found)
+        nearest = cKDTree(positions).query(above)[1]
+        heights.append(dots(above - positions[nearest], build[nearest]))
+    return tuple(heights)
 
 
-def _along(layer: Layer, step: float) -> tuple[Array, Array]:
-    """Places (k, 3) on the chords of all beads of a layer, no farther apart than a step, mm, and build directions there."""
-    places: list[Array] = []
+def _sample_chords(layer: Layer, step: float) -> tuple[Array, Array]:
+    """Positions (k, 3) on the chords of every bead of a layer, at most a step, mm, apart, and build directions there."""
+    positions: list[Array] = []
     directions: list[Array] = []
     for bead in layer.beads:
         count = step_counts(lengths(np.diff(bead.points, axis=0)), step)
-        at = np.repeat(np.arange(len(count)), count)
-        share = ((np.arange(len(at)) - np.repeat(np.cumsum(count) - count, count)) / count[at])[
-            :, None
-        ]
-        for column, rows in ((places, bead.points), (directions, bead.build)):
-            column += [rows[at] + share * (rows[at + 1] - rows[at]), rows[-1:]]
+        segment = np.repeat(np.arange(len(count)), count)
+        share = (
+            (np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count)) / count[segment]
+        )[:, None]
+        for column, rows in ((positions, bead.points), (directions, bead.build)):
+            column += [rows[segment] + share * (rows[segment + 1] - rows[segment]), rows[-1:]]
     build = np.concatenate(directions)
-    return np.concatenate(places), build / np.maximum(lengths(build), 1e-12)[:, None]
+    return np.concatenate(positions), build / np.maximum(lengths(build), 1e-12)[:, None]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads cut into short pieces, for what is looked at all along them."""
+"""Beads cut into short pieces, for checks along their whole length."""
 
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ from ...types import Array, Index, Mask
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Beads cut into n short pieces in the order of deposit: middles, build and travel directions (n, 3), lengths (n,) mm,
-    widths (n,) mm; along: mm from the start of the bead; layer, bead (of all), point: where each begins; closing (n,)."""
+    """Beads cut into n short pieces in the order of deposit: middles, build and travel directions (n, 3), lengths (n,) mm, widths
+    (n,) mm; along: mm from the start of the bead; layer, bead (counted over the toolpath), point: where each begins; closing (n,).
+    """
 
     middle: Array
     build: Array
@@ -33,9 +34,11 @@ class Pieces:
         return len(self.middle)
 
 
-def cut(toolpath: Toolpath, share: float) -> Pieces:
-    """All beads of a toolpath in pieces no longer than a share of their width, but for the chord error, by which they count
-    as wider. ValueError where it is not known how wide they are."""
+def cut_beads(toolpath: Toolpath, share: float) -> Pieces:
+    """Cut every bead of a toolpath into pieces no longer than a share of its width, or than the chord error.
+
+    ValueError if the width of the beads is not known.
+    """
     beads, width = list(toolpath), toolpath.bead_width
     if width is None:
         raise ValueError("it is not known how wide the beads count")
@@ -45,71 +48,70 @@ def cut(toolpath: Toolpath, share: float) -> Pieces:
     wide = np.concatenate(
         [np.full(len(bead), width) if bead.width is None else bead.width for _, _, bead in beads]
     )
-    of = np.repeat(np.arange(len(beads)), size)
+    bead_row = np.repeat(np.arange(len(beads)), size)
     start = np.delete(
         np.arange(len(points)), np.cumsum(size) - 1
     )  # of segments; beads end in points without one
-    way = points[start + 1] - points[start]
-    length = lengths(way)
-    kept = length > 0.0
-    start, way, length = start[kept], way[kept], length[kept]
+    chord = points[start + 1] - points[start]
+    length = lengths(chord)
+    is_proper = length > 0.0
+    start, chord, length = start[is_proper], chord[is_proper], length[is_proper]
     longest = np.maximum(share * 0.5 * (wide[start] + wide[start + 1]), toolpath.chord_error)
     count = step_counts(length, longest)
     row = np.repeat(np.arange(len(start)), count)
     number = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
     middle = (number + 0.5) / count[row]
-    first, part = start[row], length[row] / count[row]
-    mixed = build[first] + middle[:, None] * (build[first + 1] - build[first])
-    bead = of[first]
-    along = np.cumsum(part) - 0.5 * part
+    start_row, piece_length = start[row], length[row] / count[row]
+    mixed = build[start_row] + middle[:, None] * (build[start_row + 1] - build[start_row])
+    bead = bead_row[start_row]
+    along = np.cumsum(piece_length) - 0.5 * piece_length
     begins = np.flatnonzero(np.diff(bead, prepend=-1))
     along -= np.repeat(along[begins], np.diff(np.r_[begins, len(bead)]))
     return Pieces(
-        points[first] + middle[:, None] * way[row],
+        points[start_row] + middle[:, None] * chord[row],
         mixed / lengths(mixed)[:, None],
-        way[row] / length[row, None],
-        part,
-        wide[first] + middle * (wide[first + 1] - wide[first]),
+        chord[row] / length[row, None],
+        piece_length,
+        wide[start_row] + middle * (wide[start_row + 1] - wide[start_row]),
         along,
         np.array([layer for layer, _, _ in beads])[bead],
         bead,
-        first - (np.cumsum(size) - size)[bead],
-        np.array([one.closing for _, _, one in beads])[bead],
+        start_row - (np.cumsum(size) - size)[bead],
+        np.array([bead_.closing for _, _, bead_ in beads])[bead],
     )
 
 
-def joined(pieces: Pieces, share: float) -> Pieces:
-    """Those of beads with points close together, which else are as many as there are points, joined to pieces of about a
-    share of the bead's width."""
+def join_pieces(pieces: Pieces, share: float) -> Pieces:
+    """Join the pieces of beads with dense points to pieces of about a share of the bead's width."""
     if not len(pieces):
         return pieces
     step = np.floor(pieces.along / (share * pieces.width)).astype(np.intp)
     new = (np.diff(pieces.bead, prepend=-1) != 0) | (np.diff(step, prepend=-1) != 0)
-    first = np.flatnonzero(new)
-    if len(first) == len(pieces):
+    starts = np.flatnonzero(new)
+    if len(starts) == len(pieces):
         return pieces
-    length = np.add.reduceat(pieces.length, first)
+    length = np.add.reduceat(pieces.length, starts)
 
     def mean(column: Array) -> Array:
         weighted = column * (pieces.length if column.ndim == 1 else pieces.length[:, None])
-        found: Array = np.add.reduceat(weighted, first, axis=0) / (
+        means: Array = np.add.reduceat(weighted, starts, axis=0) / (
             length if column.ndim == 1 else length[:, None]
         )
-        return found
+        return means
 
     build, travel = mean(pieces.build), mean(pieces.travel)
-    known = np.maximum(
+    norm = np.maximum(
         lengths(travel), 1e-12
     )  # a piece that turns round within itself leads nowhere
     return Pieces(
         mean(pieces.middle),
         build / lengths(build)[:, None],
-        travel / known[:, None],
+        travel / norm[:, None],
         length,
         mean(pieces.width),
         mean(pieces.along),
-        pieces.layer[first],
-        pieces.bead[first],
-        pieces.point[first],
-        pieces.closing[first],
+        pieces.layer[starts],
+        pieces.bead[starts],
+        pieces.point[starts],
+        pieces.closing[starts],
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How far layers really are apart: from each deposit point to the nearest point of the layer before."""
+"""Actual layer spacing: the distance from each deposit point to the nearest point of the layer before."""
 
 from __future__ import annotations
 
@@ -12,20 +12,21 @@ from ...toolpath import Bead, Layer, Toolpath
 from ...types import Array, Index, Mask
 from .layer_curve import Curve, columns_of, distance, distances
 
-LEVEL = 1e-6  # mm; a layer whose points differ no more in height is a plane
+PLANE_TOLERANCE_MM = 1e-6  # mm; a layer whose points differ no more in height is a plane
 
 
 def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
-    """Per layer but the first, (n,) mm: the distance of each of its points to the layer before, in order of deposit.
+    """Per layer after the first, (n,) mm: the distance of each of its points to the layer before, in order of deposit.
 
-    A spiral is one layer; there it is the distance of each point to the turn before. Of plane layers that are filled it is
-    the distance of the planes: how far the nearest bead below is says how beads lie beside each other, not above. Beads that
-    close gaps are left out, and layers that nothing of the feature lies below. Of several features those of one come after
-    those of the other.
+    A spiral is one layer; there it is the distance of each point to the turn before. For plane filled layers it is the distance
+    of the planes, because the nearest bead below gives the spacing within a layer. Beads that close gaps, and layers with nothing
+    of the feature below, are left out. Several features follow each other.
     """
     if toolpath.features:
         return tuple(
-            chain.from_iterable(between_layers(part) for part, _ in toolpath.parts if part.layers)
+            chain.from_iterable(
+                between_layers(feature) for feature, _ in toolpath.parts if feature.layers
+            )
         )
     toolpath = toolpath.deposited
     if is_spiral(toolpath):
@@ -54,42 +55,42 @@ def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
 def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
     """Per bead in the order of deposit, (n,) mm: the distance of each of its points to the layer before.
 
-    NaN where nothing of the feature lies below: in first layers, and in the first turn of a spiral.
+    NaN if nothing of the feature is below: in first layers, and in the first turn of a spiral.
     """
     if toolpath.features:
-        each: list[list[Array]] = [[] for _ in toolpath.layers]
-        for part, numbers in toolpath.parts:
-            places = (
+        by_layer: list[list[Array]] = [[] for _ in toolpath.layers]
+        for feature, numbers in toolpath.parts:
+            bead_layers = (
                 number
-                for number, layer in zip(numbers.tolist(), part.layers, strict=True)
+                for number, layer in zip(numbers.tolist(), feature.layers, strict=True)
                 for _ in layer.beads
             )
             for number, values in zip(
-                places, local_distances(part) if part.layers else (), strict=True
+                bead_layers, local_distances(feature) if feature.layers else (), strict=True
             ):
-                each[number].append(values)
-        return tuple(chain.from_iterable(each))
+                by_layer[number].append(values)
+        return tuple(chain.from_iterable(by_layer))
     toolpath = toolpath.deposited
     if is_spiral(toolpath):
         bead = toolpath.layers[0].beads[0]
-        found = np.full(len(bead), np.nan)
-        for mine, before in _quarters(bead):
-            found[mine] = distance(bead.points[mine], before)
-        return (found,)
+        values_ = np.full(len(bead), np.nan)
+        for quarter, stretch in _quarters(bead):
+            values_[quarter] = distance(bead.points[quarter], stretch)
+        return (values_,)
     heights = _planes(toolpath)
     if heights is not None:
-        apart = np.where(
+        gap = np.where(
             [layer.first for layer in toolpath.layers], np.nan, np.diff(heights, prepend=np.nan)
         )
-        return tuple(np.full(len(bead), apart[layer]) for layer, _, bead in toolpath)
-    done = [np.full(len(bead), np.nan) for bead in toolpath.layers[0].beads]
+        return tuple(np.full(len(bead), gap[layer]) for layer, _, bead in toolpath)
+    distances_ = [np.full(len(bead), np.nan) for bead in toolpath.layers[0].beads]
     for below, layer in zip(toolpath.layers, toolpath.layers[1:], strict=False):
         if layer.first:
-            done += [np.full(len(bead), np.nan) for bead in layer.beads]
+            distances_ += [np.full(len(bead), np.nan) for bead in layer.beads]
             continue
-        apart = distance(np.concatenate([bead.points for bead in layer.beads]), curve_of(below))
-        done += np.split(apart, np.cumsum([len(bead) for bead in layer.beads])[:-1])
-    return tuple(done)
+        gap = distance(np.concatenate([bead.points for bead in layer.beads]), curve_of(below))
+        distances_ += np.split(gap, np.cumsum([len(bead) for bead in layer.beads])[:-1])
+    return tuple(distances_)
 
 
 def between_turns(bead: Bead) -> tuple[Array, ...]:
@@ -97,11 +98,11 @@ def between_turns(bead: Bead) -> tuple[Array, ...]:
 
     The stretch is three quarters of a turn long, so that it holds the nearest point but not the points' own neighbours.
     """
-    return tuple(distance(bead.points[mine], before) for mine, before in _quarters(bead))
+    return tuple(distance(bead.points[quarter], stretch) for quarter, stretch in _quarters(bead))
 
 
 def is_spiral(toolpath: Toolpath) -> bool:
-    """Whether a toolpath is a part of revolution laid as one rising bead."""
+    """Whether a toolpath is a part of revolution deposited as one rising bead."""
     beads = toolpath.layers[0].beads
     return (
         len(toolpath.layers) == 1
@@ -112,8 +113,8 @@ def is_spiral(toolpath: Toolpath) -> bool:
 
 
 def is_plane(toolpath: Toolpath) -> bool:
-    """Whether the layers are planes that are filled, whose distance is told; of several features, all."""
-    return all(_planes(part) is not None for part, _ in toolpath.parts)
+    """Whether every feature has plane filled layers, whose distance is reported."""
+    return all(_planes(feature) is not None for feature, _ in toolpath.parts)
 
 
 def _planes(toolpath: Toolpath) -> Array | None:
@@ -124,18 +125,21 @@ def _planes(toolpath: Toolpath) -> Array | None:
     up = toolpath.frame[:3, 2]
     ends = np.array(
         [
-            [(near := np.concatenate([bead.points for bead in layer.beads]) @ up).min(), near.max()]
+            [
+                (heights := np.concatenate([bead.points for bead in layer.beads]) @ up).min(),
+                heights.max(),
+            ]
             for layer in toolpath.layers
         ]
     )
-    return ends.mean(axis=1) if (np.ptp(ends, axis=1) <= LEVEL).all() else None
+    return ends.mean(axis=1) if (np.ptp(ends, axis=1) <= PLANE_TOLERANCE_MM).all() else None
 
 
 def turns_of(bead: Bead) -> Index:
     """The number (n,) of the turn that each point of a spiral is in, from 0."""
     turned = np.abs(bead.parameter - bead.parameter[0]) / (2.0 * np.pi)
-    last = max(int(np.ceil(turned[-1] - 1e-6)) - 1, 0)
-    turns: Index = np.minimum((turned + 1e-9).astype(np.intp), last)
+    last_turn = max(int(np.ceil(turned[-1] - 1e-6)) - 1, 0)
+    turns: Index = np.minimum((turned + 1e-9).astype(np.intp), last_turn)
     return turns
 
 
@@ -144,14 +148,17 @@ def _quarters(bead: Bead) -> Iterator[tuple[Mask, Curve]]:
     angle = np.abs(bead.parameter - bead.parameter[0])
     quarter = 0.5 * np.pi
     for start in np.arange(4.0 * quarter, np.nextafter(angle[-1], np.inf), quarter):
-        mine = (angle >= start) & (angle < start + quarter)
-        first, last = np.searchsorted(angle, (start - 5.0 * quarter, start - 2.0 * quarter))
-        first = max(int(first) - 1, 0)
-        if mine.any() and last - first > 1:
-            yield mine, Curve(*columns_of(bead.points[first : int(last) + 1], closed=False))
+        in_quarter = (angle >= start) & (angle < start + quarter)
+        start_row, end_row = np.searchsorted(angle, (start - 5.0 * quarter, start - 2.0 * quarter))
+        start_row = max(int(start_row) - 1, 0)
+        if in_quarter.any() and end_row - start_row > 1:
+            yield (
+                in_quarter,
+                Curve(*columns_of(bead.points[start_row : int(end_row) + 1], closed=False)),
+            )
 
 
 def curve_of(layer: Layer) -> Curve:
     """The smooth curve through the points of a layer's beads."""
-    pieces = [columns_of(bead.points, bead.closed, bead.tangents) for bead in layer.beads]
-    return Curve(*(np.concatenate(columns) for columns in zip(*pieces, strict=True)))
+    segments = [columns_of(bead.points, bead.closed, bead.tangents) for bead in layer.beads]
+    return Curve(*(np.concatenate(columns) for columns in zip(*segments, strict=True)))

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads over nothing: where neither earlier deposit nor anything that stands there carries a bead.
+"""Unsupported beads: neither earlier deposit nor the ground carries them.
 
-Below is against the build direction. A piece of a bead is carried where the ray from its middle meets something no more than
-REACH layer heights below: earlier deposit as wide as it counts, or, of the first layer, ground; of others, whose own height
-is between their path and what carries it, ground DOWN layer heights below. So a bead may overhang what is below by half of
-its width. It is carried too where that holds of both its sides, as over a seam between two beads. What is carried at both
-ends bridges a gap up to its own width.
+Below is against the build direction. A piece of a bead is supported if the ray from its middle meets something no more than
+REACH layer heights below: earlier deposit as wide as it counts, or ground for the first layer; for other layers, whose own
+height is between their path and their support, ground DOWN layer heights below. So a bead may overhang by half of its width.
+It is also supported if both its sides are, as over a seam between two beads. A bead supported at both ends bridges a gap
+up to its own width.
 """
 
 from __future__ import annotations
@@ -21,45 +21,58 @@ from ...geometry.columns import lengths
 from ...issues import WARNING, Issue, Text
 from ...toolpath import Toolpath
 from ...types import Array, Index, Mask
-from .pieces import Pieces, cut
+from .pieces import Pieces, cut_beads
 
 Ground = Callable[[Array, Array, Mask], Mask]
 Held = Callable[[Array, Index], Mask]  # places (n, 3) for pieces (n,): whether ground carries them
 
 CODE = "UNSUPPORTED"
 REACH = 1.5  # layer heights that what carries a bead may be below it
-# layer heights that ground may be below beads of other layers than the first: beside slopes layers have steps of half of
+# layer heights that ground may be below beads of later layers: along slopes layers have steps of half of
 # one; with a whole one a layer is missing there
 DOWN = 0.75
-LEVEL_WITH = 0.1  # layer heights; what is no farther below than this is beside
+LEVEL_WITH = 0.1  # layer heights; deposit no farther below than this is adjacent, not below
 GRACE = 0.05  # of the width that counts; pieces have places, and chords are not arcs
-PIECE = 0.25  # of the width: no piece of a bead is longer, but for the chord error, by which beads count as wider
-SIDE = 0.25  # of the width, from the middle of a bead to those of its halves
-BACK = 1.5  # how much longer than REACH the way back along a bead has to be, for it to lie on itself as a spiral does
+PIECE = 0.25  # of the width: no piece of a bead is longer, except for the chord error, by which beads count as wider
+SIDE = 0.25  # of the width, from the middle of a bead to the middle of each half
+BACK = 1.5  # ratio to REACH of the arc along a bead beyond which it can support itself, as a spiral does
 MOST_NAMED = 10  # layers
 FIRST_ASKED = 8  # pieces about the place below that are asked before all
-PAIRS = 2_000_000  # of pieces looked at together; bounds the memory
+PAIRS = 2_000_000  # pairs of pieces checked in one batch; bounds the memory
 
 
-def carried(
-    toolpath: Toolpath, ground: Ground, first: bool, lowest: Mask, numbers: Index | None = None
+def find_unsupported(
+    toolpath: Toolpath,
+    ground: Ground,
+    is_first_carried: bool,
+    lowest: Mask,
+    numbers: Index | None = None,
 ) -> tuple[dict[int, float], list[Issue]]:
-    """How much of the layers of a toolpath lies over nothing, mm of those with such beads, and an issue for each of these,
-    the longest ten.
+    """How much of the layers of a toolpath is unsupported, mm by layer, and issues for the ten longest.
 
-    ground(points (n, 3), build (n, 3), lowest (n,)): whether something other than deposit carries them, which of them are of
-    the layers that are laid on ground, `lowest` (l,) of all. numbers: (k,) rising, of the layers asked about, all where left
-    out. first: something carries all of the first of these. Time grows little faster than pieces, memory as they do.
+    Time grows little faster than the number of pieces, memory in proportion.
+
+    Parameters
+    ----------
+    ground
+        `ground(points (n, 3), build (n, 3), lowest (n,))`: whether something other than deposit supports each point; the last
+        argument marks points in layers deposited on the ground.
+    is_first_carried
+        Everything in the first layer of `numbers` is supported.
+    lowest
+        (layers,) whether a layer is deposited on the ground.
+    numbers
+        (k,) rising, the layers to check; every layer by default.
     """
-    pieces = cut(toolpath, PIECE)
+    pieces = cut_beads(toolpath, PIECE)
     numbers = np.arange(len(toolpath.layers)) if numbers is None else numbers
-    asked = np.flatnonzero(np.isin(pieces.layer, numbers[1:] if first else numbers))
+    rows = np.flatnonzero(np.isin(pieces.layer, numbers[1:] if is_first_carried else numbers))
 
-    def held(points: Array, which: Index) -> Mask:
-        return ground(points, pieces.build[which], lowest[pieces.layer[which]])
+    def is_on_ground(points: Array, rows_: Index) -> Mask:
+        return ground(points, pieces.build[rows_], lowest[pieces.layer[rows_]])
 
-    open_ = _alone(pieces, toolpath, held, asked)
-    open_ = _without_both(pieces, toolpath, held, open_)
+    open_ = _unsupported(pieces, toolpath, is_on_ground, rows)
+    open_ = _unsupported_at_a_side(pieces, toolpath, is_on_ground, open_)
     free = np.zeros(len(pieces), dtype=bool)
     free[open_] = True
     runs = list(_runs(pieces, free, toolpath))
@@ -69,114 +82,125 @@ def carried(
     return open_by_layer, _issues(runs, toolpath, lowest)
 
 
-def _without_both(pieces: Pieces, toolpath: Toolpath, held: Held, some: Index) -> Index:
-    """Those of some pieces that are not carried at both of their sides."""
-    found = []
-    for side in (SIDE, -SIDE):
-        across = np.cross(pieces.build[some], pieces.travel[some])
-        across *= (side * pieces.width[some] / np.maximum(lengths(across), 1e-300))[:, None]
-        found.append(_alone(pieces, toolpath, held, some, across))
-        some = np.setdiff1d(some, found[-1], assume_unique=True)
-    return np.union1d(*found)
-
-
-def _alone(
-    pieces: Pieces, toolpath: Toolpath, held: Held, some: Index, aside: Array | None = None
+def _unsupported_at_a_side(
+    pieces: Pieces, toolpath: Toolpath, is_on_ground: Held, rows: Index
 ) -> Index:
-    """Those of some pieces that nothing carries, at their middles or `aside` (n, 3) mm of these."""
+    """The pieces of `rows` that are not supported at both of their sides."""
+    open_sides = []
+    for side in (SIDE, -SIDE):
+        across = np.cross(pieces.build[rows], pieces.travel[rows])
+        across *= (side * pieces.width[rows] / np.maximum(lengths(across), 1e-300))[:, None]
+        open_sides.append(_unsupported(pieces, toolpath, is_on_ground, rows, across))
+        rows = np.setdiff1d(rows, open_sides[-1], assume_unique=True)
+    return np.union1d(*open_sides)
+
+
+def _unsupported(
+    pieces: Pieces, toolpath: Toolpath, is_on_ground: Held, some: Index, aside: Array | None = None
+) -> Index:
+    """The pieces of `rows` that nothing supports, at their middles or offset by `aside` (n, 3) mm."""
     height = toolpath.layer_height
-    at = pieces.middle[some] if aside is None else pieces.middle[some] + aside
-    left = np.arange(len(some))
+    position = pieces.middle[some] if aside is None else pieces.middle[some] + aside
+    open_ = np.arange(len(some))
     layer = pieces.layer[some]
     bounds = np.searchsorted(pieces.layer, np.arange(len(toolpath.layers) + 1))
-    done = np.zeros(len(some), dtype=bool)
-    # most lie on the layer before: the piece of it nearest to where it should be is asked first
+    is_supported = np.zeros(len(some), dtype=bool)
+    # most are supported by the layer before: its nearest piece is tried first
     order = np.argsort(layer, kind="stable")
     ends = np.searchsorted(layer[order], np.arange(len(toolpath.layers) + 1))
     for number in range(1, len(toolpath.layers)):
-        mine = order[ends[number] : ends[number + 1]]
+        selection = order[ends[number] : ends[number + 1]]
         low, high = bounds[number - 1], bounds[number]
-        if not len(mine) or low == high:
+        if not len(selection) or low == high:
             continue
         tree = cKDTree(pieces.middle[low:high])
-        nearest = np.asarray(tree.query(at[mine] - height * pieces.build[some[mine]])[1]) + low
-        done[mine] = _below(pieces, some[mine], at[mine], nearest, toolpath)
-    left = left[~done]
-    left = left[~held(at[left], some[left])]
-    if not len(left):
+        nearest = (
+            np.asarray(tree.query(position[selection] - height * pieces.build[some[selection]])[1])
+            + low
+        )
+        is_supported[selection] = _below(
+            pieces, some[selection], position[selection], nearest, toolpath
+        )
+    open_ = open_[~is_supported]
+    open_ = open_[~is_on_ground(position[open_], some[open_])]
+    if not len(open_):
         return np.zeros(0, dtype=np.intp)
     tree = cKDTree(pieces.middle)
     near = np.asarray(
-        tree.query(at[left] - height * pieces.build[some[left]], k=min(FIRST_ASKED, len(pieces)))[1]
+        tree.query(
+            position[open_] - height * pieces.build[some[open_]], k=min(FIRST_ASKED, len(pieces))
+        )[1]
     )
-    for column in near.reshape(len(left), -1).T:  # a spiral lies on itself
-        mine = some[left]
-        done[
-            left[
-                _earlier(pieces, mine, column, toolpath)
-                & _below(pieces, mine, at[left], column, toolpath)
+    for column in near.reshape(len(open_), -1).T:  # a spiral supports itself
+        selection = some[open_]
+        is_supported[
+            open_[
+                _earlier(pieces, selection, column, toolpath)
+                & _below(pieces, selection, position[open_], column, toolpath)
             ]
         ] = True
-    left = left[~done[left]]
-    if not len(left):
+    open_ = open_[~is_supported[open_]]
+    if not len(open_):
         return np.zeros(0, dtype=np.intp)
     wide = 0.5 * float(pieces.width.max()) * (1.0 + 2.0 * GRACE)
     radius = math.hypot(wide, 0.5 * (REACH - LEVEL_WITH) * height) + toolpath.chord_error
     radius = max(radius, REACH * height * (1.0 + 1e-9)) if pieces.closing.any() else radius
-    centre = at[left] - 0.5 * (REACH + LEVEL_WITH) * height * pieces.build[some[left]]
-    centre[pieces.closing[some[left]]] = at[left][pieces.closing[some[left]]]
-    carried = np.zeros(len(left), dtype=bool)
+    centre = position[open_] - 0.5 * (REACH + LEVEL_WITH) * height * pieces.build[some[open_]]
+    centre[pieces.closing[some[open_]]] = position[open_][pieces.closing[some[open_]]]
+    carried = np.zeros(len(open_), dtype=bool)
     for rows in _chunks(tree, centre, radius):
-        found = tree.query_ball_point(centre[rows], radius, return_sorted=False)
-        count = np.fromiter(map(len, found), dtype=np.intp, count=len(found))
-        other = np.fromiter(
-            (i for one in found for i in one), dtype=np.intp, count=int(count.sum())
+        neighbours = tree.query_ball_point(centre[rows], radius, return_sorted=False)
+        count = np.fromiter(map(len, neighbours), dtype=np.intp, count=len(neighbours))
+        other_piece = np.fromiter(
+            (i for row in neighbours for i in row), dtype=np.intp, count=int(count.sum())
         )
-        which = np.repeat(rows, count)
-        mine = some[left[which]]
-        hit = _earlier(pieces, mine, other, toolpath) & _below(
-            pieces, mine, at[left[which]], other, toolpath
+        open_row = np.repeat(rows, count)
+        selection = some[open_[open_row]]
+        hit = _earlier(pieces, selection, other_piece, toolpath) & _below(
+            pieces, selection, position[open_[open_row]], other_piece, toolpath
         )
-        carried[which[hit]] = True
-    free: Index = some[left[~carried]]
+        carried[open_row[hit]] = True
+    free: Index = some[open_[~carried]]
     return free
 
 
 def _chunks(tree: cKDTree, centre: Array, radius: float) -> Iterator[Index]:
-    """Rows of centres in parts that have about PAIRS neighbours each."""
+    """Chunks of the rows of centres with about PAIRS neighbours each."""
     sample = centre[:: max(1, len(centre) // 64)]
     dense = float(np.mean(tree.query_ball_point(sample, radius, return_length=True)))
-    parts = min(len(centre), 1 + int(dense * len(centre) / PAIRS))
-    yield from np.array_split(np.arange(len(centre)), parts)
+    count = min(len(centre), 1 + int(dense * len(centre) / PAIRS))
+    yield from np.array_split(np.arange(len(centre)), count)
 
 
-def _earlier(pieces: Pieces, mine: Index, other: Index, toolpath: Toolpath) -> Mask:
-    """Whether others were there before, and not as neighbours in the same layer; a bead may lie on itself, as spirals do."""
-    back = BACK * np.hypot(0.5 * pieces.width[mine], REACH * toolpath.layer_height)
-    same = pieces.bead[mine] == pieces.bead[other]
-    before = np.where(
+def _earlier(pieces: Pieces, rows: Index, other_rows: Index, toolpath: Toolpath) -> Mask:
+    """Whether other pieces are earlier, and not neighbours in the same layer; a bead may support itself, as spirals do."""
+    back = BACK * np.hypot(0.5 * pieces.width[rows], REACH * toolpath.layer_height)
+    same = pieces.bead[rows] == pieces.bead[other_rows]
+    is_earlier = np.where(
         same,
-        pieces.along[mine] - pieces.along[other] > back,
-        pieces.bead[other] < pieces.bead[mine],
+        pieces.along[rows] - pieces.along[other_rows] > back,
+        pieces.bead[other_rows] < pieces.bead[rows],
     )
-    apart = same | (pieces.layer[mine] != pieces.layer[other]) | pieces.closing[mine]
-    found: Mask = before & apart
-    return found
+    is_separate = same | (pieces.layer[rows] != pieces.layer[other_rows]) | pieces.closing[rows]
+    result: Mask = is_earlier & is_separate
+    return result
 
 
-def _below(pieces: Pieces, mine: Index, at: Array, other: Index, toolpath: Toolpath) -> Mask:
-    """Whether others lie below places (n, 3) of pieces; beads that close gaps lie on what is near, on whichever side."""
-    gap = at - pieces.middle[other]
-    build = pieces.build[mine]
+def _below(
+    pieces: Pieces, rows: Index, points: Array, other_rows: Index, toolpath: Toolpath
+) -> Mask:
+    """Whether other pieces are below points (n, 3) of pieces; beads that close gaps need deposit near them on any side."""
+    gap = points - pieces.middle[other_rows]
+    build = pieces.build[rows]
     square = np.einsum("ij,ij->i", gap, gap)
     deep = np.einsum("ij,ij->i", gap, build)
     aside = np.sqrt(np.maximum(square - deep * deep, 0.0))
     height = toolpath.layer_height
-    far = REACH * height * (1.0 + 1e-6) + toolpath.chord_error
-    held = 0.5 * pieces.width[other] * (1.0 + 2.0 * GRACE) + toolpath.chord_error
-    under = (deep >= LEVEL_WITH * height) & (deep <= far) & (aside <= held)
-    found: Mask = under | (pieces.closing[mine] & (square <= far * far))
-    return found
+    max_depth = REACH * height * (1.0 + 1e-6) + toolpath.chord_error
+    max_aside = 0.5 * pieces.width[other_rows] * (1.0 + 2.0 * GRACE) + toolpath.chord_error
+    under = (deep >= LEVEL_WITH * height) & (deep <= max_depth) & (aside <= max_aside)
+    result: Mask = under | (pieces.closing[rows] & (square <= max_depth * max_depth))
+    return result
 
 
 @dataclass(frozen=True)
@@ -190,7 +214,7 @@ class _Run:
 
 
 def _runs(pieces: Pieces, free: Mask, toolpath: Toolpath) -> Iterator[_Run]:
-    """What of beads lies over nothing in a row, without gaps that are bridged and ends that stand out by half a width."""
+    """The unsupported runs of beads, without bridged gaps and ends that overhang by at most half a width."""
     marked = np.unique(pieces.bead[free])
     low, high = (
         np.searchsorted(pieces.bead, marked),
@@ -199,32 +223,36 @@ def _runs(pieces: Pieces, free: Mask, toolpath: Toolpath) -> Iterator[_Run]:
     beads = [(number, bead) for _, number, bead in toolpath]
     for k, a, b in zip(marked.tolist(), low.tolist(), high.tolist()):
         number, bead = beads[k]
-        own, count = free[a:b], b - a
+        is_open, count = free[a:b], b - a
         length, wide = pieces.length[a:b], float(pieces.width[a:b].mean())
-        turn = int(np.flatnonzero(~own)[0]) if bead.closed and not own.all() else 0
+        turn = int(np.flatnonzero(~is_open)[0]) if bead.closed and not is_open.all() else 0
         order = np.r_[turn:count, :turn]
-        change = np.diff(np.r_[False, own[order], False].astype(np.int8))
+        change = np.diff(np.r_[False, is_open[order], False].astype(np.int8))
         for start, end in zip(
             np.flatnonzero(change > 0).tolist(), np.flatnonzero(change < 0).tolist()
         ):
             total = float(length[order[start:end]].sum())
             at_end = not bead.closed and (start == 0 or end == count)
-            if own.all() or total > (0.5 if at_end else 1.0) * wide:
-                first = a + int(order[start])
-                yield _Run(int(pieces.layer[first]), number, int(pieces.point[first]), total)
+            if is_open.all() or total > (0.5 if at_end else 1.0) * wide:
+                start_piece = a + int(order[start])
+                yield _Run(
+                    int(pieces.layer[start_piece]), number, int(pieces.point[start_piece]), total
+                )
 
 
 def _issues(runs: list[_Run], toolpath: Toolpath, lowest: Mask) -> list[Issue]:
     layers: dict[int, list[_Run]] = {}
     for run in runs:
         layers.setdefault(run.layer, []).append(run)
-    total = {layer: math.fsum(run.length for run in some) for layer, some in layers.items()}
+    total = {
+        layer: math.fsum(run.length for run in layer_runs) for layer, layer_runs in layers.items()
+    }
     worst = sorted(sorted(total, key=lambda layer: (-total[layer], layer))[:MOST_NAMED])
-    found = []
+    issues_ = []
     for layer in worst:
         longest = max(layers[layer], key=lambda run: run.length)
         reach = (REACH if lowest[layer] else DOWN) * toolpath.layer_height
-        found.append(
+        issues_.append(
             Issue(
                 WARNING,
                 CODE,
@@ -242,16 +270,16 @@ def _issues(runs: list[_Run], toolpath: Toolpath, lowest: Mask) -> list[Issue]:
             )
         )
     if len(total) > len(worst):
-        rest = math.fsum(length for layer, length in total.items() if layer not in worst)
-        found.append(
+        remaining = math.fsum(length for layer, length in total.items() if layer not in worst)
+        issues_.append(
             Issue(
                 WARNING,
                 CODE,
                 Text(
                     "{} layers more have beads over nothing, {:.5g} mm of them",
                     len(total) - len(worst),
-                    rest,
+                    remaining,
                 ),
             )
         )
-    return found
+    return issues_

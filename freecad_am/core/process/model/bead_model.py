@@ -2,10 +2,10 @@
 """Width and height of a bead from travel speed and curvature: w = m v^(-1/3) + p / r + t (Dai 2020, section 4).
 
 The model holds the width, not the section: at one wire feed a bead that runs faster in a bend is lower there (ERRATA), so
-the height has a fit of its own, of the same form, and is predicted beside the width. Inside the fit the speed is in
-mm/min, as in the paper; all arguments are mm and mm/s. The radius has no sign: inside and outside of a bend are not told
-apart. A bead is made by the wire that each millimetre of it gets: beads laid at several wire feeds f count at the speed at
-which the nominal one f0 lays as much, v f0 / f, and another feed within theirs scales the speeds alike.
+the height has its own fit of the same form. Inside the fit the speed is in mm/min, as in the paper; all arguments are mm and
+mm/s. The radius has no sign: inside and outside of a bend are not distinguished. The wire per millimetre makes the bead:
+beads deposited at several wire feeds f count at the speed at which the nominal feed f0 deposits the same, v f0 / f, and
+another feed within their range scales the speeds alike.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from ...toolpath import SpeedLaw
 from ...types import Array, Mask
 
 MINUTE = 60.0
-FEWEST = 4  # rows; three coefficients and one that says how well they fit
-CONTRADICTING = 0.25  # of their mean; beads laid alike are measured nearer to each other
+MIN_ROWS = 4  # rows; three coefficients and one that says how well they fit
+CONTRADICTING = 0.25  # of their mean; beads deposited alike are measured nearer to each other
 FLATTEST = 1e-8  # least relative singular value of a table that determines the coefficients
 
 
@@ -36,7 +36,7 @@ class Fit:
     r_squared: float
     rmse: float
 
-    def at(self, speed: Array, radius: Array) -> Array:
+    def value_at(self, speed: Array, radius: Array) -> Array:
         """Value (...,) mm at speeds mm/s and radii of curvature mm, infinite where straight."""
         value: Array = self.m * np.cbrt(1.0 / (MINUTE * speed)) + self.p / radius + self.t
         return value
@@ -54,9 +54,10 @@ class Asked:
 
 @dataclass(frozen=True)
 class BeadModel:
-    """The fits of width and height, and what they were made from: speeds mm/s, radii mm, infinite of straight beads,
-    wire_feed mm/s. feeds: least and largest wire feed, mm/s, speed_ratios: speeds as shares of their wire feed.
-    contradictions: rows of the table that were laid alike and measured differently, as text."""
+    """The fits of width and height, and the range of the measured beads: speeds mm/s, radii mm, infinite for straight beads,
+    wire_feed mm/s. feeds: least and largest wire feed, mm/s, speed_ratios: speeds as shares of their wire feed. contradictions:
+    rows of the table that were deposited alike and measured differently, as text.
+    """
 
     width: Fit
     height: Fit
@@ -68,7 +69,7 @@ class BeadModel:
     contradictions: tuple[str, ...] = field(default=(), repr=False)
 
     def at_feed(self, feed: float) -> BeadModel:
-        """The model of beads at another wire feed, mm/s; the same where nothing like it was measured."""
+        """The model of beads at another wire feed, mm/s; unchanged if nothing like it was measured."""
         if (
             self.feeds is None
             or self.speed_ratios is None
@@ -87,11 +88,11 @@ class BeadModel:
 
     def widths(self, speed: Array, radius: Array) -> Array:
         """Width (...,) mm at travel speeds mm/s; radii below the table's count as its least."""
-        return self.width.at(speed, np.maximum(radius, self.radii[0]))
+        return self.width.value_at(speed, np.maximum(radius, self.radii[0]))
 
     def heights(self, speed: Array, radius: Array) -> Array:
         """Height (...,) mm of the bead, the same way."""
-        return self.height.at(speed, np.maximum(radius, self.radii[0]))
+        return self.height.value_at(speed, np.maximum(radius, self.radii[0]))
 
     def law(self, acceleration: float) -> SpeedLaw:
         """What the model says of beads at other speeds than theirs; speeds change by `acceleration` mm/s^2 at most."""
@@ -103,20 +104,25 @@ class BeadModel:
         return float(self.speed_for(width, np.array([np.inf])).speed[0])
 
     def heights_of_section(self, widths: Array, width: float) -> Array:
-        """Height (n,) mm of beads of these widths (n,) mm that have the section of a straight one of `width` mm, as with a
-        wire feed in proportion to the speed. Sections of the same shape: height times width is the same."""
+        """Height (n,) mm of beads of widths (n,) mm with the section of a straight one of `width` mm, as with a wire feed in proportion
+        to the speed. Sections of the same shape: height times width is the same.
+        """
         speed, straight = np.array([self.straight_speed(width)]), np.array([np.inf])
         section: Array = self.heights(speed, straight) * self.widths(speed, straight)
         return section / widths
 
     def speed_for(self, width: float | Array, radius: Array) -> Asked:
-        """The travel speed that keeps `width` mm, one or (n,), at radii of curvature (n,) mm; within those of the table."""
+        """The travel speed that keeps `width` mm, one or (n,), at radii of curvature (n,) mm, within the speeds of the table."""
         straight_only = np.isinf(self.radii[0])  # such a table says nothing of bends
         tight = (radius < self.radii[0] * (1.0 - 1e-9)) & (not straight_only)
-        rest = width - self.width.p / np.maximum(radius, self.radii[0]) - self.width.t
+        speed_term = width - self.width.p / np.maximum(radius, self.radii[0]) - self.width.t
         with np.errstate(divide="ignore", over="ignore"):
             speed = (
-                np.where(rest > 0.0, (self.width.m / np.where(rest > 0.0, rest, 1.0)) ** 3, np.inf)
+                np.where(
+                    speed_term > 0.0,
+                    (self.width.m / np.where(speed_term > 0.0, speed_term, 1.0)) ** 3,
+                    np.inf,
+                )
                 / MINUTE
             )
         slowest, fastest = self.speeds
@@ -139,13 +145,25 @@ def fit(
     lines: Sequence[int] = (),
     feeds: Array | None = None,
 ) -> BeadModel:
-    """The model of a calibration table: columns (n,) in mm and mm/s, and where each row stands in its file, for messages.
-    Least squares, linear in the three coefficients; two where all beads are straight, radii infinite. feeds: (n,) mm/s of
-    beads laid at several, of which `wire_feed` is the nominal one.
+    """Fit the model to a calibration table by least squares, linear in the three coefficients; two if every bead is straight.
 
-    InputError 'TOO_FEW_ROWS', 'BAD_TABLE' (values that are not beads: not positive, not finite), 'COLLINEAR_TABLE' (radii
-    or speeds do not vary, or only together), 'TABLE_CONTRADICTS' (rows do, so that width does not fall with speed)
-    or 'NO_MODEL' (width does not fall with speed).
+    Parameters
+    ----------
+    radius, speed, width, height
+        (n,) columns in mm and mm/s; radii infinite for straight beads.
+    wire_feed
+        mm/s; the nominal one if `feeds` is given.
+    lines
+        Line number of each row in its file, for messages.
+    feeds
+        (n,) mm/s of beads deposited at several wire feeds.
+
+    Raises
+    ------
+    InputError
+        'TOO_FEW_ROWS', 'BAD_TABLE' (values that are not beads: not positive, not finite), 'COLLINEAR_TABLE' (radii or speeds do
+        not vary, or only together), 'TABLE_CONTRADICTS' (rows do, so that width does not fall with speed) or 'NO_MODEL' (width
+        does not fall with speed).
     """
     columns = {
         "radius": (radius, "mm"),
@@ -153,10 +171,10 @@ def fit(
         "width": (width, "mm"),
         "height": (height, "mm"),
     }
-    if len(radius) < FEWEST:
+    if len(radius) < MIN_ROWS:
         rows = "1 row" if len(radius) == 1 else Text("{} rows", len(radius))
         raise InputError(
-            "TOO_FEW_ROWS", label, "it has {}; measure at least {} beads", Word(rows), FEWEST
+            "TOO_FEW_ROWS", label, "it has {}; measure at least {} beads", Word(rows), MIN_ROWS
         )
     for name, (column, unit) in columns.items():
         wrong = np.flatnonzero(~((np.isfinite(column) | (column is radius)) & (column > 0.0)))
@@ -201,7 +219,7 @@ def fit(
             "beads get wider with speed (m = {:.4g}); check the table's columns",
             fits[0].m,
         )
-    made = BeadModel(
+    model = BeadModel(
         fits[0],
         fits[1],
         (float(speed.min()), float(speed.max())),
@@ -210,9 +228,9 @@ def fit(
         contradictions=contradictions,
     )
     return (
-        made
+        model
         if feeds is None
-        else replace(made, feeds=_ends(feeds), speed_ratios=_ends(speed / feeds))
+        else replace(model, feeds=_ends(feeds), speed_ratios=_ends(speed / feeds))
     )
 
 
@@ -249,7 +267,7 @@ def _contradictions(
 
 
 def _besides(contradictions: Sequence[str]) -> str:
-    """What else is wrong with a table that is refused: rows that contradict each other."""
+    """The second fault of a rejected table, as text: rows that contradict each other."""
     if not contradictions:
         return ""
     return Text(
@@ -291,14 +309,14 @@ def _alike(radius: Array, speed: Array, equivalent: Array) -> str:
 
 
 def _fit(terms: Array, values: Array) -> Fit:
-    found = np.linalg.lstsq(terms, values, rcond=None)[0]
-    rest = float(((values - terms @ found) ** 2).sum())
+    coefficients = np.linalg.lstsq(terms, values, rcond=None)[0]
+    residual = float(((values - terms @ coefficients) ** 2).sum())
     spread = float(((values - values.mean()) ** 2).sum())
-    bend = float(found[1]) if len(found) == 3 else 0.0
+    bend = float(coefficients[1]) if len(coefficients) == 3 else 0.0
     return Fit(
-        float(found[0]),
+        float(coefficients[0]),
         bend,
-        float(found[-1]),
-        1.0 - rest / spread if spread > 0.0 else 1.0,
-        float(np.sqrt(rest / (len(values) - len(found)))),
+        float(coefficients[-1]),
+        1.0 - residual / spread if spread > 0.0 else 1.0,
+        float(np.sqrt(residual / (len(values) - len(coefficients)))),
     )

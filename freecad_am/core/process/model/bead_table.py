@@ -2,8 +2,8 @@
 """Calibration tables of bead models: comma separated values with one measured bead per row.
 
 Columns by name, in any order: radius_mm (inf of a straight bead), travel_speed_mm_min, width_mm, height_mm and
-wire_feed_m_min; separated by commas, or by semicolons, with decimal points. Lines that begin with # are remarks. A column
-that is not known, or stands twice, is rejected: what it says would be lost.
+wire_feed_m_min; separated by commas, or by semicolons, with decimal points. Lines that begin with # are remarks. An unknown
+or repeated column is rejected, because its values would be lost.
 """
 
 from __future__ import annotations
@@ -19,17 +19,18 @@ from ...issues import InputError, Text, Word
 from ...parameters.process import ProcessParameters
 from ...types import Array
 from .bead_model import MINUTE, BeadModel, fit, row_name
-from .wire import with_model
+from .wire import model_wire_feed
 
 BUILT_IN = {"csw": "dai-2020.csv", "li-2025": "li-2025.csv"}
-LARGEST = 16  # MB
+MAX_FILE_MB = 16  # MB
 FOLDER = Path(__file__).resolve().parents[3] / "beads"
 COLUMNS = ("radius_mm", "travel_speed_mm_min", "width_mm", "height_mm", "wire_feed_m_min")
 
 
 class Measured(NamedTuple):
-    """Beads of a calibration table: columns (n,) in mm and mm/s, and the wire feed of all, or their mean, mm/s. label: the
-    file's name; lines: where in it each row stands, from 1. feeds: (n,) mm/s where they differ."""
+    """Beads of a calibration table: columns (n,) in mm and mm/s, and their wire feed, or its mean, mm/s. label: the file's name;
+    lines: line number of each row, from 1. feeds: (n,) mm/s where they differ.
+    """
 
     radius: Array
     speed: Array
@@ -41,28 +42,28 @@ class Measured(NamedTuple):
     feeds: Array | None = None
 
 
-def of_process(process: ProcessParameters) -> BeadModel | None:
-    """The bead model of a process at the wire feed that it gives; None without one. InputError: those of `load`."""
+def process_model(process: ProcessParameters) -> BeadModel | None:
+    """The bead model of a process at its wire feed; None without one. Raises the InputErrors of `load`."""
     if process.bead_model == "none":
         return None
     model = load(process.bead_model)
-    return model.at_feed(with_model(process, model))
+    return model.at_feed(model_wire_feed(process, model))
 
 
 def load(name: str, folder: Path | None = None) -> BeadModel:
-    """The bead model of a table, named as `measured` takes it. InputError: those of `measured` and `bead_model.fit`."""
-    return fit(*measured(name, folder))
+    """The bead model of a table by name or path, as in `read_table`. Raises the InputErrors of `read_table` and `bead_model.fit`."""
+    return fit(*read_table(name, folder))
 
 
-def measured(name: str, folder: Path | None = None) -> Measured:
-    """The beads of a built-in table ('csw': table 1 of Dai 2020; 'li-2025': of table 5 of Li 2025) or of the table at a
-    path, relative to `folder`.
+def read_table(name: str, folder: Path | None = None) -> Measured:
+    """Read a built-in table ('csw': table 1 of Dai 2020; 'li-2025': from table 5 of Li 2025) or the table at a path, relative to
+    `folder`.
 
     InputError 'NO_FILE', 'BAD_TABLE' (naming row and column, or that it is not a text).
     """
     path = FOLDER / BUILT_IN[name] if name in BUILT_IN else Path(folder or ".", name)
     try:
-        text = read_content(path, LARGEST, "BAD_TABLE", name).decode("utf-8-sig")
+        text = read_content(path, MAX_FILE_MB, "BAD_TABLE", name).decode("utf-8-sig")
     except (OSError, ValueError) as error:
         if isinstance(error, UnicodeError):
             raise InputError(
@@ -138,7 +139,7 @@ def measured(name: str, folder: Path | None = None) -> Measured:
 
 
 def _check_columns(header: list[str], where: str) -> None:
-    """InputError BAD_TABLE for columns that are not known, or stand twice."""
+    """InputError BAD_TABLE for unknown or repeated columns."""
     for column in header:
         if header.count(column) > 1:
             raise InputError(
@@ -155,7 +156,7 @@ def _check_columns(header: list[str], where: str) -> None:
 
 
 def _row(header: list[str], cells: list[str]) -> dict[str | None, str | None]:
-    """The cells of a row by their columns; None where they are missing, and under None those that are too many."""
+    """The cells of a row by column; None for a missing cell, and surplus cells under the key None."""
     row: dict[str | None, str | None] = dict.fromkeys(header)
     row.update(zip(header, cells))
     if len(cells) > len(header):

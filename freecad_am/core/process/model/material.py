@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads against the travel speeds at which their material is laid."""
+"""Beads against the travel speeds of their material."""
 
 from __future__ import annotations
 
@@ -15,9 +15,11 @@ CODE = "MATERIAL_SPEED"
 ROUNDING = 1e-6  # of a speed
 
 
-def with_speed_issues(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
-    """The toolpath with a warning where beads are slower or faster than their material is laid, at the worst of them.
-    InputError BAD_VALUE for a slowest speed above the fastest."""
+def check_speeds(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
+    """The toolpath with a warning at the worst bead whose travel speed is outside the range of its material.
+
+    InputError BAD_VALUE for a slowest speed above the fastest.
+    """
     slowest, fastest = process.material.slowest or 0.0, process.material.fastest
     if fastest is not None and slowest > fastest:
         raise InputError(
@@ -29,14 +31,14 @@ def with_speed_issues(toolpath: Toolpath, process: ProcessParameters) -> Toolpat
         )
     if not slowest and fastest is None:
         return toolpath
-    worst, where, some = 1.0 + ROUNDING, (0, 0), [float("inf"), 0.0]
+    worst, where, speed_range = 1.0 + ROUNDING, (0, 0), [float("inf"), 0.0]
     for layer, number, bead in toolpath:
         at_ends = [speed for speed in bead.ends[1:4:2] if speed]
         low, high = (
             float(min(bead.speed[1:].min(), *at_ends, np.inf)),
             float(max(bead.speed[1:].max(), *at_ends, 0.0)),
         )
-        some = [min(some[0], low), max(some[1], high)]
+        speed_range = [min(speed_range[0], low), max(speed_range[1], high)]
         off = max(slowest / low, 0.0 if fastest is None else high / fastest)
         if off > worst:
             worst, where = off, (layer, number)
@@ -57,8 +59,8 @@ def with_speed_issues(toolpath: Toolpath, process: ProcessParameters) -> Toolpat
                 Text(
                     "beads are laid at {:.4g} to {:.4g} mm/s, and {} {}; change process.travel_speed, "
                     "process.bead_width or process.classes, or measure beads at these speeds",
-                    some[0],
-                    some[1],
+                    speed_range[0],
+                    speed_range[1],
                     process.material.name or "the material",
                     Word(bounds),
                 ),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is said where a bead model sets the speeds: the fit, what lies outside of its table, heights, the wire."""
+"""Issues of a bead model that sets the speeds: the fit, speeds outside its table, heights, the wire."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from ...parameters.process import ProcessParameters
 from ...toolpath import Bead
 from ...types import Array, Mask
 from .bead_model import MINUTE, BeadModel
-from .predicted import with_heights
-from .wire import with_model
+from .predicted import height_issue
+from .wire import model_wire_feed
 
 CLAMPED = 0.05  # of the length
 
@@ -33,16 +33,16 @@ class Held(Protocol):
     def tight(self) -> Mask | None: ...
 
 
-def of_model(
-    made: Sequence[Held], layer_height: float, process: ProcessParameters, model: BeadModel
+def model_issues(
+    sized: Sequence[Held], layer_height: float, process: ProcessParameters, model: BeadModel
 ) -> list[Issue]:
-    """All of it. layer_height: mm."""
+    """All issues of beads at the speeds of a model. layer_height: mm."""
     length = np.concatenate(
-        [np.linalg.norm(np.diff(one.bead.points, axis=0), axis=1) for one in made]
+        [np.linalg.norm(np.diff(sized_bead.bead.points, axis=0), axis=1) for sized_bead in sized]
     )
-    speed = np.concatenate([one.bead.speed[1:] for one in made]) * MINUTE
+    speed = np.concatenate([sized_bead.bead.speed[1:] for sized_bead in sized]) * MINUTE
     fit = model.width
-    found = [
+    issues = [
         Issue(
             NOTE,
             "BEAD_MODEL",
@@ -61,7 +61,7 @@ def of_model(
         )
     ]
     if model.contradictions:
-        found.append(
+        issues.append(
             Issue(
                 WARNING,
                 "TABLE_CONTRADICTS",
@@ -72,13 +72,15 @@ def of_model(
                 ),
             )
         )
-    found += _outside(made, length, process.bead_width, model)
-    found.append(with_heights([one.bead for one in made], layer_height, process, model))
-    feed = with_model(process, model)
+    issues += _outside(sized, length, process.bead_width, model)
+    issues.append(
+        height_issue([sized_bead.bead for sized_bead in sized], layer_height, process, model)
+    )
+    feed = model_wire_feed(process, model)
     if abs(feed - model.wire_feed) > 0.01 * model.wire_feed:
         low, high = model.feeds or (model.wire_feed, model.wire_feed)
         measured = Text("{:.4g}", low) if low == high else Text("{:.4g} to {:.4g}", low, high)
-        found.append(
+        issues.append(
             Issue(
                 WARNING,
                 "WIRE_FEED",
@@ -90,24 +92,34 @@ def of_model(
                 ),
             )
         )
-    return found
+    return issues
 
 
-def _outside(made: Sequence[Held], length: Array, wanted: float, model: BeadModel) -> list[Issue]:
-    """Where beads are not such as the table has."""
-    clamped = np.concatenate([one.clamped[1:] for one in made if one.clamped is not None])
-    tight = np.concatenate([one.tight[1:] for one in made if one.tight is not None])
+def _outside(
+    sized: Sequence[Held], length: Array, target_width: float, model: BeadModel
+) -> list[Issue]:
+    """The issues of beads outside the range of the table."""
+    clamped = np.concatenate(
+        [sized_bead.clamped[1:] for sized_bead in sized if sized_bead.clamped is not None]
+    )
+    tight = np.concatenate(
+        [sized_bead.tight[1:] for sized_bead in sized if sized_bead.tight is not None]
+    )
     low, high = (MINUTE * value for value in model.speeds)
-    slow, bent = (float(length[some].sum() / length.sum()) for some in (clamped, tight))
-    found = []
+    slow, bent = (float(length[mask].sum() / length.sum()) for mask in (clamped, tight))
+    issues = []
     if slow > 0.0:
-        beads = sum(bool(one.clamped[1:].any()) for one in made if one.clamped is not None)
-        width = np.concatenate([one.bead.width[1:] for one in made if one.bead.width is not None])[
-            clamped
-        ]
-        worst = float(width[np.abs(width - wanted).argmax()])
-        least, most = np.sort(model.widths(np.array(model.speeds), np.full(2, np.inf)))
-        found.append(
+        beads = sum(
+            bool(sized_bead.clamped[1:].any())
+            for sized_bead in sized
+            if sized_bead.clamped is not None
+        )
+        width = np.concatenate(
+            [sized_bead.bead.width[1:] for sized_bead in sized if sized_bead.bead.width is not None]
+        )[clamped]
+        worst = float(width[np.abs(width - target_width).argmax()])
+        narrowest, widest = np.sort(model.widths(np.array(model.speeds), np.full(2, np.inf)))
+        issues.append(
             Issue(
                 WARNING if slow > CLAMPED else NOTE,
                 "OUTSIDE_TABLE",
@@ -119,19 +131,19 @@ def _outside(made: Sequence[Held], length: Array, wanted: float, model: BeadMode
                     "speeds",
                     100.0 * slow,
                     beads,
-                    len(made),
+                    len(sized),
                     len(width),
                     low,
                     high,
                     worst,
-                    wanted,
-                    least,
-                    most,
+                    target_width,
+                    narrowest,
+                    widest,
                 ),
             )
         )
     if bent > 0.0:
-        found.append(
+        issues.append(
             Issue(
                 NOTE,
                 "TIGHT_BENDS",
@@ -143,4 +155,4 @@ def _outside(made: Sequence[Held], length: Array, wanted: float, model: BeadMode
                 ),
             )
         )
-    return found
+    return issues

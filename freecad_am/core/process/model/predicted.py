@@ -14,7 +14,7 @@ from ...parameters.process import ProcessParameters
 from ...toolpath import Bead, Toolpath
 from ...types import Array, Index
 from .bead_model import MINUTE, BeadModel
-from .wire import with_model
+from .wire import model_wire_feed
 
 HEIGHTS = "BEAD_HEIGHT"
 DRIFT = 0.2  # of the layer height; layers that drift by more deserve a warning
@@ -32,26 +32,26 @@ class Segments:
 
 
 def segments(beads: Sequence[Bead]) -> Segments:
-    """Of the beads that a bead model set the speed of."""
-    known = [
+    """The segments of the beads whose speed a bead model sets."""
+    modelled = [
         (bead, bead.width, bead.height)
         for bead in beads
         if bead.width is not None and bead.height is not None
     ]
-    if not known:
+    if not modelled:
         return Segments(*(np.empty(0) for _ in range(5)))
-    speed = [bead.speed[1:] for bead, _, _ in known]
+    speed = [bead.speed[1:] for bead, _, _ in modelled]
     return Segments(
         np.concatenate(
-            [np.linalg.norm(np.diff(bead.points, axis=0), axis=1) for bead, _, _ in known]
+            [np.linalg.norm(np.diff(bead.points, axis=0), axis=1) for bead, _, _ in modelled]
         ),
         MINUTE * np.concatenate(speed),
-        np.concatenate([0.5 * (width[1:] + width[:-1]) for _, width, _ in known]),
-        np.concatenate([0.5 * (height[1:] + height[:-1]) for _, _, height in known]),
+        np.concatenate([0.5 * (width[1:] + width[:-1]) for _, width, _ in modelled]),
+        np.concatenate([0.5 * (height[1:] + height[:-1]) for _, _, height in modelled]),
         np.concatenate(
             [
-                (np.nan if bead.wire_share is None else bead.wire_share) * some
-                for (bead, _, _), some in zip(known, speed)
+                (np.nan if bead.wire_share is None else bead.wire_share) * speeds
+                for (bead, _, _), speeds in zip(modelled, speed)
             ]
         ),
     )
@@ -60,22 +60,21 @@ def segments(beads: Sequence[Bead]) -> Segments:
 def beads(
     toolpath: Toolpath, numbers: Sequence[int] | Index | None = None
 ) -> dict[str, Any] | None:
-    """The key `beads` of a report; None without a bead model, and for several features. numbers: of the layers of one of
-    several, in the whole.
+    """The key `beads` of a report; None without a bead model, and for several features.
 
-    Of each layer `drift_mm` is by how much the layers of its solid up to it, as high in the mean as predicted, are off the
-    layer heights.
+    numbers: of the layers of one feature among the layers of several. `drift_mm` of a layer is the sum of the differences of
+    predicted mean heights from layer heights, up to it within its solid.
     """
-    whole = segments([] if toolpath.features else [bead for _, _, bead in toolpath])
-    if not len(whole.length):
+    total = segments([] if toolpath.features else [bead for _, _, bead in toolpath])
+    if not len(total.length):
         return None
     rows: list[dict[str, Any]] = []
     drift = 0.0
     for number, layer in enumerate(toolpath.layers):
-        some = segments(layer.beads)
-        if not len(some.length):
+        layer_segments = segments(layer.beads)
+        if not len(layer_segments.length):
             continue
-        height = _spread(some.height, some.length)
+        height = _summarise(layer_segments.height, layer_segments.length)
         drift = (0.0 if layer.first else drift) + height["mean"] - toolpath.layer_height
         rows.append(
             {
@@ -85,27 +84,27 @@ def beads(
             }
         )
     return {
-        "travel_speed_mm_min": _spread(whole.speed, whole.length),
-        "width_mm": _spread(whole.width, whole.length),
-        "height_mm": _spread(whole.height, whole.length),
+        "travel_speed_mm_min": _summarise(total.speed, total.length),
+        "width_mm": _summarise(total.width, total.length),
+        "height_mm": _summarise(total.height, total.length),
         "layer_height_mm": toolpath.layer_height,
-        "wire_feed_mm_s": _spread(whole.wire, whole.length)
-        if np.isfinite(whole.wire).all()
+        "wire_feed_mm_s": _summarise(total.wire, total.length)
+        if np.isfinite(total.wire).all()
         else None,
         "layers": rows,
     }
 
 
-def with_heights(
+def height_issue(
     beads: Sequence[Bead],
     layer_height: float,
     process: ProcessParameters,
     model: BeadModel,
     as_run: bool = False,
 ) -> Issue:
-    """How high beads of the model are predicted at their speeds, against the layers. as_run: axes can follow these."""
-    some = segments(beads)
-    height = _spread(some.height, some.length)
+    """The issue that compares predicted bead heights with the layers. as_run: axes can follow the speeds."""
+    sized = segments(beads)
+    height = _summarise(sized.height, sized.length)
     drift = abs(height["mean"] - layer_height) / layer_height
     return Issue(
         WARNING if drift > DRIFT else NOTE,
@@ -118,23 +117,23 @@ def with_heights(
             height["mean"],
             layer_height,
             Word("; set strategy.layer_height to what the beads make" if drift > DRIFT else ""),
-            _sections(some, process, model),
+            _sections(sized, process, model),
         ),
     )
 
 
-def _sections(some: Segments, process: ProcessParameters, model: BeadModel) -> str:
-    """What a wire feed in proportion to the speed is, or would be, where speeds vary."""
-    if np.isfinite(some.wire).all():
-        low, high = float(some.wire.min()), float(some.wire.max())
+def _sections(sized: Segments, process: ProcessParameters, model: BeadModel) -> str:
+    """The wire feed in proportion to the speed, actual or possible, as text where speeds vary."""
+    if np.isfinite(sized.wire).all():
+        low, high = float(sized.wire.min()), float(sized.wire.max())
         return Text(
             ". The wire runs in proportion to the speed, at {:.3g} to {:.3g} mm/s, and keeps their section",
             low,
             high,
         )
-    per_mm = with_model(process, model) / model.straight_speed(process.bead_width)
+    per_mm = model_wire_feed(process, model) / model.straight_speed(process.bead_width)
     slowest, fastest = (
-        per_mm * float(value) / MINUTE for value in (some.speed.min(), some.speed.max())
+        per_mm * float(value) / MINUTE for value in (sized.speed.min(), sized.speed.max())
     )
     if fastest < 1.05 * slowest:
         return ""
@@ -146,7 +145,7 @@ def _sections(some: Segments, process: ProcessParameters, model: BeadModel) -> s
     )
 
 
-def _spread(values: Array, length: Array) -> dict[str, float]:
+def _summarise(values: Array, length: Array) -> dict[str, float]:
     """Least, largest, and the mean over the length."""
     mean = float((values * length).sum() / length.sum())
     return {"min": float(values.min()), "mean": mean, "max": float(values.max())}

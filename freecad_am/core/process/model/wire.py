@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The wire against the bead: what it feeds per second is what a bead of the counted section takes at its travel speed."""
+"""Wire feed against bead: the wire fed per second equals the counted section of a bead at its travel speed."""
 
 from __future__ import annotations
 
@@ -15,40 +15,45 @@ from .bead_model import BeadModel
 from .wire_taken import by_wire, follows_speed, taken_of
 
 AUTO, CODE = "auto", "FEED_BALANCE"
-TOLERANCE = 0.1  # of what beads take; a wire that feeds more or less by no more than this balances
+TOLERANCE = 0.1  # of the rate that beads take; a wire within this balances
 
 
-def with_model(process: ProcessParameters, model: BeadModel) -> float:
-    """Speed of the wire, mm/s, where a bead model sets the travel speed: as given, else that of the model's own beads."""
+def model_wire_feed(process: ProcessParameters, model: BeadModel) -> float:
+    """Speed of the wire, mm/s, if a bead model sets the travel speed: as given, else the model's nominal feed."""
     feed = process.wire.feed
     return model.wire_feed if isinstance(feed, str) else feed
 
 
-def fed(toolpath: Toolpath, process: ProcessParameters, model: BeadModel | None) -> Toolpath:
-    """The toolpath with the speed of its wire, and an issue where that does not balance with its beads.
+def set_wire_feed(
+    toolpath: Toolpath, process: ProcessParameters, model: BeadModel | None
+) -> Toolpath:
+    """The toolpath with the speed of its wire, and an issue if the wire does not balance with the beads.
 
-    Balanced is wire section x feed = bead width x layer height x travel speed, or what fills the part: beads that overlap may
-    be fed for the room that each has. Beads of a model were measured with their
-    wire, and are told apart from that by `solids.notes`; a feed of 0 stands for no wire. Where nothing tells the width of
-    beads nothing is said.
+    Balanced is wire section x feed = bead width x layer height x travel speed, or the volume of a filled part: overlapping beads
+    may be fed for the room that each has. Beads of a model were measured with their wire; `solids.notes` reports their balance. A
+    feed of 0 means no wire. Without a known bead width there is no issue.
     """
     if model is not None:
-        return replace(toolpath, wire_feed=with_model(process, model))
+        return replace(toolpath, wire_feed=model_wire_feed(process, model))
     if toolpath.bead_width is None:
         return toolpath
     width, height, speed = toolpath.bead_width, toolpath.layer_height, process.travel_speed
-    taken = width * height * speed
-    balanced = taken / process.wire.section
+    bead_rate = width * height * speed
+    balanced = bead_rate / process.wire.section
     if isinstance(process.wire.feed, str):
-        return _of_classes(_following(replace(toolpath, wire_feed=balanced), process), process)
-    made = _following(replace(toolpath, wire_feed=process.wire.feed), process)
-    given = process.wire.feed * process.wire.section
-    if given == 0.0 or abs(given - taken) <= TOLERANCE * taken or _fills(toolpath, given):
-        return _of_classes(made, process)
+        return _check_classes(_following(replace(toolpath, wire_feed=balanced), process), process)
+    fed_path = _following(replace(toolpath, wire_feed=process.wire.feed), process)
+    wire_rate = process.wire.feed * process.wire.section
+    if (
+        wire_rate == 0.0
+        or abs(wire_rate - bead_rate) <= TOLERANCE * bead_rate
+        or _fills(toolpath, wire_rate)
+    ):
+        return _check_classes(fed_path, process)
     return replace(
-        made,
+        fed_path,
         issues=(
-            *made.issues,
+            *fed_path.issues,
             Issue(
                 WARNING,
                 CODE,
@@ -56,13 +61,13 @@ def fed(toolpath: Toolpath, process: ProcessParameters, model: BeadModel | None)
                     "the wire feeds {:.4g} mm3/s, {:.4g} mm/s of {:g} mm wire, but beads of {:.4g} x {:.4g} mm at "
                     "{:.4g} mm/s take {:.4g} mm3/s; set process.wire.feed to {:.4g} mm/s, or to auto, or make width, layer height "
                     "and travel speed what they are",
-                    given,
+                    wire_rate,
                     process.wire.feed,
                     process.wire.diameter,
                     width,
                     height,
                     speed,
-                    taken,
+                    bead_rate,
                     balanced,
                 ),
             ),
@@ -70,22 +75,23 @@ def fed(toolpath: Toolpath, process: ProcessParameters, model: BeadModel | None)
     )
 
 
-def _fills(toolpath: Toolpath, given: float) -> bool:
-    """Whether a wire of so many mm3/s feeds as much as the beads of a filled part deposit."""
+def _fills(toolpath: Toolpath, wire_rate: float) -> bool:
+    """Whether a wire rate, mm3/s, feeds as much as the beads of a filled part deposit."""
     if toolpath.volumes is None:
         return False
-    part, left, outside = toolpath.volumes
-    deposited = part - left + outside
+    part_volume, left_out, outside = toolpath.volumes
+    deposited = part_volume - left_out + outside
     seconds = sum(
         float((np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / bead.speed[1:]).sum())
         for _, _, bead in toolpath
     )
-    return abs(given * seconds - deposited) <= TOLERANCE * deposited
+    return abs(wire_rate * seconds - deposited) <= TOLERANCE * deposited
 
 
 def _following(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
-    """The toolpath with a wire that follows the travel speed, where that is asked for and beads have ramps. Speeds that
-    change in one step are no reason: a schedule tells what is fed there."""
+    """The toolpath with a wire that follows the travel speed, if the process asks for it and beads have ramps. For stepped speeds
+    a schedule gives the feed.
+    """
     ramped = any(bead.ends[4:] for _, _, bead in toolpath)
     if process.wire.feed_mode != "proportional" or not toolpath.wire_feed or not ramped:
         return toolpath
@@ -99,20 +105,21 @@ def _following(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     )
 
 
-def _of_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
-    """The toolpath with an issue where classes of beads, or their starts and ends, have travel speeds of their own at which
-    the wire does not balance, and no schedule of their own that could feed it otherwise."""
-    given = (toolpath.wire_feed or 0.0) * process.wire.section
-    if given == 0.0 or not _at_other_speeds(process) or follows_speed(toolpath):
+def _check_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
+    """The toolpath with an issue if bead classes, starts or ends have travel speeds at which the wire does not balance, and no
+    schedule of their own that could feed it otherwise.
+    """
+    wire_rate = (toolpath.wire_feed or 0.0) * process.wire.section
+    if wire_rate == 0.0 or not _at_other_speeds(process) or follows_speed(toolpath):
         return toolpath
     off = [
-        one
-        for one in taken_of(toolpath)
-        if by_wire(one, process) and abs(given - one.rate) > TOLERANCE * one.rate
+        taken
+        for taken in taken_of(toolpath)
+        if by_wire(taken, process) and abs(wire_rate - taken.rate) > TOLERANCE * taken.rate
     ]
     if not off:
         return toolpath
-    text = ", ".join(f"{one.name} {one.rate:.4g}" for one in off)
+    text = ", ".join(f"{taken.name} {taken.rate:.4g}" for taken in off)
     return replace(
         toolpath,
         issues=(
@@ -124,7 +131,7 @@ def _of_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
                     "the wire feeds {:.4g} mm3/s, but beads of these classes, at their own travel speeds, take {} "
                     "mm3/s: more or less lies there than there is room for; give them a schedule that feeds the wire so, or the "
                     "travel speed of the others",
-                    given,
+                    wire_rate,
                     text,
                 ),
                 off[0].layer,
@@ -138,6 +145,6 @@ def _at_other_speeds(process: ProcessParameters) -> bool:
     """Whether any class or phase has a travel speed of its own."""
     named = [process, *(process.for_class(name) for name in CLASSES)]
     return any(
-        one.travel_speed != process.travel_speed or one.start.there or one.end.there
-        for one in named
+        settings.travel_speed != process.travel_speed or settings.start.there or settings.end.there
+        for settings in named
     )

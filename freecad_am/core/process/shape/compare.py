@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A predicted deposit against the part: how far it reaches beyond each place of the faces, and whether that is enough."""
+"""A predicted deposit against the part: how far it reaches beyond the faces, and whether that is enough."""
 
 from __future__ import annotations
 
@@ -18,167 +18,184 @@ from .grid import Grid
 from .laying import PredictedDeposit
 
 CODE, DRIFT = "ALLOWANCE", "LAYER_DRIFT"
-MUCH = 0.5  # of a layer height: layers that end farther off than this are told
+MAX_DRIFT_SHARE = 0.5  # of a layer height: layers that end farther off than this are reported
 KNOWN = 0.25  # of a cube's edge, to which a surface is known
 HALF = 0.5  # of a cube: the surface runs where it is half full
 STEP = 0.5  # of a cube's edge, between places that are asked along a normal
 REACH = 2.0  # widths and layer heights that the deposit is looked for, outwards and inwards
-STANDS = 0.25  # layer heights above where a first layer begins, up to which a face that looks down stands there
+STANDS = 0.25  # layer heights above the start of a first layer, up to which a downward face is on the ground
 DOWN = 0.5  # cosine against the build direction of such a face
-KNOWN_WIDTHS = (
-    1.5  # widths from a first layer's bead, beyond which nothing is known of what it stands on
-)
+KNOWN_WIDTHS = 1.5  # widths from a first layer's bead, beyond which its ground is not known
 AT_ONCE = 4_000
 
 
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """faces: the places that are to be covered. deviation: (n,) mm that the deposit reaches beyond them along their normals,
-    less than 0 where the part sticks out; of open faces on the side where it is less. bare: (n,) where there is none within
-    `reach` mm, which deviations are cut off at. piece: (n,) of the deposit's pieces the nearest one."""
+    """The deposit against faces that must be covered.
+
+    deviation: (n,) mm that the deposit reaches beyond them along their normals, negative where the part sticks out; for open
+    faces on the side with less. bare: (n,) no deposit within `reach` mm, which limits deviations. piece_rows: (n,) the nearest piece
+    of the deposit.
+    """
 
     faces: Faces
     deviation: Array
     bare: Mask
     reach: float
-    piece: Index
+    piece_rows: Index
 
     @property
     def surface(self) -> Array:
         """(n, 3) mm, the places of the deposit's surface that were met."""
-        found: Array = self.faces.points + self.deviation[:, None] * self.faces.normals
-        return found
+        points: Array = self.faces.points + self.deviation[:, None] * self.faces.normals
+        return points
 
 
-def compared(of: PredictedDeposit, faces: Faces) -> Compared:
-    """The deposit from all faces, but those on which the part stands and what lies below where it begins."""
-    pieces = of.pieces
-    kept = faces.rows(_to_be_covered(of, faces))
+def compare_deposit(deposit: PredictedDeposit, faces: Faces) -> Compared:
+    """The deposit from all faces, except faces that the part stands on and faces below the first layer."""
+    pieces = deposit.pieces
+    covered = faces.rows(_to_be_covered(deposit, faces))
     reach = REACH * (float(pieces.width.max()) + float(pieces.height.max()))
-    out, bare = _reached(of.grid, kept.points, kept.normals, reach)
-    if kept.open.any():
-        other, other_bare = _reached(of.grid, kept.points, -kept.normals, reach)
-        less = kept.open & (other < out)
-        turned = np.where(less[:, None], -kept.normals, kept.normals)
-        kept = Faces(kept.points, turned, kept.areas, kept.open)
-        out, bare = np.where(less, other, out), np.where(less, other_bare, bare)
-    piece = (
-        np.asarray(cKDTree(pieces.middle).query(kept.points)[1])
-        if len(kept)
+    out, bare = _reach_distances(deposit.grid, covered.points, covered.normals, reach)
+    if covered.open.any():
+        back_out, back_bare = _reach_distances(
+            deposit.grid, covered.points, -covered.normals, reach
+        )
+        less = covered.open & (back_out < out)
+        turned = np.where(less[:, None], -covered.normals, covered.normals)
+        covered = Faces(covered.points, turned, covered.areas, covered.open)
+        out, bare = np.where(less, back_out, out), np.where(less, back_bare, bare)
+    piece_rows = (
+        np.asarray(cKDTree(pieces.middle).query(covered.points)[1])
+        if len(covered)
         else np.zeros(0, dtype=np.intp)
     )
-    return Compared(kept, out, bare, reach, piece)
+    return Compared(covered, out, bare, reach, piece_rows)
 
 
-def _to_be_covered(of: PredictedDeposit, faces: Faces) -> Mask:
-    """Which places are not below a first layer, nor on faces that stand on what that lies on."""
-    begins = of.pieces.rows(np.flatnonzero(of.pieces.first))
-    away, near = cKDTree(begins.middle).query(faces.points)
-    build, height = begins.build[near], begins.height[near]
-    up = dots(faces.points - begins.middle[near], build)
-    adjacent = np.sqrt(np.maximum(away * away - up * up, 0.0)) < KNOWN_WIDTHS * begins.width[near]
+def _to_be_covered(deposit: PredictedDeposit, faces: Faces) -> Mask:
+    """Which points are not below a first layer, nor on faces that share its ground."""
+    begins = deposit.pieces.rows(np.flatnonzero(deposit.pieces.is_first))
+    distance, nearest = cKDTree(begins.middle).query(faces.points)
+    build, height = begins.build[nearest], begins.height[nearest]
+    up = dots(faces.points - begins.middle[nearest], build)
+    adjacent = (
+        np.sqrt(np.maximum(distance * distance - up * up, 0.0))
+        < KNOWN_WIDTHS * begins.width[nearest]
+    )
     down = dots(faces.normals, build) < -DOWN
     below = adjacent & ((up < -STANDS * height) | ((up < STANDS * height) & down))
-    found: Mask = ~below
-    return found
+    result: Mask = ~below
+    return result
 
 
-def _reached(grid: Grid, points: Array, normals: Array, reach: float) -> tuple[Array, Mask]:
-    """How far (n,) mm the deposit reaches from points (n, 3) along unit normals, to where it first ends; where there is none
-    at a point, less than 0, by how far it is away, inwards along the normal or nearer aside. And where there is none within
-    `reach` mm."""
+def _reach_distances(grid: Grid, points: Array, normals: Array, reach: float) -> tuple[Array, Mask]:
+    """How far (n,) mm the deposit reaches from points (n, 3) along unit normals, to its first end; and whether none is within
+    `reach` mm. Negative at a point without deposit: the distance to it, inwards along the normal or nearer aside.
+    """
     count = int(np.ceil(reach / (STEP * grid.edge)))
     steps = np.linspace(0.0, reach, count + 1)
-    found, bare = np.empty(len(points)), np.zeros(len(points), dtype=bool)
+    lengths_, bare = np.empty(len(points)), np.zeros(len(points), dtype=bool)
     full = cKDTree(grid.centres(np.flatnonzero(grid.filled >= HALF)))
     for start in range(0, len(points), AT_ONCE):
         rows = slice(start, start + AT_ONCE)
-        inside = grid.at(points[rows]) >= HALF
-        way = np.where(inside, 1.0, -1.0)
-        length = _first_change(grid, points[rows], way[:, None] * normals[rows], steps, inside)
-        away = np.minimum(
+        inside = grid.fill_at(points[rows]) >= HALF
+        sign = np.where(inside, 1.0, -1.0)
+        length = _first_change(grid, points[rows], sign[:, None] * normals[rows], steps, inside)
+        distance = np.minimum(
             np.asarray(full.query(points[rows], distance_upper_bound=reach + grid.edge)[0]),
             reach + grid.edge,
         )
         length = np.where(
-            inside, length, np.minimum(length, np.maximum(away - 0.5 * grid.edge, 0.0))
+            inside, length, np.minimum(length, np.maximum(distance - 0.5 * grid.edge, 0.0))
         )
-        found[rows], bare[rows] = way * length, ~inside & (length >= reach)
-    return found, bare
+        lengths_[rows], bare[rows] = sign * length, ~inside & (length >= reach)
+    return lengths_, bare
 
 
-def _first_change(grid: Grid, points: Array, ways: Array, steps: Array, inside: Mask) -> Array:
+def _first_change(
+    grid: Grid, points: Array, directions: Array, steps: Array, inside: Mask
+) -> Array:
     """Distance (n,) mm along ways at which the deposit begins or ends; the last step where it does neither."""
     length = np.full(len(points), steps[-1])
-    left = np.arange(len(points))
-    before = grid.at(points)
-    for near, far in zip(steps[:-1], steps[1:], strict=True):
-        now = grid.at(points[left] + far * ways[left])
-        changed = (now >= HALF) != inside[left]
-        rows = left[changed]
-        share = (HALF - before[changed]) / (now[changed] - before[changed])
-        length[rows] = near + share * (far - near)
-        left, before = left[~changed], now[~changed]
-        if not len(left):
+    remaining = np.arange(len(points))
+    previous = grid.fill_at(points)
+    for start, end in zip(steps[:-1], steps[1:], strict=True):
+        now = grid.fill_at(points[remaining] + end * directions[remaining])
+        changed = (now >= HALF) != inside[remaining]
+        rows = remaining[changed]
+        share = (HALF - previous[changed]) / (now[changed] - previous[changed])
+        length[rows] = start + share * (end - start)
+        remaining, previous = remaining[~changed], now[~changed]
+        if not len(remaining):
             break
     return length
 
 
-def figures(of: PredictedDeposit, found: Compared, allowance: float) -> PredictedShape:
-    """What it comes to, for an allowance of so many mm on all faces. ValueError without faces to be covered."""
-    if not len(found.faces):
+def figures(deposit: PredictedDeposit, comparison: Compared, allowance: float) -> PredictedShape:
+    """The figures of a comparison for an allowance, mm, on all faces. ValueError without faces to be covered."""
+    if not len(comparison.faces):
         raise ValueError("there are no faces to be covered")
-    area, worst = found.faces.areas, int(found.deviation.argmin())
-    whole, known = float(area.sum()), KNOWN * of.grid.edge
-    pieces, piece = of.pieces, found.piece[worst]
+    area, worst = comparison.faces.areas, int(comparison.deviation.argmin())
+    total, resolution = float(area.sum()), KNOWN * deposit.grid.edge
+    pieces, worst_piece = deposit.pieces, comparison.piece_rows[worst]
 
-    def share(some: Mask) -> float:
-        return float(area[some].sum()) / whole
+    def share(mask: Mask) -> float:
+        return float(area[mask].sum()) / total
 
     return PredictedShape(
-        of.fed,
-        of.deposited,
-        of.grid.edge,
-        of.drift,
+        deposit.fed,
+        deposit.deposited,
+        deposit.grid.edge,
+        deposit.drift,
         allowance,
         len(area),
-        float(found.deviation[worst]),
-        float(found.deviation @ area) / whole,
-        float(found.deviation.max()),
-        share(found.deviation < allowance - known),
-        share(found.deviation < -known),
-        share(found.bare),
-        found.reach,
-        found.faces.points[worst],
-        int(pieces.layer[piece]),
-        int(of.bead_in_layer[piece]),
-        int(pieces.point[piece]),
+        float(comparison.deviation[worst]),
+        float(comparison.deviation @ area) / total,
+        float(comparison.deviation.max()),
+        share(comparison.deviation < allowance - resolution),
+        share(comparison.deviation < -resolution),
+        share(comparison.bare),
+        comparison.reach,
+        comparison.faces.points[worst],
+        int(pieces.layer[worst_piece]),
+        int(deposit.bead_in_layer[worst_piece]),
+        int(pieces.point[worst_piece]),
     )
 
 
 def issues(
-    found: PredictedShape,
+    shape: PredictedShape,
     layer_heights: Array,
-    first: Mask,
+    is_first: Mask,
     remedy: str,
     courses: Array | None = None,
 ) -> tuple[Issue, ...]:
-    """That layers come out higher or lower than they are planned, and that the part is not inside the predicted deposit by
-    the allowance. layer_heights: (layers,) mm; first: (layers,) of those that nothing of their feature lies below. remedy:
-    what to do where the deposit is too small, with {} for by how much. courses: (layers,) turns that lie one over the other
-    within a layer, 1 of all but spirals."""
+    """Issues: layers higher or lower than planned, and a part not inside the predicted deposit by the allowance.
+
+    Parameters
+    ----------
+    layer_heights
+        (layers,) mm.
+    is_first
+        (layers,) layers with nothing of their feature below.
+    remedy
+        The remedy for a deposit that is too small, with {} for the missing mm.
+    courses
+        (layers,) turns stacked within a layer, 1 except for spirals.
+    """
     courses = np.ones(len(layer_heights)) if courses is None else courses
-    drifts, low = _drift(found.drift, layer_heights, first, courses)
-    if found.short <= 0.0:
+    drifts, low = _drift(shape.drift, layer_heights, is_first, courses)
+    if shape.short <= 0.0:
         return drifts
-    lacks = found.allowance - found.least
-    if found.least <= -found.reach:
-        text = Text("there is none within {:.3g} mm", found.reach)
-    elif found.least < 0.0:
-        text = Text("the part sticks out by {:.3g} mm", -found.least)
+    lacks = shape.allowance - shape.least
+    if shape.least <= -shape.reach:
+        text = Text("there is none within {:.3g} mm", shape.reach)
+    elif shape.least < 0.0:
+        text = Text("the part sticks out by {:.3g} mm", -shape.least)
     else:
-        text = Text("{:.3g} mm are left to machine", found.least)
-    # where layers come out low more would be needed everywhere
+        text = Text("{:.3g} mm are left to machine", shape.least)
+    # if layers come out low, more is needed everywhere
     remedy = "Lay layers as high as they come out first" if low else Text(remedy, f"{lacks:.3g}")
     return (
         *drifts,
@@ -188,32 +205,31 @@ def issues(
             Text(
                 "on {:.3g} % of the faces the predicted deposit does not reach {:g} mm beyond the part, on "
                 "{:.3g} % it ends within the part: at {} {}. {}",
-                100.0 * found.short,
-                found.allowance,
-                100.0 * found.outside,
-                place(found.worst),
+                100.0 * shape.short,
+                shape.allowance,
+                100.0 * shape.outside,
+                place(shape.worst),
                 Word(text),
                 remedy,
             ),
-            found.layer,
-            found.bead,
-            found.point,
+            shape.layer,
+            shape.bead,
+            shape.point,
         ),
     )
 
 
 def _drift(
-    drift: Array, layer_heights: Array, first: Mask, courses: Array
+    drift: Array, layer_heights: Array, is_first: Mask, courses: Array
 ) -> tuple[tuple[Issue, ...], bool]:
-    """That layers end farther above or below where the next should begin than MUCH of their height, at the worst one, and
-    whether it is below."""
+    """The issue of layers that end farther off the start of the next than MAX_DRIFT_SHARE of their height, at the worst, and whether it is below."""
     off = np.nan_to_num(drift) / layer_heights
     worst = int(np.abs(off).argmax()) if len(off) else 0
-    if not len(off) or abs(off[worst]) <= MUCH:
+    if not len(off) or abs(off[worst]) <= MAX_DRIFT_SHARE:
         return (), False
-    lowest = int(np.flatnonzero(first[: worst + 1])[-1]) if first[: worst + 1].any() else 0
-    made = layer_heights[worst] + drift[worst] / courses[lowest : worst + 1].sum()
-    way = "below" if drift[worst] < 0.0 else "above"
+    lowest = int(np.flatnonzero(is_first[: worst + 1])[-1]) if is_first[: worst + 1].any() else 0
+    actual_height = layer_heights[worst] + drift[worst] / courses[lowest : worst + 1].sum()
+    direction = "below" if drift[worst] < 0.0 else "above"
     return (
         Issue(
             WARNING,
@@ -223,10 +239,10 @@ def _drift(
                 "layers come out {:.3g} mm high in the mean, and {:g} mm are planned; set strategy.layer_height to {:.3g} mm, "
                 "or change what the wire feeds",
                 abs(drift[worst]),
-                Word(way),
-                made,
+                Word(direction),
+                actual_height,
                 layer_heights[worst],
-                made,
+                actual_height,
             ),
             worst,
         ),

@@ -18,14 +18,15 @@ PLACES = 20_000  # about
 LEAF_SIZE = 2 * PLACES
 FACING = 0.99  # cosine between faces that touch
 CONTACT = 0.05  # mm that such faces are apart at most
-SPACINGS = 1.0  # of places, between those that stand for the same face
+SPACINGS = 1.0  # of the sampling distance, between places of the same face
 OUTSIDE, BOTH = "outside", "both"
 
 
 @dataclass(frozen=True, eq=False)
 class Faces:
-    """points: (n, 3) mm on the faces of a part. normals: (n, 3) unit vectors out of it. areas: (n,) mm2 that each stands
-    for. open: (n,) of faces that enclose nothing: both sides of them count, and the side with less."""
+    """Sampled faces of a part. points: (n, 3) mm. normals: (n, 3) outward unit vectors. areas: (n,) mm2 that each represents. open:
+    (n,) faces that enclose nothing: both sides count, and the side with less.
+    """
 
     points: Array
     normals: Array
@@ -35,9 +36,9 @@ class Faces:
     def __len__(self) -> int:
         return len(self.points)
 
-    def rows(self, some: Mask) -> Faces:
-        """Some of them."""
-        return Faces(self.points[some], self.normals[some], self.areas[some], self.open[some])
+    def rows(self, mask: Mask) -> Faces:
+        """The rows of a mask."""
+        return Faces(self.points[mask], self.normals[mask], self.areas[mask], self.open[mask])
 
 
 def faces(vertices: Array, triangles: Index, side: str = OUTSIDE) -> Faces:
@@ -46,53 +47,56 @@ def faces(vertices: Array, triangles: Index, side: str = OUTSIDE) -> Faces:
     corners = vertices[triangles]
     vectors = doubled_areas(corners)
     twice = np.linalg.norm(vectors, axis=1)
-    kept = twice > 1e-12 * max(float(twice.max(initial=0.0)), 1e-300)
-    corners, vectors, twice = corners[kept], vectors[kept], twice[kept]
-    points, of = divide_triangles(
+    is_proper = twice > 1e-12 * max(float(twice.max(initial=0.0)), 1e-300)
+    corners, vectors, twice = corners[is_proper], vectors[is_proper], twice[is_proper]
+    points, triangle = divide_triangles(
         corners, float(np.sqrt(2.0 * twice.sum() / PLACES))
     )  # halves of squares
-    areas = 0.5 * twice[of] / np.bincount(of, minlength=len(corners))[of]
-    return Faces(points, vectors[of] / twice[of, None], areas, np.full(len(points), side == BOTH))
+    areas = 0.5 * twice[triangle] / np.bincount(triangle, minlength=len(corners))[triangle]
+    return Faces(
+        points, vectors[triangle] / twice[triangle, None], areas, np.full(len(points), side == BOTH)
+    )
 
 
-def thinned(some: Faces) -> Faces:
-    """Of faces with many more places than PLACES as many as stand for about equal areas: slivers go with their normals, of
-    which nobody can be sure."""
-    if len(some) <= LEAF_SIZE:
-        return some
-    ends = np.cumsum(some.areas)
-    chosen = np.unique(np.searchsorted(ends, (np.arange(PLACES) + 0.5) / PLACES * ends[-1]))
-    areas = np.diff(ends[chosen], prepend=0.0)
-    areas[-1] += ends[-1] - ends[chosen[-1]]
-    return Faces(some.points[chosen], some.normals[chosen], areas, some.open[chosen])
+def thin_faces(dense: Faces) -> Faces:
+    """Reduce faces with many more places than PLACES to places of about equal area. Slivers, whose normals are unreliable,
+    disappear.
+    """
+    if len(dense) <= LEAF_SIZE:
+        return dense
+    ends = np.cumsum(dense.areas)
+    sample = np.unique(np.searchsorted(ends, (np.arange(PLACES) + 0.5) / PLACES * ends[-1]))
+    areas = np.diff(ends[sample], prepend=0.0)
+    areas[-1] += ends[-1] - ends[sample[-1]]
+    return Faces(dense.points[sample], dense.normals[sample], areas, dense.open[sample])
 
 
-def uncovered(some: Sequence[Faces]) -> Faces:
-    """Faces of several parts as one, without the places where one part stands on another: nothing is machined there. A place
-    is covered where the nearest one of another part is in the same plane, looks the other way, and is no farther than places
-    lie apart."""
-    kept = []
-    for k, one in enumerate(some):
-        free = ~one.open
-        for other in (*some[:k], *some[k + 1 :]):
-            away, near = cKDTree(other.points).query(one.points)
-            out = np.abs(dots(one.points - other.points[near], one.normals))
-            facing = dots(one.normals, other.normals[near]) < -FACING
+def uncovered_faces(parts: Sequence[Faces]) -> Faces:
+    """Faces of several parts as one, without contact areas between parts, where nothing is machined. A place is covered if the
+    nearest place of another part is in the same plane, faces the other way, and is no farther than the sampling distance.
+    """
+    free_faces = []
+    for k, part in enumerate(parts):
+        free = ~part.open
+        for other_part in (*parts[:k], *parts[k + 1 :]):
+            distance, nearest = cKDTree(other_part.points).query(part.points)
+            out = np.abs(dots(part.points - other_part.points[nearest], part.normals))
+            facing = dots(part.normals, other_part.normals[nearest]) < -FACING
             free &= ~(
-                (away < SPACINGS * np.sqrt(other.areas[near]))
+                (distance < SPACINGS * np.sqrt(other_part.areas[nearest]))
                 & (out < CONTACT)
                 & facing
-                & ~other.open[near]
+                & ~other_part.open[nearest]
             )
-        kept.append(one.rows(free | one.open))
-    return together(kept)
+        free_faces.append(part.rows(free | part.open))
+    return join_faces(free_faces)
 
 
-def together(some: Sequence[Faces]) -> Faces:
+def join_faces(parts: Sequence[Faces]) -> Faces:
     """Faces of several parts as one."""
     return Faces(
         *(
-            np.concatenate([getattr(one, name) for one in some])
+            np.concatenate([getattr(part, name) for part in parts])
             for name in ("points", "normals", "areas", "open")
         )
     )

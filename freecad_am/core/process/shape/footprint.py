@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Which cubes of a grid the pieces of a layer may fill: the nearest piece of each, and how much of it their beads cover."""
+"""Which cubes of a grid the pieces of a layer may fill: the nearest piece of each, and its share covered by beads."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from .strands import Strands
 
 STEP = 1.0 / np.sqrt(
     3.0
-)  # of a cube's edge: a lattice of it, however it is turned, has a place in every cube
+)  # of a cube's edge: a lattice of this step has a point in every cube, in any orientation
 SAMPLES = 1_500_000  # of such lattices made at once; bounds the memory
-FULL = 1.0 - 1e-9
-BRIDGED = (
-    1.25  # widths: a melt closes what is left open between two beads that would be as wide as this
-)
+FULL_SHARE = 1.0 - 1e-9
+BRIDGED = 1.25  # widths: a melt closes the gap between two beads that would be as wide as this
 
 
 @dataclass(frozen=True, eq=False)
 class Footprint:
-    """k cubes of a layer. place: (k,) in the grid. piece: (k,) the nearest one; other: (k,) that of the bead beside
-    it, the same where there is none, and share: (k,) how much of the cube is on the nearest one's side of the middle
-    between. up: (k,) mm of the middle of the cube along the piece's build direction, from the path; aside: (k,) mm
-    from the middle of the bead, to its left with a plus. cover: (k,) share of the cube that is within the beads'
-    widths."""
+    """k cubes of a layer.
 
-    place: Index
-    piece: Index
-    other: Index
+    cubes: (k,) indices in the grid. piece_rows: (k,) the nearest piece; other_piece: (k,) the piece of the adjacent bead, or the
+    same without one, and share: (k,) how much of the cube is on the nearest piece's side of the middle between. up: (k,) mm of the
+    middle of the cube along the piece's build direction, from the path; aside: (k,) mm from the middle of the bead, positive to
+    its left. cover: (k,) share of the cube that is within the beads' widths.
+    """
+
+    cubes: Index
+    piece_rows: Index
+    other_piece: Index
     share: Array
     up: Array
     aside: Array
@@ -41,48 +41,55 @@ class Footprint:
     def mixed(self, of_pieces: Array) -> Array:
         """(k,) at cubes, of values (n,) of pieces."""
         return np.asarray(
-            self.share * of_pieces[self.piece] + (1.0 - self.share) * of_pieces[self.other],
+            self.share * of_pieces[self.piece_rows]
+            + (1.0 - self.share) * of_pieces[self.other_piece],
             dtype=np.float64,
         )
 
     def summed(self, of_cubes: Array, count: int) -> Array:
-        """(n,) over the cubes of each of so many pieces, of values (k,)."""
-        own = np.bincount(self.piece, self.share * of_cubes, count)
+        """(n,) sums over the cubes of `count` pieces, of values (k,)."""
+        sums = np.bincount(self.piece_rows, self.share * of_cubes, count)
         return np.asarray(
-            own + np.bincount(self.other, (1.0 - self.share) * of_cubes, count), dtype=np.float64
+            sums + np.bincount(self.other_piece, (1.0 - self.share) * of_cubes, count),
+            dtype=np.float64,
         )
 
 
 def footprint(grid: Grid, pieces: Strands, low: Array, high: Array) -> Footprint:
-    """The cubes of all pieces of a layer that are not full yet, from `low` to `high` (n,) mm above the path."""
-    found = [_near(grid, pieces, rows, low, high) for rows in _chunks(grid, pieces, low, high)]
-    place, piece, up, aside, off = (np.concatenate(columns) for columns in zip(*found, strict=True))
-    # the nearest first, measured by the width; where two are alike the one laid first
-    order = np.lexsort((piece, off / pieces.width[piece], place))
-    place, piece = place[order], piece[order]
+    """The cubes of every piece of a layer that are not full yet, from `low` to `high` (n,) mm above the path."""
+    candidates = [_near(grid, pieces, rows, low, high) for rows in _chunks(grid, pieces, low, high)]
+    cubes, piece_rows, up, aside, off = (
+        np.concatenate(columns) for columns in zip(*candidates, strict=True)
+    )
+    # the nearest first, measured by the width; ties go to the earlier piece
+    order = np.lexsort((piece_rows, off / pieces.width[piece_rows], cubes))
+    cubes, piece_rows = cubes[order], piece_rows[order]
     up, aside, off = up[order], aside[order], off[order]
     alone, bridged = (
-        np.clip((0.5 * wide * pieces.width[piece] - off) / grid.edge + 0.5, 0.0, 1.0)
+        np.clip((0.5 * wide * pieces.width[piece_rows] - off) / grid.edge + 0.5, 0.0, 1.0)
         for wide in (1.0, BRIDGED)
     )
-    begins = np.flatnonzero(np.diff(place, prepend=-1))
-    of = np.repeat(np.arange(len(begins)), np.diff(np.append(begins, len(place))))
-    other: Index = np.flatnonzero(pieces.apart(piece[begins][of], piece))
-    other = other[
-        np.sort(np.unique(of[other], return_index=True)[1])
-    ]  # of each cube the nearest one of another bead
-    cover, second, share = alone[begins], piece[begins], np.ones(len(begins))
-    mine = of[other]
-    second[mine] = piece[other]
-    # between beads; bridged where both are near
-    near = np.minimum(bridged[other], bridged[begins][mine])
-    cover[mine] = np.maximum(
-        cover[mine] + alone[other], np.where(alone[other] < near, 2.0 * near, 0.0)
+    begins = np.flatnonzero(np.diff(cubes, prepend=-1))
+    cube_row = np.repeat(np.arange(len(begins)), np.diff(np.append(begins, len(cubes))))
+    other_rows: Index = np.flatnonzero(
+        pieces.are_separate(piece_rows[begins][cube_row], piece_rows)
     )
-    share[mine] = np.clip((off[other] - off[begins][mine]) / (2.0 * grid.edge) + 0.5, 0.0, 1.0)
+    other_rows = other_rows[
+        np.sort(np.unique(cube_row[other_rows], return_index=True)[1])
+    ]  # of each cube the nearest one of another bead
+    cover, second, share = alone[begins], piece_rows[begins], np.ones(len(begins))
+    mine = cube_row[other_rows]
+    second[mine] = piece_rows[other_rows]
+    # between beads; bridged where both are near
+    bridged_cover = np.minimum(bridged[other_rows], bridged[begins][mine])
+    cover[mine] = np.maximum(
+        cover[mine] + alone[other_rows],
+        np.where(alone[other_rows] < bridged_cover, 2.0 * bridged_cover, 0.0),
+    )
+    share[mine] = np.clip((off[other_rows] - off[begins][mine]) / (2.0 * grid.edge) + 0.5, 0.0, 1.0)
     return Footprint(
-        place[begins],
-        piece[begins],
+        cubes[begins],
+        piece_rows[begins],
         second,
         share,
         up[begins],
@@ -92,12 +99,12 @@ def footprint(grid: Grid, pieces: Strands, low: Array, high: Array) -> Footprint
 
 
 def _chunks(grid: Grid, pieces: Strands, low: Array, high: Array) -> Iterator[Index]:
-    """Pieces in parts, those that end a bead, which reach farther, by themselves."""
-    for some in (np.flatnonzero(~pieces.ends), np.flatnonzero(pieces.ends)):
-        if not len(some):
+    """Chunks of pieces; end pieces, which reach farther, are separate."""
+    for rows in (np.flatnonzero(~pieces.ends), np.flatnonzero(pieces.ends)):
+        if not len(rows):
             continue
-        each = float(np.prod(_counts(grid, pieces, some, low, high)))
-        yield from np.array_split(some, 1 + int(each * len(some) / SAMPLES))
+        samples_per_piece = float(np.prod(_counts(grid, pieces, rows, low, high)))
+        yield from np.array_split(rows, 1 + int(samples_per_piece * len(rows) / SAMPLES))
 
 
 def _reach(grid: Grid, pieces: Strands, rows: Index) -> tuple[Array, Array]:
@@ -118,11 +125,11 @@ def _counts(
 def _near(
     grid: Grid, pieces: Strands, rows: Index, low: Array, high: Array
 ) -> tuple[Index, Index, Array, Array, Array]:
-    """Cubes near some pieces: place, piece, mm above the path, aside, and from the line of the piece, for each pair."""
+    """Cubes near some pieces: cube, piece, mm above the path, aside, and from the line of the piece, for each pair."""
     ahead, aside = _reach(grid, pieces, rows)
     counts = _counts(grid, pieces, rows, low, high)
-    way = [np.linspace(-1.0, 1.0, count) for count in counts]
-    ways = (
+    lattice = [np.linspace(-1.0, 1.0, count) for count in counts]
+    axes = (
         ahead[:, None] * pieces.along[rows],
         aside[:, None] * pieces.side[rows],
         (0.5 * (high - low)[rows])[:, None] * (pieces.build[rows]),
@@ -130,31 +137,31 @@ def _near(
     middle = pieces.middle[rows] + (0.5 * (low + high)[rows])[:, None] * pieces.build[rows]
     cubes, corner, spans = [], [], []
     for axis in range(3):  # one after the other: sums of few numbers along each way first
-        some = middle[:, axis, None] + ways[0][:, axis, None] * way[0]
-        some = some[:, :, None] + (ways[1][:, axis, None] * way[1])[:, None]
-        some = some[:, :, :, None] + (ways[2][:, axis, None] * way[2])[:, None, None]
-        cube = np.floor(some.reshape(len(rows), -1) * (1.0 / grid.edge)).astype(np.int64)
+        samples = middle[:, axis, None] + axes[0][:, axis, None] * lattice[0]
+        samples = samples[:, :, None] + (axes[1][:, axis, None] * lattice[1])[:, None]
+        samples = samples[:, :, :, None] + (axes[2][:, axis, None] * lattice[2])[:, None, None]
+        cube = np.floor(samples.reshape(len(rows), -1) * (1.0 / grid.edge)).astype(np.int64)
         corner.append(cube.min(axis=1))
         cube -= corner[-1][:, None]
         spans.append(int(cube.max()) + 1)
         cubes.append(cube)
-    # each cube once for each piece: ticked off in a box around the piece, which is quicker than sorting them
+    # each cube once for each piece, marked in a box around the piece: quicker than sorting
     box = spans[0] * spans[1] * spans[2]
     ticked = np.zeros(len(rows) * box, dtype=np.bool_)
     ticked[
         (cubes[0] * spans[1] + cubes[1]) * spans[2] + cubes[2] + box * np.arange(len(rows))[:, None]
     ] = True
-    own, number = np.divmod(np.flatnonzero(ticked), box)
-    place = grid.places(
-        np.stack(np.unravel_index(number, tuple(spans)), axis=1) + np.stack(corner, axis=1)[own]
+    row, number = np.divmod(np.flatnonzero(ticked), box)
+    cube_rows = grid.indices_of(
+        np.stack(np.unravel_index(number, tuple(spans)), axis=1) + np.stack(corner, axis=1)[row]
     )
-    free = grid.filled[place] < FULL
-    place, piece = place[free], rows[own[free]]
-    away = grid.centres(place) - pieces.middle[piece]
-    along, left, up = (
-        np.einsum("ij,ij->i", away, column[piece])
+    free = grid.filled[cube_rows] < FULL_SHARE
+    cube_rows, piece_rows = cube_rows[free], rows[row[free]]
+    offset = grid.centres(cube_rows) - pieces.middle[piece_rows]
+    along, left_offset, up = (
+        np.einsum("ij,ij->i", offset, column[piece_rows])
         for column in (pieces.along, pieces.side, pieces.build)
     )
-    off = np.hypot(left, np.maximum(np.abs(along) - 0.5 * pieces.length[piece], 0.0))
-    kept: Mask = off < 0.5 * (BRIDGED * pieces.width[piece] + grid.edge)
-    return place[kept], piece[kept], up[kept], left[kept], off[kept]
+    off = np.hypot(left_offset, np.maximum(np.abs(along) - 0.5 * pieces.length[piece_rows], 0.0))
+    is_near: Mask = off < 0.5 * (BRIDGED * pieces.width[piece_rows] + grid.edge)
+    return cube_rows[is_near], piece_rows[is_near], up[is_near], left_offset[is_near], off[is_near]

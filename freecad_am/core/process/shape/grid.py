@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How much of each small cube of space is filled. Cubes are kept in blocks of 8 x 8 x 8, those alone that something is in:
-a wall of one bead takes no room for what it stands round."""
+"""How much of each small cube of space is filled. Cubes are kept in blocks of 8 x 8 x 8, only those with deposit: a single-bead
+wall takes no room for the space it encloses.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +15,9 @@ _MIDDLE = 1 << 20  # numbers of blocks along an axis, on either side of the orig
 
 
 class Grid:
-    """Cubes of an edge, mm, one corner of one of them in the origin. filled: (blocks * CUBES,) shares of the cubes, by their
-    places; places are those of `places`, and stay what they are."""
+    """Cubes of an edge, mm, with a corner of one cube in the origin. filled: (blocks * CUBES,) shares of the cubes, by the indices
+    of `indices_of`, which do not change.
+    """
 
     def __init__(self, edge: float) -> None:
         self.edge = edge
@@ -26,8 +28,8 @@ class Grid:
             (0, 3), dtype=np.int64
         )  # the first cube of each block, by its slot
 
-    def places(self, cubes: Index, make: bool = True) -> Index:
-        """Places (n,) of cubes (n, 3), whole numbers along the axes; blocks that are not there are made, or are -1."""
+    def indices_of(self, cubes: Index, make: bool = True) -> Index:
+        """Indices (n,) of cubes (n, 3), whole numbers along the axes; a missing block is made, or gives -1."""
         block = cubes >> 3
         within = cubes - (block << 3)
         key = (
@@ -39,43 +41,45 @@ class Grid:
             self._make(key, block)
         if not len(self._keys):
             return np.full(len(cubes), -1, dtype=np.intp)
-        found = np.minimum(np.searchsorted(self._keys, key), len(self._keys) - 1)
-        place = (
-            self._slots[found] * CUBES + (within[:, 0] * SIDE + within[:, 1]) * SIDE + within[:, 2]
+        slot_row = np.minimum(np.searchsorted(self._keys, key), len(self._keys) - 1)
+        index = (
+            self._slots[slot_row] * CUBES
+            + (within[:, 0] * SIDE + within[:, 1]) * SIDE
+            + within[:, 2]
         )
-        there: Index = place if make else np.where(self._keys[found] == key, place, -1)
-        return there
+        indices: Index = index if make else np.where(self._keys[slot_row] == key, index, -1)
+        return indices
 
     def _make(self, key: Index, block: Index) -> None:
-        wanted, first = np.unique(key, return_index=True)
-        new = ~np.isin(wanted, self._keys, assume_unique=True)
+        unique_keys, block_row = np.unique(key, return_index=True)
+        new = ~np.isin(unique_keys, self._keys, assume_unique=True)
         if not new.any():
             return
         count = len(self._keys)
-        self._corners = np.concatenate([self._corners, block[first[new]] << 3])
+        self._corners = np.concatenate([self._corners, block[block_row[new]] << 3])
         self._slots = np.concatenate([self._slots, count + np.arange(int(new.sum()))])
-        keys = np.concatenate([self._keys, wanted[new]])
+        keys = np.concatenate([self._keys, unique_keys[new]])
         order = np.argsort(keys)
         self._keys, self._slots = keys[order], self._slots[order]
         self.filled = np.concatenate([self.filled, np.zeros(CUBES * int(new.sum()))])
 
-    def centres(self, places: Index) -> Array:
-        """Middles (n, 3) mm of cubes at places (n,)."""
-        slot, within = np.divmod(places, CUBES)
-        own = np.stack([within // (SIDE * SIDE), within // SIDE % SIDE, within % SIDE], axis=1)
-        found: Array = (self._corners[slot] + own + 0.5) * self.edge
-        return found
+    def centres(self, indices: Index) -> Array:
+        """Middles (n, 3) mm of cubes at indices (n,)."""
+        slot, within = np.divmod(indices, CUBES)
+        local = np.stack([within // (SIDE * SIDE), within // SIDE % SIDE, within % SIDE], axis=1)
+        centres_: Array = (self._corners[slot] + local + 0.5) * self.edge
+        return centres_
 
-    def at(self, points: Array) -> Array:
-        """How full it is (n,) at points (n, 3) mm, between the middles of cubes in proportion."""
+    def fill_at(self, points: Array) -> Array:
+        """How full the grid is (n,) at points (n, 3) mm, interpolated between the middles of cubes."""
         along = points / self.edge - 0.5
         low = np.floor(along).astype(np.int64)
         share = along - low
         total = np.zeros(len(points))
         for corner in np.ndindex(2, 2, 2):
-            place = self.places(low + np.array(corner), make=False)
+            index = self.indices_of(low + np.array(corner), make=False)
             weight = np.where(corner, share, 1.0 - share).prod(axis=1)
-            total += weight * np.where(place >= 0, self.filled[place], 0.0)
+            total += weight * np.where(index >= 0, self.filled[index], 0.0)
         return total
 
     @property

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads as short straight pieces that know how much is fed while they are laid."""
+"""Beads as short straight pieces with the volume fed along them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ...geometry.columns import dots, lengths, unit_rows
 from ...parameters.process import ProcessParameters
 from ...toolpath import Bead, Toolpath
 from ...types import Array, Index, Mask
-from ..deposit.pieces import cut, joined
+from ..deposit.pieces import cut_beads, join_pieces
 from ..deposit.spacing import is_spiral, turns_of
 
 PIECE = 0.25  # of a bead's width
@@ -21,11 +21,14 @@ BEND = 0.25  # of a bead's width that its outer side gapes at most between two p
 
 @dataclass(frozen=True, eq=False)
 class Strands:
-    """n pieces in the order of deposit. middle: (n, 3) mm on the path. along, side, build: (n, 3) unit vectors, square to
-    each other: the way of travel, to its left, and where the bead grows. length, width: mm. volume: mm3 that is fed there.
-    height: mm of the layer. at: mm from the start of the bead to the middle; around: mm of the whole of it where it is
-    closed, else infinite. ends: where nothing of the bead goes straight on. layer, bead (of all), point: (n,). first: of
-    layers that nothing of their feature lies below. real: whether the width is that of a bead model, not what it counts."""
+    """n pieces in the order of deposit.
+
+    middle: (n, 3) mm on the path. along, side, build: (n, 3) orthogonal unit vectors: travel direction, its left, and build
+    direction. length, width: mm. volume: mm3 fed there. height: mm of the layer. arc: mm from the start of the bead to the middle;
+    around: mm of the whole bead if closed, else infinite. ends: the bead does not go straight on. layer, bead (counted over the
+    toolpath), point: (n,). is_first: layers with nothing of their feature below. real: the width is from a bead model, not
+    counted.
+    """
 
     middle: Array
     along: Array
@@ -35,47 +38,48 @@ class Strands:
     width: Array
     volume: Array
     height: Array
-    at: Array
+    arc: Array
     around: Array
     ends: Mask
     layer: Index
     bead: Index
     point: Index
-    first: Mask
+    is_first: Mask
     real: Mask
 
     def __len__(self) -> int:
         return len(self.middle)
 
-    def rows(self, some: slice | Index) -> Strands:
-        """Some of them."""
-        return Strands(*(column[some] for column in vars(self).values()))
+    def rows(self, selection: slice | Index) -> Strands:
+        """The rows of a selection."""
+        return Strands(*(column[selection] for column in vars(self).values()))
 
-    def apart(self, one: Index, other: Index) -> Mask:
-        """Which pairs are of two beads, or of one that comes beside itself."""
-        arc = np.abs(self.at[one] - self.at[other])
-        arc = np.minimum(arc, self.around[one] - arc)
-        found: Mask = (self.bead[one] != self.bead[other]) | (arc > 1.5 * self.width[one])
-        return found
+    def are_separate(self, i: Index, j: Index) -> Mask:
+        """Which pairs belong to two beads, or to one bead that returns to itself."""
+        arc = np.abs(self.arc[i] - self.arc[j])
+        arc = np.minimum(arc, self.around[i] - arc)
+        result: Mask = (self.bead[i] != self.bead[j]) | (arc > 1.5 * self.width[i])
+        return result
 
 
-def together(some: Sequence[Strands]) -> Strands:
-    """Those of several features as one; their beads and layers count from 0 in each."""
+def join_strands(parts: Sequence[Strands]) -> Strands:
+    """The strands of several features as one; their beads and layers count from 0 in each."""
     return Strands(
         *(
             np.concatenate(columns)
-            for columns in zip(*(vars(one).values() for one in some), strict=True)
+            for columns in zip(*(vars(part).values() for part in parts), strict=True)
         )
     )
 
 
 def sections(bead: Bead, toolpath: Toolpath, process: ProcessParameters) -> Array:
-    """mm2 (n - 1,) that the wire feeds for each mm of the segments of a bead; where there is no wire, or a schedule of their
-    own feeds it, which nobody knows here, what the segments count."""
-    own = process.for_class(bead.bead_class).schedule
-    if own == process.schedule and bead.wire_share is not None:
+    """mm2 (n - 1,) that the wire feeds for each mm of the segments of a bead; the counted section without a wire, or with a schedule
+    of their own, whose feed is not known here.
+    """
+    schedule = process.for_class(bead.bead_class).schedule
+    if schedule == process.schedule and bead.wire_share is not None:
         return np.full(len(bead) - 1, process.wire.section * bead.wire_share)
-    if own == process.schedule and toolpath.wire_feed:
+    if schedule == process.schedule and toolpath.wire_feed:
         fed: Array = process.wire.section * toolpath.wire_feed / bead.speed[1:]
         return fed
     wide = np.full(len(bead), toolpath.bead_width or 0.0) if bead.width is None else bead.width
@@ -86,23 +90,23 @@ def sections(bead: Bead, toolpath: Toolpath, process: ProcessParameters) -> Arra
 
 
 def strands(toolpath: Toolpath, process: ProcessParameters) -> Strands:
-    """All beads of one feature. ValueError where it is not known how wide they count."""
-    pieces = joined(cut(toolpath, PIECE), PIECE)
+    """All beads of one feature. ValueError if the width of the beads is not known."""
+    pieces = join_pieces(cut_beads(toolpath, PIECE), PIECE)
     beads = list(toolpath)
     bead, build = pieces.bead, pieces.build
-    at = np.cumsum(pieces.length)
+    arc = np.cumsum(pieces.length)
     starts = np.flatnonzero(np.diff(bead, prepend=-1))
-    at -= (
-        np.repeat((at - pieces.length)[starts], np.diff(np.append(starts, len(bead))))
+    arc -= (
+        np.repeat((arc - pieces.length)[starts], np.diff(np.append(starts, len(bead))))
         + 0.5 * pieces.length
     )
     side = unit_rows(np.cross(build, pieces.travel))
-    closed = np.array([one.closed for _, _, one in beads])
-    whole = np.array([one.length for _, _, one in beads])
+    closed = np.array([bead_.closed for _, _, bead_ in beads])
+    bead_lengths = np.array([bead_.length for _, _, bead_ in beads])
     layers = toolpath.layers
-    first = np.array([number == 0 or layer.first for number, layer in enumerate(layers)])
-    on_ground = first[pieces.layer]
-    if is_spiral(toolpath):  # which lies on itself from its second turn on
+    is_first = np.array([number == 0 or layer.first for number, layer in enumerate(layers)])
+    on_ground = is_first[pieces.layer]
+    if is_spiral(toolpath):  # which supports itself from its second turn on
         on_ground &= turns_of(layers[0].beads[0])[pieces.point] == 0
     return Strands(
         pieces.middle,
@@ -111,39 +115,39 @@ def strands(toolpath: Toolpath, process: ProcessParameters) -> Strands:
         build,
         pieces.length,
         pieces.width,
-        _volumes(toolpath, process, bead, at, pieces.length),
+        _volumes(toolpath, process, bead, arc, pieces.length),
         np.full(len(bead), toolpath.layer_height),
-        at,
-        np.where(closed, whole, np.inf)[bead],
+        arc,
+        np.where(closed, bead_lengths, np.inf)[bead],
         _ends(pieces.travel, bead, closed),
         pieces.layer,
         bead,
         pieces.point,
         on_ground,
-        np.array([one.width is not None for _, _, one in beads])[bead],
+        np.array([bead_.width is not None for _, _, bead_ in beads])[bead],
     )
 
 
 def _volumes(
-    toolpath: Toolpath, process: ProcessParameters, of: Index, at: Array, length: Array
+    toolpath: Toolpath, process: ProcessParameters, bead_row: Index, arc: Array, length: Array
 ) -> Array:
-    """mm3 of pieces (n,) of the beads `of`: what is fed from where each of them starts to where it ends."""
+    """mm3 of pieces (n,) of the beads `bead_row`: the volume fed between the start and the end of each piece."""
     beads = [bead for _, _, bead in toolpath]
     steps = [lengths(np.diff(bead.points, axis=0)) for bead in beads]
     fed = [
         step * sections(bead, toolpath, process) for step, bead in zip(steps, beads, strict=True)
     ]
-    # all beads one after the other, so that one look tells what was fed up to any place of any of them
-    way = np.concatenate([[0.0], np.cumsum(np.concatenate(steps))])
+    # all beads joined, so that one interpolation gives the volume fed up to any position
+    path_length = np.concatenate([[0.0], np.cumsum(np.concatenate(steps))])
     total = np.concatenate([[0.0], np.cumsum(np.concatenate(fed))])
-    before = np.concatenate([[0.0], np.cumsum([step.sum() for step in steps])])[of]
-    ends = np.interp(before + at + 0.5 * length, way, total)
-    found: Array = ends - np.interp(before + at - 0.5 * length, way, total)
-    return found
+    offset = np.concatenate([[0.0], np.cumsum([step.sum() for step in steps])])[bead_row]
+    ends = np.interp(offset + arc + 0.5 * length, path_length, total)
+    volumes: Array = ends - np.interp(offset + arc - 0.5 * length, path_length, total)
+    return volumes
 
 
 def _ends(travel: Array, bead: Index, closed: Mask) -> Mask:
-    """Which pieces begin or end a bead, or meet their neighbour at a corner, outside of which nothing else fills it."""
+    """Which pieces begin or end a bead, or meet their neighbour at a corner with nothing else outside it."""
     turn = (
         np.sqrt(np.maximum(2.0 - 2.0 * dots(travel[:-1], travel[1:]), 0.0))
         if len(travel) > 1
@@ -151,10 +155,10 @@ def _ends(travel: Array, bead: Index, closed: Mask) -> Mask:
     )
     same = bead[:-1] == bead[1:]
     corner = same & (turn > BEND)
-    starts, last = np.append(True, ~same), np.append(~same, True)
-    found: Mask = (
-        ((starts | last) & ~closed[bead]) | np.append(False, corner) | np.append(corner, False)
+    starts, is_end = np.append(True, ~same), np.append(~same, True)
+    result: Mask = (
+        ((starts | is_end) & ~closed[bead]) | np.append(False, corner) | np.append(corner, False)
     )
     seam = np.flatnonzero(starts)
-    found[seam] |= closed[bead[seam]]  # whose beginning and end may meet at a corner
-    return found
+    result[seam] |= closed[bead[seam]]  # whose beginning and end may meet at a corner
+    return result

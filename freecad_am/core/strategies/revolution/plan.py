@@ -211,7 +211,7 @@ def _layers(
         issues = [*found, *(issue for issue in issues if issue.layer != 0)]
     beads: list[list[Bead]] = [[] for _ in range(int(slices.layer[-1]) + 1)]
     for index, azimuth in enumerate(azimuths):
-        name = classes.of_wall(int(slices.layer[index]))
+        name = classes.wall_bead_class(int(slices.layer[index]))
         speed = process.for_class(name).travel_speed
         bead = _bead(wall, slices, index, azimuth, builds[index], tools[index], speed, name)
         beads[int(slices.layer[index])].append(bead)

@@ -19,8 +19,8 @@ from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process import classes
 from ...process.model.bead_model import BeadModel
-from ...process.model.bead_speed import followed, radii
-from ...process.model.held_width import at_speed, of_segments
+from ...process.model.bead_speed import limit_acceleration, radii
+from ...process.model.held_width import at_speed, segment_speeds
 from ...toolpath import Bead
 from ...types import Array, Mask
 from .course import Course
@@ -57,7 +57,11 @@ def bead_of(
 ) -> MadeBead:
     """The bead of a curve of a layer, in part coordinates, laid as its class is, with the torch leaning as its class does;
     its polynomial's variable is the arc length, 2 pi in all."""
-    surface, base, name = layer.surface, layer.base, classes.of_filled(curve.kind, layer.number)
+    surface, base, name = (
+        layer.surface,
+        layer.base,
+        classes.fill_bead_class(curve.kind, layer.number),
+    )
     build, process = classes.leaning(build, process, name), process.for_class(name)
     line, share = curve.whole(surface.period)
     error = WRAP_SHARE * strategy.chord_error
@@ -123,9 +127,11 @@ def _with_speed(
         return MadeBead(bead)
     high = np.ones(len(flat)) if heights is None else heights / strategy.layer_height
     section = high if share is None else high * share
-    speed = followed(flat, process.travel_speed / section, closed, max(process.acceleration, AGILE))
+    speed = limit_acceleration(
+        flat, process.travel_speed / section, closed, max(process.acceleration, AGILE)
+    )
     section = process.travel_speed / speed  # at one wire feed
-    bead = replace(bead, speed=of_segments(speed))
+    bead = replace(bead, speed=segment_speeds(speed))
     if share is None:
         return MadeBead(replace(bead, height=strategy.layer_height * section))
     width = bead_width(strategy, process, model) * section / high

@@ -26,7 +26,7 @@ from ...layers.surface import Slice
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
-from ...process.model.wire import with_model
+from ...process.model.wire import model_wire_feed
 from ...types import Array
 
 Same = TypeVar("Same", bound=FilledParameters)
@@ -361,7 +361,7 @@ def _fed_section(process: ProcessParameters, model: BeadModel | None, usual: flo
     """What the wire feeds for each mm of a straight bead, mm2; usual: where nothing else says how much."""
     if model is not None:
         speed = model.straight_speed(process.bead_width)
-        return process.wire.section * with_model(process, model) / speed
+        return process.wire.section * model_wire_feed(process, model) / speed
     if isinstance(process.wire.feed, str):
         return usual
     return process.wire.section * process.wire.feed / process.travel_speed

@@ -14,7 +14,7 @@ from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
-from ...process.model.notes import of_model
+from ...process.model.notes import model_issues
 from ...toolpath import Layer
 from ...types import Array
 from .beads import MadeBead
@@ -40,7 +40,7 @@ def notes(
     issues = (
         _speeds(layers, strategy, process)
         if model is None
-        else of_model(made, height, process, model)
+        else model_issues(made, height, process, model)
     )
     issues += _single_layers(layers, strategy)
     waits = [layer.wait for layer in layers if layer.wait > 0.0]

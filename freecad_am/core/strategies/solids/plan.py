@@ -16,7 +16,7 @@ from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
-from ...process.order import Course, IslandOrder, RankedBead, ordered, waited
+from ...process.order import Course, IslandOrder, RankedBead, add_waits, order_beads
 from ...toolpath import Bead, Toolpath
 from .. import size
 from ..progress import Progress, silent
@@ -90,7 +90,7 @@ def plan(
             if solids.has_plane_layers():
                 ranked += [
                     RankedBead(stack.group, stack.solid, layer.number, -len(ranked) - rank, bead)
-                    for rank, bead in enumerate(order.of(beads, picture.islands))
+                    for rank, bead in enumerate(order.order_islands(beads, picture.islands))
                 ]
             else:
                 ranked += [
@@ -105,8 +105,8 @@ def plan(
             "spacing, or thin = single",
             strategy.least_bead,
         )
-    course = ordered(ranked, strategy.order)
-    layers = waited(course, strategy.wait, process.rapid_speed, strategy.min_layer_time)
+    course = order_beads(ranked, strategy.order)
+    layers = add_waits(course, strategy.wait, process.rapid_speed, strategy.min_layer_time)
     missed = uncut(solids, strategy, ranked, width)
     told = [
         *solids.issues,

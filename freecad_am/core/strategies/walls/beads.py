@@ -96,7 +96,7 @@ class BeadSettings(NamedTuple):
     ) -> tuple[Bead, Directions]:
         """The bead of a layer and its directions; its polynomial's variable is the arc length, one turn (2 pi) from end to
         end."""
-        bead_class = classes.of_wall(layer, closing)
+        bead_class = classes.wall_bead_class(layer, closing)
         build = classes.leaning(self.build, self.process, bead_class)
         found = directions(trace.points, trace.closed, vectors, build, self.plane, self.label)
         speed = np.full(len(trace.points), self.process.for_class(bead_class).travel_speed)
