@@ -8172,11 +8172,6 @@
         <translation>les cellules sont écrites en .yaml ; terminez le nom ainsi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/table.py"/>
-        <source>centre</source>
-        <translation>centre</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>check it where it was drawn (Part, Check geometry), and draw those faces again or sew them</source>
         <translation>vérifiez-le là où il a été dessiné (Part, Vérifier la géométrie), et redessinez ou cousez ces faces</translation>
@@ -9893,6 +9888,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>it repeats lines of the program; write the moves out</source>
+        <translation>il répète des lignes du programme ; écrivez les mouvements</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>it returns from a subprogram, or repeats the program; leave it out</source>
         <translation>il revient d&apos;un sous-programme ou répète le programme ; retirez-le</translation>
     </message>
@@ -11537,11 +11537,6 @@
         <translation>r {0} mm, mesuré</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/table.py"/>
-        <source>radius</source>
-        <translation>rayon</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/simulation/bars.py"/>
         <source>range</source>
         <translation>plage</translation>
@@ -12577,6 +12572,11 @@
         <translation>la ligne de {0} mm traverse {1} % du volume</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>the lines after it are stored on the machine, not run; leave it out, with its M29</source>
+        <translation>les lignes qui le suivent sont stockées sur la machine, pas exécutées ; supprimez-le, avec son M29</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/texts/touching.py"/>
         <source>the link of {axis}</source>
         <translation>le corps de {axis}</translation>
@@ -13115,6 +13115,11 @@
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>the setting {0} of Cura</source>
         <translation>le réglage {0} de Cura</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the setting {0} of the slicer</source>
+        <translation>le réglage {0} du trancheur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
@@ -14012,6 +14017,11 @@
         <translation>deux fichiers contiennent un programme du même nom</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>two files in it give object {0} different roles</source>
+        <translation>deux de ses fichiers donnent à l&apos;objet {0} des rôles différents</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>um</source>
         <translation>um</translation>
@@ -14715,6 +14725,11 @@
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>{0} gives a piece of it the role {1}, which is not known; export the part alone</source>
         <translation>{0} donne à un morceau le rôle {1}, qui est inconnu ; exportez la pièce seule</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0} gives {1}, a piece of object {2}, the role {3}, and the model has no such piece; save the project in the slicer again, or export the part alone</source>
+        <translation>{0} donne à {1}, un morceau de l&apos;objet {2}, le rôle {3}, et le modèle n&apos;a pas ce morceau ; enregistrez à nouveau le projet dans le trancheur, ou exportez la pièce seule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/expressions.py"/>
@@ -16262,6 +16277,11 @@
         <translation>{0} ligne {1} (ligne {2} du fichier)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>
+        <source>{0} says that its unit is {1}, and is read in mm; give part.scale: {2} mm, if that is true</source>
+        <translation>{0} dit que son unité est {1}, et est lu en mm ; donnez part.scale : {2} mm, si c&apos;est vrai</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/shapes/places.py"/>
         <source>{0} scales or mirrors it; choose {1} itself</source>
         <translation>{0} le met à l&apos;échelle ou le retourne ; choisissez {1} lui-même</translation>
@@ -16662,6 +16682,11 @@
         <translation>{0} : sa géométrie de construction (axes, plans) n&apos;est pas lue</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0}: its objects stand on {1} plates, and all are deposited, as far apart as the plates; to deposit one plate, export it alone</source>
+        <translation>{0} : ses objets se trouvent sur {1} plateaux, et tous sont déposés, aussi loin les uns des autres que les plateaux ; pour déposer un plateau, exportez-le seul</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/whole_mesh.py"/>
         <source>{0}: its triangles enclose {1} cm3 and its faces {2} cm3; check and export the part again, or deposit it from a mesh</source>
         <translation>{0} : ses triangles enferment {1} cm3 et ses faces {2} cm3 ; contrôlez la pièce et exportez-la de nouveau, ou déposez-la à partir d&apos;un maillage</translation>
@@ -16703,8 +16728,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0}: settings of Cura that are not applied, so that the solids are deposited as their meshes are: {1}{2}</source>
-        <translation>{0} : réglages de Cura qui ne sont pas appliqués, si bien que les solides sont déposés tels que sont leurs maillages : {1}{2}</translation>
+        <source>{0}: settings of the slicer that are not applied, so that the solids are deposited as their meshes are: {1}{2}</source>
+        <translation>{0} : réglages du trancheur qui ne sont pas appliqués, de sorte que les solides sont déposés comme leurs maillages : {1}{2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>

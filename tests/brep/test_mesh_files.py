@@ -207,3 +207,25 @@ def test_what_cannot_be_read_of_an_stl_file_is_refused(tmp_path, text, word):
 def test_the_unit_is_that_of_the_scale(tmp_path):
     (tmp_path / "part.stl").write_bytes(stl_binary())
     assert read_mesh(tmp_path / "part.stl", 25.4).Volume == pytest.approx(25.4**3, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "scale"),
+    [
+        ("part.obj", "# Units: inches\n{}", "25.4"),
+        ("part.obj", "# made by us\n#  file units = meters\n{}", "1000"),
+        ("part.obj", "# Units in mm\n{}", None),
+        ("part.obj", "# a unit cube\n{}", None),
+        ("part.stl", "solid part UNITS=cm\n{}", "10"),
+    ],
+)
+def test_a_unit_that_a_file_states_is_told_unless_it_is_given(tmp_path, name, text, scale):
+    body = stl_text().split("\n", 1)[1] if name.endswith("stl") else vertices() + faces()
+    (tmp_path / name).write_text(text.format(body))
+    issues = mesh_content(tmp_path / name).issues
+    assert [(one.level, one.code) for one in issues] == [("warning", "FILE_CONTENT")] * bool(scale)
+    assert not scale or f"part.scale: {scale} mm" in issues[0].message
+    assert not mesh_content(tmp_path / name, float(scale or 2.0)).issues
+    head = b"UNITS=inch".ljust(80, b"\0")
+    (tmp_path / "part.stl").write_bytes(head + stl_binary()[80:])
+    assert "'inch'" in mesh_content(tmp_path / "part.stl").issues[0].message

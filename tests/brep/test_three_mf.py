@@ -727,3 +727,101 @@ def test_settings_that_are_not_known_are_noted(tmp_path, name, noted):
     volume, notes = volume_and_notes(path)
     assert volume == 1.0 and len(notes) == noted
     assert not noted or name in notes[0]
+
+
+COMPONENTS = (
+    '<object id="3" type="model"><components><component objectid="1"/><component objectid="2"/>'
+    "</components></object>"
+)
+TWO = mesh(1, BLOCK, CUBE_FACES) + mesh(2, TOOL, CUBE_FACES)
+NEGATIVE = (12, 23, {"volume_type": "NegativeVolume", "name": "tool"})
+
+
+@pytest.mark.parametrize(
+    ("objects", "built", "config", "text"),
+    [
+        (mesh(1, BOTH, BOTH_FACES), 1, prusa((0, 11, {}), NEGATIVE, number=9), "object 9"),
+        (TWO + COMPONENTS, 3, prusa((0, 11, {}), NEGATIVE, number=3), "'tool'"),
+        (TWO + COMPONENTS, 3, bambu(3, p1="normal_part", p7="negative_part"), "'piece p7'"),
+        (mesh(1, BOTH, BOTH_FACES), 1, bambu(1, p1="normal_part", p2="modifier_part"), "modifier"),
+    ],
+)
+def test_roles_of_pieces_that_the_model_does_not_have_are_refused(
+    tmp_path, objects, built, config, text
+):
+    name = PRUSA if "firstid" in config else BAMBU
+    path = written(tmp_path, model(objects, placed("item", built)), more={name: config})
+    with pytest.raises(InputError) as refused:
+        three_mf.content(path)
+    assert refused.value.code == "UNSUPPORTED_FILE"
+    assert "no such piece" in refused.value.message and text in refused.value.message
+
+
+def test_two_files_of_different_roles_are_refused(tmp_path):
+    roles = prusa((0, 11, {}), NEGATIVE)
+    more = {PRUSA: roles, "Metadata/SuperSlicer_model.config": roles}
+    text = model(mesh(1, BOTH, BOTH_FACES), placed("item", 1))
+    assert volume_and_notes(written(tmp_path, text, more=more))[0] == pytest.approx(13500.0)
+    more[PRUSA] = roles.replace("NegativeVolume", "ModelPart")
+    with pytest.raises(InputError, match="different roles"):
+        three_mf.content(written(tmp_path, text, more=more))
+
+
+def test_a_negative_volume_that_cuts_nothing_is_named(tmp_path):
+    text = model(TWO, placed("item", 1) + placed("item", 2))
+    config = prusa((0, 11, {"volume_type": "NegativeVolume", "name": "tool"}), number=2)
+    volume, notes = volume_and_notes(written(tmp_path, text, more={PRUSA: config}))
+    assert volume == pytest.approx(27000.0)
+    assert len(notes) == 1 and "left out" in notes[0] and "'tool': negative volume" in notes[0]
+
+
+def test_objects_on_several_plates_are_noted(tmp_path):
+    plate = '<plate><metadata key="plater_id" value="{0}"/>{1}</plate>'
+    instance = '<model_instance><metadata key="object_id" value="{0}"/></model_instance>'
+    text = model(TWO, placed("item", 1) + placed("item", 2))
+    for stands, wanted in (((1, 2), ["2 plates"]), ((1,), []), ((), [])):
+        plates = "".join(
+            plate.format(k, 2 * instance.format(k) if k in stands else "") for k in (1, 2, 3)
+        )
+        more = {BAMBU: f"<config>{plates}</config>"}
+        notes = volume_and_notes(written(tmp_path, text, more=more))[1]
+        assert len(notes) == len(wanted) and all(w in n for w, n in zip(wanted, notes))
+
+
+INI = "; spiral_vase = {0}\n; fuzzy_skin = none\n; xy_size_compensation = 0\n"
+JSON = (
+    '{{"spiral_mode": "0",\n  "xy_contour_compensation": [\n    "{0}"\n  ], "fuzzy_skin": "nil"}}'
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "word"),
+    [
+        ("Metadata/Slic3r_PE.config", INI, "spiral_vase = 1"),
+        ("Metadata/project_settings.config", JSON, "xy_contour_compensation = 1"),
+    ],
+)
+def test_settings_of_slicers_that_are_not_applied_are_named(tmp_path, name, text, word):
+    part = model(mesh(1, BLOCK, CUBE_FACES), placed("item", 1))
+    for value, count in ((0, 0), (1, 1)):
+        path = written(tmp_path, part, more={name: text.format(value)})
+        notes = volume_and_notes(path)[1]
+        assert len(notes) == count and all(word in note for note in notes)
+
+
+@pytest.mark.parametrize("level", ["object", "volume"])
+def test_settings_of_an_object_are_named_or_refused(tmp_path, level):
+    part = model(mesh(1, BLOCK, CUBE_FACES), placed("item", 1))
+    setting = '<metadata type="object" key="{}" value="{}"/>'
+    before = "<volume" if level == "object" else "</volume>"
+    config = prusa((0, 11, {"volume_type": "ModelPart"}))
+
+    def path_with(key, value):
+        text = config.replace(before, setting.format(key, value) + before, 1)
+        return written(tmp_path, part, more={PRUSA: text})
+
+    (note,) = volume_and_notes(path_with("xy_size_compensation", "-0.2"))[1]
+    assert "'1': xy_size_compensation = -0.2" in note
+    assert not volume_and_notes(path_with("make_overhang_printable", "0"))[1]
+    with pytest.raises(InputError, match="make_overhang_printable = 1"):
+        three_mf.content(path_with("make_overhang_printable", "1"))

@@ -16,7 +16,7 @@ import numpy as np
 import Part
 
 from ...core.geometry.located import locate
-from ...core.geometry.mesh.file_unit import MESHES
+from ...core.geometry.mesh.file_unit import HEAD, MESHES, unit_issues
 from ...core.issues import InputError, Issue
 from ...core.types import Array, Index
 from . import apart
@@ -129,6 +129,8 @@ def _mesh(file: Path, where: str, scale: float) -> tuple[Any, tuple[Issue, ...]]
         _read_stl(mesh, file, corners)
     if not mesh.CountFacets:
         raise InputError("EMPTY_FILE", where, "it holds no triangles; export the part again")
+    with file.open("rb") as stream:
+        issues += unit_issues(stream.read(HEAD), file.suffix.lower(), scale, where)
     _refuse_far(_reach(mesh.BoundBox) * scale, where)
     if scale != 1.0:
         larger = FreeCAD.Matrix()

@@ -185,7 +185,10 @@ class _Package:
         self.pieces: list[_Piece] = []
         self.cut = 0  # triangles that took part in subtractions
         self.subtracted: list[tuple[str, str]] = []
-        self.laid: dict[str, None] = {}  # settings of Cura that are not applied, with their objects
+        self.laid: dict[
+            str, None
+        ] = {}  # settings of slicers that are not applied, with their objects
+        self.plates = 0  # on which a slicer's project has something
 
     def built(self) -> Content:
         self._read_keystore()
@@ -226,6 +229,11 @@ class _Package:
             points.append(vertices)
             corners.append(faces + count)
             count += len(vertices)
+        self.left_out += [
+            (piece.name, NEGATIVE)
+            for piece in negatives
+            if (piece.name, NEGATIVE) not in self.subtracted
+        ]
         return np.vstack(points), np.vstack(corners)
 
     def _subtracted(self, points: Array, corners: Index, tool: _Piece) -> tuple[Array, Index]:
@@ -276,10 +284,18 @@ class _Package:
             notes.append(Issue(NOTE, CONTENT, message))
         if self.laid:
             message = Text(
-                "{}: settings of Cura that are not applied, so that the solids are deposited as their meshes are: {}{}",
+                "{}: settings of the slicer that are not applied, so that the solids are deposited as their meshes are: {}{}",
                 self.where,
                 Text.joined(", ", list(self.laid)[:MAX_NAMED]),
                 "" if len(self.laid) <= MAX_NAMED else ", ...",
+            )
+            notes.append(Issue(NOTE, CONTENT, message))
+        if self.plates > 1:
+            message = Text(
+                "{}: its objects stand on {} plates, and all are deposited, as far apart as the plates; to deposit one "
+                "plate, export it alone",
+                self.where,
+                self.plates,
             )
             notes.append(Issue(NOTE, CONTENT, message))
         if self.spaces:
@@ -341,8 +357,11 @@ class _Package:
                     name,
                     reader.unknown[0],
                 )
+            self.plates = max(self.plates, reader.plates)
             for number, volumes in reader.volumes.items():
-                self._give_roles(number, volumes)
+                self._give_roles(number, volumes, name)
+            for number, settings in reader.settings.items():
+                self._give_settings(number, settings)
         name = self._named(roles.DRAIN_HOLES)
         if name is not None and len(self.archive.read(name).split(b"\n", 1)[-1].strip()):
             raise InputError(
@@ -354,28 +373,62 @@ class _Package:
             )
 
     def _read_profiles(self) -> None:
-        """Note the objects' settings in the profiles that Cura saves with a project."""
-        for name in filter(roles.CURA_PROFILE.fullmatch, self.archive.namelist()):
+        """Note settings of all objects, in the profiles that slicers save with a project."""
+        for name in self.archive.namelist():
+            if roles.CURA_PROFILE.fullmatch(name):
+                pattern = roles.CURA_VALUES
+            elif roles.PROFILE.fullmatch(name):
+                pattern = roles.PROFILE_VALUES
+            else:
+                continue
             with self.archive.open(name) as stream:
                 text = stream.read(CHUNK).decode("utf-8", "replace")
-            for key, value in roles.CURA_VALUES.findall(text):
+            for key, value in pattern.findall(text):
                 if roles.is_used(value):
                     self.laid[Text("{!r}: {} = {}", name, key, value)] = None
 
-    def _give_roles(self, number: int, volumes: list[Volume]) -> None:
+    def _give_settings(self, number: int, settings: dict[str, str]) -> None:
+        """Take up settings of an object by which a slicer deposits another shape than the mesh."""
         model = self.objects.get((self.start, number))
         if model is None:
             return
+        for key, value in settings.items():
+            setting = Text("{} = {}", key, value)
+            if key in roles.SHAPES:
+                model.unread = model.unread or Text("the setting {} of the slicer", setting)
+            else:
+                model.laid.append(setting)
+
+    def _give_roles(self, number: int, volumes: list[Volume], name: str) -> None:
+        """Give the pieces of an object their roles. InputError for roles of pieces that the model does not have."""
+        model = self.objects.get((self.start, number))
         ranges = [volume for volume in volumes if volume.start is not None]
-        if model.triangles and ranges:
+        if model is not None and model.triangles and ranges:
+            if model.volumes and model.volumes != ranges:
+                raise _bad(
+                    self.where, Text("two files in it give object {} different roles", number)
+                )
             model.volumes = ranges
             return
-        self.parts[number] = {
-            volume.component: volume for volume in volumes if volume.component is not None
-        }
-        if model.triangles and len(volumes) == 1:
+        parts = {volume.component: volume for volume in volumes if volume.component is not None}
+        there = set() if model is None else {key[1] for key, _ in model.components}
+        if model is not None and model.triangles and len(volumes) == 1:
             model.role = volumes[0].role if model.role == PART else model.role
             model.name = volumes[0].name or model.name
+            there.add(volumes[0].component or 0)
+        strange = [one for one in volumes if one.role != PART and (one.component or 0) not in there]
+        if strange:
+            raise InputError(
+                "UNSUPPORTED_FILE",
+                self.where,
+                "{} gives {!r}, a piece of object {}, the role {}, and the model has no such piece; save the project in the "
+                "slicer again, or export the part alone",
+                name,
+                strange[0].name or str(strange[0].component or strange[0].start),
+                number,
+                roles.NAMES.get(strange[0].role, strange[0].role),
+            )
+        self.parts[number] = parts
 
     def _start(self) -> str:
         """The file of the zip that holds the model."""

@@ -68,14 +68,36 @@ CURA_LAID = (
     "magic_fuzzy_skin_enabled",
     "wireframe_enabled",
 )
+# the same of PrusaSlicer, SuperSlicer, Bambu Studio and OrcaSlicer
+SHAPES = ("make_overhang_printable",)
+LAID = (
+    "xy_size_compensation",
+    "xy_inner_size_compensation",
+    "hole_size_compensation",
+    "xy_hole_compensation",
+    "xy_contour_compensation",
+    "hole_to_polyhole",
+    "spiral_vase",
+    "spiral_mode",
+    "fuzzy_skin",
+)
 CURA_PROFILE = re.compile(r"cura/.*\.cfg", re.IGNORECASE)
 CURA_VALUES = re.compile(
     rf"^\s*({'|'.join((*CURA_SHAPES, *CURA_LAID))})\s*=[ \t]*(.*?)[ \t]*\r?$", re.MULTILINE
 )
+PROFILE = re.compile(
+    r"metadata/((slic3r(_pe)?|prusaslicer|superslicer)|project_settings)\.config", re.IGNORECASE
+)
+# `; key = value` of PrusaSlicer, `"key": "value"` of Bambu Studio, where a list has a value for each extruder
+PROFILE_VALUES = re.compile(
+    rf"""(?:^[\s;]*|")({"|".join((*SHAPES, *LAID))})"?\s*[=:]\s*(?:\[\s*)?"?([^"\]\r\n,]*)""",
+    re.MULTILINE,
+)
 CONFIG = re.compile(r"metadata/(?:\w+_model|model_settings)\.config", re.IGNORECASE)
 DRAIN_HOLES = "metadata/slic3r_pe_sla_drain_holes.txt"
 TRUE = ("1", "true", "yes")
-UNUSED = ("", "false", "no", "none", "normal")  # values of settings of Cura that change nothing
+# values of settings that change nothing
+UNUSED = ("", "false", "no", "none", "normal", "nil", "disabled_fuzzy")
 END_OF_TRIANGLES = 1 << 62  # of triangles, where a range has no end
 
 
@@ -87,7 +109,7 @@ def is_config(name: str) -> bool:
 
 
 def is_used(value: str) -> bool:
-    """Whether a setting of Cura with that value changes anything."""
+    """Whether a setting of a slicer with that value changes anything."""
     text = value.strip().lower()
     try:
         return float(text) != 0.0
@@ -110,13 +132,17 @@ class Volume:
 class ConfigReader:
     """Handler of the elements of a slicer's file of roles: the volumes of each object, by its id.
 
-    `unknown` lists the values of roles that are none of ROLES.
+    `unknown` lists the values of roles that are none of ROLES, `settings` those of SHAPES and LAID that are used, by
+    object; `plates` counts the plates on which something stands.
     """
 
     volumes: dict[int, list[Volume]] = field(default_factory=dict)
     unknown: list[str] = field(default_factory=list)
+    settings: dict[int, dict[str, str]] = field(default_factory=dict)
+    plates: int = 0
     _object: int | None = None
     _volume: Volume | None = None
+    _plate_is_empty: bool = True
 
     def start(self, element: str, values: dict[str, str]) -> None:
         """Read the beginning of an element. Raises ValueError for ids and ranges that are not numbers."""
@@ -126,8 +152,16 @@ class ConfigReader:
         elif name in ("volume", "part") and self._object is not None:
             self._volume = self._begin(values)
             self.volumes.setdefault(self._object, []).append(self._volume)
-        elif name == "metadata" and self._volume is not None:
-            self._metadata(self._volume, values.get("key", ""), values.get("value", ""))
+        elif name == "plate":
+            self._plate_is_empty = True
+        elif name == "model_instance" and self._plate_is_empty:
+            self.plates, self._plate_is_empty = self.plates + 1, False
+        elif name == "metadata" and self._object is not None:
+            key, value = values.get("key", ""), values.get("value", "")
+            if key in (*SHAPES, *LAID) and is_used(value):
+                self.settings.setdefault(self._object, {})[key] = value
+            if self._volume is not None:
+                self._metadata(self._volume, key, value)
 
     def end(self, element: str) -> None:
         """Read the end of an element."""

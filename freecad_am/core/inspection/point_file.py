@@ -344,10 +344,10 @@ def _running(cells: list[str]) -> bool:
 
 def _unit_in(text: str) -> str:
     """The unit that a heading or remark names, '' for none."""
-    found = _UNIT.search(text.lower().replace("_", " "))
-    if found is None:
+    names = _UNIT.findall(text.lower().replace("_", " "))
+    if not names:
         return ""
-    name = found[1]
+    name = next((one for one in names if one != "in"), "in")  # as in "unit: exported in mm"
     if name.startswith("millim"):
         return "mm"
     return "m" if name.startswith("met") else _UNIT_NAMES.get(name, name)

@@ -232,11 +232,15 @@ def test_numbers_modes_and_commands_are_those_of_the_firmware(text, wanted):
         "G1 X1E1 Y5",
         "(a comment",
         "M206 X5",
+        "M28 part.g",
+        "M808 L5",
+        "M486 C",
+        "M486 P1",
         "RESTORE_GCODE_STATE NAME=none",
         "G1 X5 E1 \u00e9",
         "M82\nG91 G1 X1 E1",
     ]
-    + ["M30\nG1 X5 E1", "G28 X\nG1 X5 E1\nG28 Z\nG1 X9 E1"],
+    + ["M30\nG1 X5 E1", "M112\nG1 X5 E1", "G28 X\nG1 X5 E1\nG28 Z\nG1 X9 E1"],
 )
 def test_what_is_not_understood_is_rejected_with_its_line(line):
     with pytest.raises(InputError) as told:
@@ -250,7 +254,7 @@ def test_what_is_not_understood_is_rejected_with_its_line(line):
 def test_macros_codes_and_tools_are_noted_with_their_lines():
     read = gcode.read(
         HEAD
-        + 'START_PRINT T=200\nM98 P"start.g"\nM104 S200 T1\nG1 X5 E1\nM9999\nT1\nG1 X9 E1\nM9999\n',
+        + 'START_PRINT T=200\nM98 P"start.g"\nM104 S200 T1\nG1 X5 E1\nM9999\nT1\nG1 X9 E1\nM9999\nM92 E415\nM92 X160\nM486 S0\n',
         "p",
         0.01,
     )
@@ -261,9 +265,14 @@ def test_macros_codes_and_tools_are_noted_with_their_lines():
         'M98 P"start.g" (line 5)',
         "M9999 (line 8, 2 in all)",
         "T0, T1",
+        "M92 (line 13)",
     ):
         assert words in told, told
-    assert "M104" not in told and {issue.code for issue in read.issues} == {"GCODE_NOT_READ"}
+    assert (
+        "M104" not in told
+        and "M486" not in told
+        and {issue.code for issue in read.issues} == {"GCODE_NOT_READ"}
+    )
 
 
 STYLES = {

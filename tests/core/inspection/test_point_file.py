@@ -66,6 +66,7 @@ def test_headings_choose_the_columns_and_name_the_unit(encoding):
     [
         ("x_m,y_m,z_m", "auto", 1000.0),
         ("# units: cm", "auto", 10.0),
+        ("# Units of coordinates in cm", "auto", 10.0),
         ("// Unit = millimeters", "auto", 1.0),
         ("x,y,z", "inch", 25.4),
         ("x_m,y_m,z_m", "mm", 1.0),

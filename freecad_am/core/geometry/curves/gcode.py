@@ -83,6 +83,8 @@ REFUSED = {
     "G61": "it returns to a stored position; write the move out",
     "G68": "turned coordinates are not known; let the slicer leave them out",
     "G90.1": "absolute centres of arcs are not known; give I and J from the start of the arc",
+    "M28": "the lines after it are stored on the machine, not run; leave it out, with its M29",
+    "M808": "it repeats lines of the program; write the moves out",
     "M97": "it calls a subprogram; write its moves out",
     "M99": "it returns from a subprogram, or repeats the program; leave it out",
     "M206": "it shifts the origin; leave it out, or use G92",
@@ -95,6 +97,7 @@ REFUSED = {
 }
 # codes that makers of printers give a meaning of their own: probing, levelling, states of the machine
 VENDOR = re.compile(r"G39(?:\.\d+)?|G\d{3,}(?:\.\d+)?")
+CANCELLED = re.compile(r"\s*(?:C|P\s*\d+)\s*", re.IGNORECASE)  # words of M486 that drop an object
 WORK_OFFSETS = re.compile(r"G5[5-9](?:\.[123])?")
 # M codes and macros that are known to leave the path as it is
 HARMLESS_M = frozenset(
@@ -397,6 +400,14 @@ def read(
     return reader.finish(roles)
 
 
+def _leaves_the_path(command: Command) -> bool:
+    """Whether a code or macro of the machine is known to leave the path as it is."""
+    name = command.name
+    if name == "M92":  # steps per mm scale an axis
+        return not {letter for letter, _ in command.words} & set("XYZ")
+    return name in HARMLESS_M or name in HARMLESS_MACROS or name.startswith("BED_MESH_")
+
+
 class _Reader:
     """Position of the head, interpreted words, and beads up to the current line."""
 
@@ -514,6 +525,8 @@ class _Reader:
             return True
         if name == "M98" and re.match(r"[Pp]\s*\d", command.arguments):
             reason = REFUSED["M97"]
+        if name == "M486" and CANCELLED.fullmatch(command.arguments):
+            reason = REFUSED["EXCLUDE_OBJECT"]
         if name == "M605" and values.get("S", 0.0) not in (0.0, 1.0):
             reason = "it prints copies side by side; print one"
         if WORK_OFFSETS.fullmatch(name):
@@ -568,7 +581,7 @@ class _Reader:
         are noted.
         """
         name = command.name
-        if name in ("M2", "M30") and not command.arguments:
+        if name in ("M2", "M30", "M112") and not command.arguments:
             self._end()
             self.ended = name
         elif name == "SAVE_GCODE_STATE":
@@ -582,11 +595,7 @@ class _Reader:
         elif name in ("M98", "M32"):  # another file of the machine
             self._end()
             self.not_read.setdefault(f"{name} {command.arguments}".strip(), []).append(self.line)
-        elif (
-            name not in HARMLESS_M
-            and name not in HARMLESS_MACROS
-            and not name.startswith("BED_MESH_")
-        ):
+        elif not _leaves_the_path(command):
             self._end()
             self.not_read.setdefault(name, []).append(self.line)
 

@@ -5,11 +5,64 @@ from __future__ import annotations
 
 import math
 import os
+import re
 
-from ...issues import InputError
+from ...issues import WARNING, InputError, Issue, Text
 
 UNITLESS_ENDINGS = (".stl", ".obj")
 MESHES = (*UNITLESS_ENDINGS, ".3mf")
+HEAD = 4096  # bytes at the begin of a file in which programs write a remark
+_STATED = re.compile(r"\bunits?\b[\s:=\"']*(?:(?:is|are)\s+)?(?:in\s+)?([a-zµμ]+)", re.IGNORECASE)
+_LENGTHS = {  # mm
+    "mm": 1.0,
+    "millimeter": 1.0,
+    "cm": 10.0,
+    "centimeter": 10.0,
+    "m": 1000.0,
+    "meter": 1000.0,
+    "um": 0.001,
+    "µm": 0.001,
+    "μm": 0.001,
+    "micron": 0.001,
+    "in": 25.4,
+    "inch": 25.4,
+    "ft": 304.8,
+    "foot": 304.8,
+    "feet": 304.8,
+}
+
+
+def stated_unit(data: bytes, suffix: str) -> tuple[str, float] | None:
+    """The unit that a remark of an OBJ file or the head of an STL file names, and its length in mm; None without."""
+    head = data[:HEAD].decode("latin-1")
+    if suffix == ".obj":
+        lines = [line for line in head.splitlines() if line.lstrip().startswith("#")]
+    else:
+        lines = [head[:80].splitlines()[0]] if head else []
+    for line in lines:
+        for found in _STATED.finditer(line):
+            name = found[1].lower().replace("metre", "meter")
+            for form in (name, name.removesuffix("s"), name.removesuffix("es")):
+                if form in _LENGTHS:
+                    return found[1], _LENGTHS[form]
+    return None
+
+
+def unit_issues(data: bytes, suffix: str, scale: float, where: str) -> tuple[Issue, ...]:
+    """A warning where a file states another unit than mm, and no `scale` was given for it."""
+    stated = stated_unit(data, suffix)
+    if stated is None or scale != 1.0:
+        return ()
+    name, length = stated
+    if length == 1.0:
+        return ()
+    message = Text(
+        "{} says that its unit is {!r}, and is read in mm; give part.scale: {:g} mm, if that is true",
+        where,
+        name,
+        length,
+    )
+    return (Issue(WARNING, "FILE_CONTENT", message),)
 
 
 def refuse_scale(scale: float, path: str, key: str) -> None:
