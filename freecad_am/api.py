@@ -409,12 +409,12 @@ def place(path: Any, cell: Any = None, *, parameters: Any = None, **values: Any)
     `found = am.place(doc.JointPath, x=300, step=100); am.change(doc.Cell, **found.entries(found.best))`; `found.best` is
     None where no pose serves.
     """
-    from .objects.checks.placed import given, placing_of
+    from .objects.checks.placed import change_parameters, placing_of
 
     checked_stage(path)
     if cell is not None and checked_stage(cell).kind != "cell":
         raise InputError("WRONG_KIND", cell.Label, "this is not a cell; choose one")
-    return placing_of(path, cell).placed(given(parameters, values))
+    return placing_of(path, cell).search_poses(change_parameters(parameters, values))
 
 
 def result(obj: Any) -> Any:

@@ -67,7 +67,7 @@ def _written(job: Job, stages: Any, files: outputs.Outputs, session: Any) -> Res
     from .outputs import place_page
 
     with stages.timed("place", session):
-        found = placing_of(stages.toolpath, stages.cell, job.joints).placed(job.place)
+        found = placing_of(stages.toolpath, stages.cell, job.joints).search_poses(job.place)
     files.write(TABLE, table.rows(found))
     files.write(PAGE, [place_page.render(job.name, found)])
     files.publish(

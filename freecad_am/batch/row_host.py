@@ -54,7 +54,7 @@ def _set_up(settings: dict[str, Any]) -> None:
     os.makedirs(temporary, exist_ok=True)
     os.environ["TMPDIR"] = tempfile.tempdir = temporary
     located.use_copies(settings["copies"], (versions.ROOT, settings["folder"]), settings["home"])
-    user_machines.travelled(tuple(settings["machines"]))
+    user_machines.use_folders(tuple(settings["machines"]))
 
 
 def _planned(asked: dict[str, Any]) -> dict[str, Any]:

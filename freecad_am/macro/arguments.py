@@ -12,7 +12,7 @@ from typing import Any
 import FreeCAD as App
 
 from ..core.issues import InputError
-from ..objects.fields.plain_text import is_text, shown
+from ..objects.fields.plain_text import is_text, safe_repr
 
 
 def checked_document(doc: Any, where: str = "doc") -> Any:
@@ -167,4 +167,8 @@ def is_gone(value: Any) -> bool:
 
 def named(value: Any) -> str:
     """What a value is called in a message: objects and documents by their label, which are else told by their address."""
-    return shown(value) if is_gone(value) else str(getattr(value, "Label", None) or shown(value))
+    return (
+        safe_repr(value)
+        if is_gone(value)
+        else str(getattr(value, "Label", None) or safe_repr(value))
+    )

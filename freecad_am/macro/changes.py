@@ -9,7 +9,7 @@ from typing import Any
 
 from ..core.issues import AmError
 from ..objects import stage as stages
-from ..objects.fields.settings import given
+from ..objects.fields.settings import set_parameters
 from ..objects.program import Program
 from ..objects.shapes.chosen import FeatureStage
 from ..objects.staleness import UP_TO_DATE
@@ -43,7 +43,7 @@ def change(obj: Any, **values: Any) -> Any:
             values["base_faces"] = owned(hub, values["base_faces"], "base_faces")
         asked = {links[key]: values.pop(key) for key in links if key in values}
         chosen = checked_links(obj.Document, proxy.links, asked, obj)
-        given(obj, proxy, [], values)
+        set_parameters(obj, proxy, [], values)
         for property_name, value in chosen.items():
             setattr(obj, property_name, value)
         for link in proxy.chosen if isinstance(proxy, FeatureStage) else ():

@@ -37,7 +37,7 @@ def make_scan(
     """
     from ..core.inspection import point_file, scan_checks, scan_motion  # what few jobs need
     from ..objects.inspection import Inspection
-    from ..objects.shapes.bodies import taken
+    from ..objects.shapes.bodies import snapshot_of
 
     checked_document(doc)
     checked_text(label, "label")
@@ -46,7 +46,7 @@ def make_scan(
         checked_text(text, where)
     within = checked_number(within, "within")
     InspectionParameters(unit=unit)
-    body = taken(checked_object(substrate, "substrate", doc)).body()
+    body = snapshot_of(checked_object(substrate, "substrate", doc)).body()
     measured = point_file.read(file, unit)
     scan_checks.refuse_size(measured.points, measured.label, body)
     asked = fit == BEST or (

@@ -11,7 +11,7 @@ import FreeCAD as App
 
 from ..core.issues import InputError
 from ..objects import stage as stages
-from ..objects.fields.settings import given
+from ..objects.fields.settings import set_parameters
 from ..objects.shapes import chord_error
 from .arguments import checked_document, checked_names, checked_text, is_gone, named
 from .links import checked_links
@@ -38,7 +38,7 @@ def make_stage(
             for property_name, value in links.items():
                 if value is not None:
                     setattr(obj, property_name, value)
-            given(obj, stage, parameters, values)
+            set_parameters(obj, stage, parameters, values)
             chord_error.fill_in(obj, parameters, values)
             for other in in_order(obj.OutListRecursive):
                 other.Proxy.renew(other)

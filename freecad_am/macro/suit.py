@@ -49,7 +49,7 @@ def suit(cell: Any, *stages: Any, failed_layers: Collection[int] = ()) -> bool:
     first of the stages, and what follows; all is as it was where that serves, or nothing was found that does. Whether the
     cell has changed. failed_layers: places of layers to be regarded beside the usual ones."""
     settings = cell.Proxy.value(cell)
-    found = suited_cell.of_toolpath(stages[0], failed_layers)(settings)
+    found = suited_cell.suit_to_toolpath(stages[0], failed_layers)(settings)
     if found != settings:
         _write(cell, found, stages)
         different = {

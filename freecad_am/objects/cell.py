@@ -39,7 +39,7 @@ class Cell(Stage):
     def further_inputs(self, obj: Any) -> list[str]:
         named = [
             obj.Machine,
-            *(one.machine for one in externals(self.parameters(obj, CellParameters).external)),
+            *(axis.machine for axis in externals(self.parameters(obj, CellParameters).external)),
         ]
         files = [
             digest(path, LARGEST, "BAD_MACHINE", f"{obj.Label}.Machine")

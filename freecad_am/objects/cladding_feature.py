@@ -16,7 +16,7 @@ from ..core.parameters.filled import CladdingParameters
 from ..core.strategies import size
 from .checks.on_substrate import gap_issues
 from .results.fingerprints import fingerprint
-from .shapes.bodies import FIXTURES, bodies, fixtures_of, taken
+from .shapes.bodies import FIXTURES, bodies, fixtures_of, snapshot_of
 from .shapes.chosen import FeatureStage, source_of
 from .stage_parts import Link, Outcome, Section, Work
 
@@ -44,37 +44,45 @@ class CladdingFeature(FeatureStage):
         strategy = self.parameters(obj, CladdingParameters)
         self.parameters(
             obj, BuildDirectionParameters
-        )  # bad ones are told where they stand, not by the toolpath
+        )  # bad values are reported here, not by the toolpath
         source, faces = source_of(obj)
-        part, fixtures = taken(source), fixtures_of(obj)
-        if part.shape is None and faces:
+        source_body, fixtures = snapshot_of(source), fixtures_of(obj)
+        if source_body.shape is None and faces:
             raise InputError(
                 "UNKNOWN_FACE", source.Label, "a mesh has no faces to choose; leave them out"
             )
-        ground = () if obj.Substrate is None else (taken(obj.Substrate),)
-        own = (part,) if part.shape is not None and part.shape.Solids else ()
+        ground = () if obj.Substrate is None else (snapshot_of(obj.Substrate),)
+        own_body = (
+            (source_body,) if source_body.shape is not None and source_body.shape.Solids else ()
+        )
 
         def work() -> Outcome:
             high = (strategy.layers - 1) * strategy.layer_height
             spacing = strategy.bead_spacing
             back = strategy.side == "back"
-            if part.shape is None:
-                body = part.body()
-                found = clad_mesh(
-                    body.vertices, body.triangles.astype(np.intp), spacing, back, part.label
+            if source_body.shape is None:
+                body = source_body.body()
+                clad = clad_mesh(
+                    body.vertices, body.triangles.astype(np.intp), spacing, back, source_body.label
                 )
             else:
-                found = clad_faces(part.shape.copy(False), faces, spacing, back, high, part.label)
-            large = size.judged(size.of_cladding(found, strategy), strategy)
-            made = dataclasses.replace(found, surroundings=bodies((*own, *ground, *fixtures)))
-            if ground and not own:
-                corners = part.body().vertices
-                apart = gap_issues(part.label, (), [corners], ground, strategy.layer_height)
-                made = dataclasses.replace(made, issues=(*made.issues, *apart))
+                clad = clad_faces(
+                    source_body.shape.copy(False), faces, spacing, back, high, source_body.label
+                )
+            large = size.judged(size.of_cladding(clad, strategy), strategy)
+            feature = dataclasses.replace(
+                clad, surroundings=bodies((*own_body, *ground, *fixtures))
+            )
+            if ground and not own_body:
+                corners = source_body.body().vertices
+                gap_notes = gap_issues(
+                    source_body.label, (), [corners], ground, strategy.layer_height
+                )
+                feature = dataclasses.replace(feature, issues=(*feature.issues, *gap_notes))
             return Outcome(
-                made,
-                (*made.issues, *large),
-                (("CladFaces", list(made.faces)), ("CladArea", made.area)),
+                feature,
+                (*feature.issues, *large),
+                (("CladFaces", list(feature.faces)), ("CladArea", feature.area)),
             )
 
         return work

@@ -16,7 +16,7 @@ from .staleness import FAILED, INFEASIBLE, STALE, is_outdated
 
 
 def check_current(obj: Any, code: str = "NO_RESULT", template: str = "") -> None:
-    """Check that the result of a stage, and those of all stages that it is made of, fit the inputs of now.
+    """Check that the results of a stage and of its input stages fit the current inputs.
 
     Parameters
     ----------
@@ -64,16 +64,18 @@ def reason_outdated(obj: Any) -> str:
 
 
 def is_stale(obj: Any) -> bool:
-    """Whether a stage shows an earlier state than that of its inputs; one that is infeasible shows why that is."""
+    """Whether a stage shows an earlier state than its inputs; an infeasible stage shows the reason."""
     return obj.Status == STALE or is_outdated(obj)
 
 
 def reason_stale(obj: Any) -> str:
-    """Why a stage is not up to date: that of the first stage that is stale, where it only waits for that."""
+    """Why a stage is not up to date: the reason of the first stale stage if it only waits for that
+    one.
+    """
     if obj.Status == STALE:
-        first = next((one for one in _chain(obj) if one.Status == STALE), obj)
-        if first != obj:
-            return Text("{}: {}", first.Label, message_of(first))
+        stale_stage = next((stage for stage in _chain(obj) if stage.Status == STALE), obj)
+        if stale_stage != obj:
+            return Text("{}: {}", stale_stage.Label, message_of(stale_stage))
     return reason_of(obj)
 
 
@@ -91,16 +93,19 @@ def check_recomputed(obj: Any, code: str = "NO_RESULT") -> None:
 
 def _chain(obj: Any) -> list[Any]:
     """A stage and the stages that it is made of, inputs first."""
-    stages = [one for one in (obj, *obj.OutListRecursive) if stage_of(one) is not None]
+    stages = [member for member in (obj, *obj.OutListRecursive) if stage_of(member) is not None]
     return sorted(stages, key=lambda stage: len(stage.OutListRecursive))
 
 
 def _sources(obj: Any) -> list[Any]:
-    """The objects that a stage and its inputs are made of, which are not stages, and what these are nested in, with
-    what the expressions of that refer to."""
-    inputs = [one for one in obj.OutListRecursive if stage_of(one) is None]
-    around = [outer for one in inputs for outer in containers_of(one)]
-    placing = [one for outer in around for one in outer.OutList if one not in members_of(outer)]
+    """The source objects (no stages) of a stage and its inputs, their containers, and the objects
+    that the containers' expressions refer to.
+    """
+    inputs = [member for member in obj.OutListRecursive if stage_of(member) is None]
+    around = [outer for member in inputs for outer in containers_of(member)]
+    placing = [
+        member for outer in around for member in outer.OutList if member not in members_of(outer)
+    ]
     return list(dict.fromkeys((*inputs, *around, *placing)))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves in a document that are laid as beads: edges, wires, sketches, or what a file of points says."""
+"""Curves in a document that are deposited as beads: edges, wires, sketches, or a file of points."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import CurvesParameters
 from .checks.on_substrate import gap_issues
 from .results.fingerprints import fingerprint, shape_fingerprint
-from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, taken
+from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, snapshot_of
 from .shapes.chosen import FeatureStage, names_of
 from .stage_parts import Link, Outcome, Section, Work
 from .table_part import points_of, refuse_gcode_keys
@@ -49,38 +49,42 @@ class CurvesFeature(FeatureStage):
         strategy = self.parameters(obj, CurvesParameters)
         self.parameters(
             obj, BuildDirectionParameters
-        )  # bad ones are told where they stand, not by the toolpath
+        )  # bad values are reported here, not by the toolpath
         source, names = _source(obj)
         edges = tuple(name for name in names if name.startswith("Edge"))
         faces = tuple(name for name in names if name.startswith("Face"))
         label, table = source.Label, points_of(source)
         shape = None if table is not None else global_shape(source)
-        ground = () if obj.Substrate is None else (taken(obj.Substrate),)
+        ground = () if obj.Substrate is None else (snapshot_of(obj.Substrate),)
         fixtures = fixtures_of(obj)
 
         def work() -> Outcome:
             issues: tuple[Issue, ...] = ()
             if table is not None:
-                found, issues = table.read(
+                bead_curves, issues = table.read(
                     label, strategy.chord_error, strategy.roles, strategy.rotary
                 )
             else:
                 refuse_gcode_keys(label, strategy.roles, strategy.rotary)
-                found = tuple(curves_of(shape, edges, faces, strategy.chord_error, label))
+                bead_curves = tuple(curves_of(shape, edges, faces, strategy.chord_error, label))
             issues = (
                 *issues,
                 *gap_issues(
-                    label, (), [one.points for one in found], ground, strategy.layer_height
+                    label,
+                    (),
+                    [curve.points for curve in bead_curves],
+                    ground,
+                    strategy.layer_height,
                 ),
             )
             curves = Curves(
                 label,
-                found,
+                bead_curves,
                 bodies((*ground, *fixtures)),
                 issues,
                 edges=None if shape is None else edges,
             )
-            return Outcome(curves, issues, (("Curves", len(found)),))
+            return Outcome(curves, issues, (("Curves", len(bead_curves)),))
 
         return work
 

@@ -20,7 +20,7 @@ from ..core.parameters.filled import DevelopableParameters
 from ..core.slicing.solids.standing import group_by_base, hub_among
 from ..core.strategies import size
 from .results.fingerprints import fingerprint
-from .shapes.bodies import FIXTURES, Taken, bodies, fixtures_of, taken
+from .shapes.bodies import FIXTURES, Taken, bodies, fixtures_of, snapshot_of
 from .shapes.chosen import FeatureStage, source_of
 from .stage_parts import Link, Outcome, Section, Work
 
@@ -73,13 +73,13 @@ class DevelopableFeature(FeatureStage):
         strategy = self.parameters(obj, DevelopableParameters)
         self.parameters(
             obj, BuildDirectionParameters
-        )  # bad ones are told where they stand, not by the toolpath
-        given, fixtures = _Given.of(obj), fixtures_of(obj)
+        )  # bad values are reported here, not by the toolpath
+        inputs, fixtures = _Given.of(obj), fixtures_of(obj)
 
         def work() -> Outcome:
-            solids = _solids(given, strategy)
+            solids = _solids(inputs, strategy)
             large = size.judged(size.of_solids(solids, strategy), strategy)
-            substrate = () if given.substrate is None else (given.substrate.body(),)
+            substrate = () if inputs.substrate is None else (inputs.substrate.body(),)
             solids = dataclasses.replace(
                 solids, surroundings=(*substrate, *solids.surroundings, *bodies(fixtures))
             )
@@ -97,7 +97,7 @@ class DevelopableFeature(FeatureStage):
         return [
             fingerprint(source),
             " ".join(faces),
-            *(fingerprint(other) for other in obj.Further),
+            *(fingerprint(further) for further in obj.Further),
             *hub,
             "|",
             *(fingerprint(fixture) for fixture in obj.Fixtures),
@@ -119,12 +119,12 @@ class _Given:
     def of(cls, obj: Any) -> _Given:
         """As the document has it. InputError NO_INPUT, BAD_FACES, NO_SHAPE."""
         source, faces = source_of(obj)
-        base = (taken(obj.BaseFaces[0]), tuple(obj.BaseFaces[1])) if obj.BaseFaces else None
+        base = (snapshot_of(obj.BaseFaces[0]), tuple(obj.BaseFaces[1])) if obj.BaseFaces else None
         return cls(
             obj.Label,
-            tuple(taken(one) for one in (source, *obj.Further)),
+            tuple(snapshot_of(entry) for entry in (source, *obj.Further)),
             faces,
-            None if obj.Substrate is None else taken(obj.Substrate),
+            None if obj.Substrate is None else snapshot_of(obj.Substrate),
             base,
         )
 
@@ -136,47 +136,56 @@ def found_in(
     base_faces: tuple[Taken, tuple[str, ...]] | None,
     strategy: DevelopableParameters,
 ) -> SolidsOnHub:
-    """Solids and hub of objects, faces of the first of them, hub and faces of it, as a feature would find them; the
-    InputErrors that it would raise."""
+    """Solids and hub of objects, given faces of the first one and a hub with faces, as a feature
+    would find them; raises the same InputErrors.
+    """
     return _solids(
         _Given(objects[0].label, tuple(objects), tuple(faces), substrate, base_faces), strategy
     )
 
 
-def _solids(of: _Given, strategy: DevelopableParameters) -> SolidsOnHub:
-    found = [_bodies(one, strategy) for one in of.objects]
-    solid = [body for one in found for body in one.bodies]
-    issues = tuple(issue for one in found for issue in one.issues)
-    bases, hub = _bases(of, solid, strategy)
-    rest = [body for body in solid if body is not hub]
-    named = "" if of.substrate is None else of.substrate.label
+def _solids(inputs: _Given, strategy: DevelopableParameters) -> SolidsOnHub:
+    bodies_of_objects = [_bodies(entry, strategy) for entry in inputs.objects]
+    solid = [body for entry in bodies_of_objects for body in entry.bodies]
+    issues = tuple(issue for entry in bodies_of_objects for issue in entry.issues)
+    bases, hub = _bases(inputs, solid, strategy)
+    solids_on_hub = [body for body in solid if body is not hub]
+    named = "" if inputs.substrate is None else inputs.substrate.label
     meshes = [
         body
-        for one, own in zip(of.objects, found, strict=True)
-        if one.shape is None
-        for body in own.bodies
+        for entry, object_bodies in zip(inputs.objects, bodies_of_objects, strict=True)
+        if entry.shape is None
+        for body in object_bodies.bodies
     ]
     solids = group_by_base(
-        rest, bases, SHARE * strategy.chord_error, of.objects[0].label, issues, named, meshes
+        solids_on_hub,
+        bases,
+        SHARE * strategy.chord_error,
+        inputs.objects[0].label,
+        issues,
+        named,
+        meshes,
     )
     if hub is not None:
-        return dataclasses.replace(solids, surroundings=(hub,), own=_apart(solid, hub))
+        return dataclasses.replace(solids, surroundings=(hub,), own=_separate_hub(solid, hub))
     return (
-        dataclasses.replace(solids, own=_within(solids))
-        if of.faces and of.base_faces is None
+        dataclasses.replace(solids, own=_hub_of_faces(solids))
+        if inputs.faces and inputs.base_faces is None
         else solids
     )
 
 
-def _apart(solids: Sequence[Body], hub: Body) -> OwnHub:
+def _separate_hub(solids: Sequence[Body], hub: Body) -> OwnHub:
     """The hub that is one of the solids."""
     volume = [SolidMesh(body.vertices, body.triangles).volume for body in solids]
-    own = next(one for one, body in zip(volume, solids, strict=True) if body is hub)
-    return OwnHub(sum(volume), own, ((hub.name, own),))
+    hub_volume = next(
+        solid_volume for solid_volume, body in zip(volume, solids, strict=True) if body is hub
+    )
+    return OwnHub(sum(volume), hub_volume, ((hub.name, hub_volume),))
 
 
-def _within(solids: SolidsOnHub) -> OwnHub:
-    """The hub that is of one solid with what stands on it: all that lies within its faces."""
+def _hub_of_faces(solids: SolidsOnHub) -> OwnHub:
+    """The hub that forms one solid with the bodies on it: all material within its faces."""
     total = within = 0.0
     for group in solids.groups:
         for body in group.bodies:
@@ -192,35 +201,37 @@ def _within(solids: SolidsOnHub) -> OwnHub:
 
 
 def _bases(
-    of: _Given, solids: Sequence[Body], strategy: DevelopableParameters
+    inputs: _Given, solids: Sequence[Body], strategy: DevelopableParameters
 ) -> tuple[list[Seat], Body | None]:
-    """The bases that solids may stand on, and the hub where it is one of the solids."""
+    """The possible bases of the solids, and the hub if it is one of the solids."""
     base = strategy.base
     if base.radius != "auto":
         height = math.inf if base.height == "inf" else float(base.height)
         return [seat_of_numbers(float(base.radius), height, *base.line())], None
-    if of.base_faces is not None:
-        return seats(_named_faces(*of.base_faces, f"{of.label}.BaseFaces"), True), None
-    if of.faces:
-        return seats(_named_faces(of.objects[0], of.faces, f"{of.label}.Source"), True), None
-    if of.substrate is not None:
-        return seats(_faces(of.substrate), False), None
-    owned = [_faces(one, solid) for one in of.objects for solid in _parts(one)]
+    if inputs.base_faces is not None:
+        return seats(_named_faces(*inputs.base_faces, f"{inputs.label}.BaseFaces"), True), None
+    if inputs.faces:
+        return seats(
+            _named_faces(inputs.objects[0], inputs.faces, f"{inputs.label}.Source"), True
+        ), None
+    if inputs.substrate is not None:
+        return seats(_faces(inputs.substrate), False), None
+    owned = [_faces(entry, solid) for entry in inputs.objects for solid in _parts(entry)]
     if len(solids) < 2 or len(owned) != len(solids):
         raise InputError(
             "NO_HUB",
-            of.label,
+            inputs.label,
             "the hub, a cylinder or cone that the solids stand on, is not known: choose it as "
             "substrate, choose faces of it, or give strategy.base; what stands on a flat base is deposited by kind: solid",
         )
-    own = [seats(some, False) for some in owned]
-    hub = hub_among(solids, own, SHARE * strategy.chord_error, of.label)
-    return own[hub], solids[hub]
+    seats_of_solids = [seats(solid_faces, False) for solid_faces in owned]
+    hub = hub_among(solids, seats_of_solids, SHARE * strategy.chord_error, inputs.label)
+    return seats_of_solids[hub], solids[hub]
 
 
 def _bodies(source: Taken, strategy: DevelopableParameters) -> Bodies:
-    whole = source.body() if source.shape is None else source.shape
-    return bodies_of(whole, source.label, strategy.chord_error, strategy.mend)
+    shape_or_body = source.body() if source.shape is None else source.shape
+    return bodies_of(shape_or_body, source.label, strategy.chord_error, strategy.mend)
 
 
 def _parts(source: Taken) -> list[Any]:
@@ -241,12 +252,12 @@ def _faces(source: Taken, solid: Any = None) -> list[tuple[str, Any]]:
 
 
 def _named_faces(owner: Taken, names: Sequence[str], where: str) -> list[tuple[str, Any]]:
-    known = {f"Face{number + 1}": entry for number, entry in enumerate(_faces(owner))}
+    faces_by_name = {f"Face{number + 1}": entry for number, entry in enumerate(_faces(owner))}
     short = [name.rsplit(".", maxsplit=1)[-1] for name in names if name]
-    wrong = [name for name in short if name not in known]
+    wrong = [name for name in short if name not in faces_by_name]
     if wrong or not short:
         text = ", ".join(wrong) or owner.label
         raise InputError(
             "BAD_FACES", where, "{} is not a face of {}; choose faces of the hub", text, owner.label
         )
-    return [known[name] for name in short]
+    return [faces_by_name[name] for name in short]

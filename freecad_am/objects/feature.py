@@ -57,7 +57,7 @@ class RevolutionFeature(FeatureStage):
         strategy = self.parameters(obj, RevolutionParameters)
         self.parameters(
             obj, BuildDirectionParameters
-        )  # bad ones are told where they stand, not by the toolpath
+        )  # bad values are reported here, not by the toolpath
         source, faces = source_of(obj)
         shape, axis, label, fixtures = (
             global_shape(source),
@@ -71,8 +71,8 @@ class RevolutionFeature(FeatureStage):
             large = size.judged(size.of_revolution(wall, strategy), strategy)
             figures = (("WallFaces", list(wall.faces)), ("WallLength", wall.meridian.length))
             depths = revolved_depths(shape, wall, label)
-            made = dataclasses.replace(wall, surroundings=bodies(fixtures), depths=depths)
-            return Outcome(made, (*wall.issues, *large), figures)
+            completed_wall = dataclasses.replace(wall, surroundings=bodies(fixtures), depths=depths)
+            return Outcome(completed_wall, (*wall.issues, *large), figures)
 
         return work
 
@@ -126,7 +126,9 @@ def axis_of(obj: Any) -> tuple[Any, Any] | None:
 
 
 def _edges_of(target: Any, name: str) -> list[Any]:
-    """The edge of an object that has a name, all without one, in document coordinates; none where it has no such."""
+    """The named edge of an object (every edge without a name), in document coordinates; empty if it
+    has no such edge.
+    """
     try:
         shape = global_shape(target)
     except InputError as error:

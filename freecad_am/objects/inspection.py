@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Measured points against what was planned, in a document."""
+"""Measured points against the plan, in a document."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from ..core.parameters.process import ProcessParameters
 from .current import check_current
 from .fields.properties import HIDDEN, OUTPUT
 from .results.fingerprints import fingerprint
-from .shapes.bodies import taken
+from .shapes.bodies import snapshot_of
 from .stage import Stage, checked, stage_of
 from .stage_parts import Link, Outcome, Section, Work
 from .work import progress
@@ -96,15 +96,15 @@ class Inspection(Stage):
         def work() -> Outcome:
             progress.report(0.0, "reading the points")
             measured = point_file.read(path, parameters.unit)
-            found = inspect.inspect(measured, planned(), parameters, progress.report)
-            return Outcome(found, found.issues, _figures(found))
+            result = inspect.inspect(measured, planned(), parameters, progress.report)
+            return Outcome(result, result.issues, _figures(result))
 
         return work
 
     def _predicted(
         self, obj: Any, linked: dict[str, Any], parameters: InspectionParameters
     ) -> Work:
-        """The deposit that a toolpath is predicted to leave, in place of what was measured."""
+        """The deposit that a toolpath is predicted to leave, in place of a measurement."""
         from .checks import predicted_shape  # few inspections need it
 
         toolpath = linked.get("Planned")
@@ -126,10 +126,10 @@ class Inspection(Stage):
         )
 
         def work() -> Outcome:
-            found = predicted_shape.inspected(
+            result = predicted_shape.inspected(
                 value, targets, allowance, parameters.tolerance, label, progress.report
             )
-            return Outcome(found, found.issues, _figures(found))
+            return Outcome(result, result.issues, _figures(result))
 
         return work
 
@@ -150,10 +150,10 @@ class Inspection(Stage):
         if is_predicted(obj):
             return [inspect.PREDICTED]
         path = file_of(obj)
-        # a file that is gone is taken to be what it was: the result has its points
-        known = _digest(path, f"{obj.Label}.File") if is_there(path) else obj.FileDigest
+        # a missing file counts as unchanged: the result has its points
+        digest = _digest(path, f"{obj.Label}.File") if is_there(path) else obj.FileDigest
         shape = [] if stage_of(obj.Planned) is not None else [fingerprint(obj.Planned)]
-        return [os.path.basename(path), known, *shape]
+        return [os.path.basename(path), digest, *shape]
 
 
 def is_predicted(obj: Any) -> bool:
@@ -162,7 +162,7 @@ def is_predicted(obj: Any) -> bool:
 
 
 def file_of(obj: Any) -> str:
-    """The path of the measured points, that of a relative one starting at the document."""
+    """The path of the measured points; a relative path starts at the document."""
     path = os.path.expanduser(obj.File.strip())
     folder = os.path.dirname(obj.Document.FileName or "")
     return os.path.join(folder, path) if path and folder else path
@@ -182,20 +182,20 @@ def _stage_surface(target: Any) -> Callable[[], Planned]:
     value, label = target.Proxy.value(target), target.Label
     feature = getattr(target, "Feature", None)
     wall = None if feature is None else feature.Proxy.value(feature)
-    if isinstance(wall, RevolvedWall):  # circles of its beads are told along its meridian
+    if isinstance(wall, RevolvedWall):  # circles of its beads are given along its meridian
         return lambda: dataclasses.replace(surfaces.planned(value, label), wall=wall)
     return lambda: surfaces.planned(value, label)
 
 
 def _shape_surface(target: Any) -> Callable[[], Planned]:
     """The faces of a shape, exactly, or the triangles of a mesh."""
-    source = taken(target)
+    source = snapshot_of(target)
 
-    def of_mesh() -> Planned:
+    def mesh_surface() -> Planned:
         body = source.body()
         return of_triangles(source.label, body.vertices, body.triangles)
 
-    def of_shape() -> Planned:
+    def shape_surface() -> Planned:
         faces = skin(source.shape.copy(False), source.label)
         return of_triangles(
             source.label,
@@ -206,11 +206,11 @@ def _shape_surface(target: Any) -> Callable[[], Planned]:
             most=FACES_FITTED,
         )
 
-    return of_mesh if source.shape is None else of_shape
+    return mesh_surface if source.shape is None else shape_surface
 
 
-def _figures(found: inspect.Inspected) -> tuple[tuple[str, Any], ...]:
-    spread = found.spread
+def _figures(result: inspect.Inspected) -> tuple[tuple[str, Any], ...]:
+    spread = result.spread
     return (
         ("Points", spread.count),
         ("Mean", spread.mean),
@@ -218,10 +218,13 @@ def _figures(found: inspect.Inspected) -> tuple[tuple[str, Any], ...]:
         ("Least", spread.least),
         ("Most", spread.most),
         ("WithinTolerance", 100.0 * spread.within),
-        ("Sphericity", "" if found.ball is None else f"{found.ball.zone.zone:.4f} mm"),
+        ("Sphericity", "" if result.ball is None else f"{result.ball.zone.zone:.4f} mm"),
         (
             "Circularity",
-            [Text("{:g} mm: {:.4f} mm", one.height, one.zone.zone) for one in found.circles],
+            [
+                Text("{:g} mm: {:.4f} mm", circle.height, circle.zone.zone)
+                for circle in result.circles
+            ],
         ),
     )
 
@@ -231,14 +234,14 @@ def files_of_figures(obj: Any) -> dict[str, bytes]:
     where they do not fit the document as it is now."""
     if obj.Key:
         check_current(obj)
-    found, name = obj.Proxy.value(obj), obj.Label
+    result, name = obj.Proxy.value(obj), obj.Label
     figures = "figure,value,unit\n" + "".join(
-        f'"{row.name}",{row.value:.6f},{row.unit}\n' for row in table.rows(found)
+        f'"{row.name}",{row.value:.6f},{row.unit}\n' for row in table.rows(result)
     )
     files = {
         f"{name}.csv": figures,
-        f"{name}-deviations.csv": "".join(table.deviations(found)),
-        f"{name}.json": json.dumps(table.as_data(found), indent=1, ensure_ascii=False) + "\n",
+        f"{name}-deviations.csv": "".join(table.deviations(result)),
+        f"{name}.json": json.dumps(table.as_data(result), indent=1, ensure_ascii=False) + "\n",
     }
     return {
         "".join("_" if sign in "/\\:" else sign for sign in key): text.encode()

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The group of a job's stages in the tree. It computes nothing: stages may be dragged out of it and in again."""
+"""The group of a job's stages in the tree. It computes nothing: stages may be dragged out and in
+again.
+"""
 
 from __future__ import annotations
 
@@ -18,27 +20,30 @@ _PASTE = "Paste"  # what FreeCAD calls this step of undo, in every language
 class JobGroup:
     """Proxy of a group of stages. Its class path is a file format."""
 
-    _held: tuple[Any, ...] = ()  # what was in the group before it is changed
+    _held: tuple[Any, ...] = ()  # members of the group before a change
 
     def __init__(self, obj: Any) -> None:
         obj.Proxy = self
         hooks.attach(obj)
 
     def onBeforeChange(self, obj: Any, name: str) -> None:
-        """Remember what is in the group."""
+        """Remember the members of the group."""
         if name == "Group":
             self._held = tuple(obj.Group)
 
     def onChanged(self, obj: Any, name: str) -> None:
-        """FreeCAD pastes into the group that is selected: a copy of the job, or of its part, comes beside the job. What is
-        put there in another way, as by a macro, stays."""
-        document, held = obj.Document, self._held
+        """FreeCAD pastes into the selected group: move a pasted copy of the job, or of its part,
+        out next to the job. Members added in another way, as by a macro, stay.
+        """
+        document, members = obj.Document, self._held
         if name != "Group" or document.Transacting or document.Restoring or document.Importing:
             return
         if (App.getActiveTransaction() or ("",))[0] == _PASTE:
-            kept = [one for one in obj.Group if one in held or stage_of(one) is not None]
-            if len(kept) < len(obj.Group):
-                obj.Group = kept
+            remaining = [
+                member for member in obj.Group if member in members or stage_of(member) is not None
+            ]
+            if len(remaining) < len(obj.Group):
+                obj.Group = remaining
 
     def onDocumentRestored(self, obj: Any) -> None:
         """Show one that was made without a window."""

@@ -53,8 +53,10 @@ class Planned:
 
 @dataclass(frozen=True)
 class Job:
-    """What a joint path is planned of, away from the document. toolpath: reads it. fixed: it with one build direction,
-    None where it has it, or cannot. own_speed: of several features, whether each has a travel speed of its own."""
+    """The inputs of a joint path, without the document. toolpath: reads the toolpath. fixed: the
+    toolpath with one build direction, or None if it has one already or cannot. own_speed: for
+    several features, whether each has its own travel speed.
+    """
 
     toolpath: Callable[[], Toolpath]
     settings: CellParameters
@@ -68,7 +70,7 @@ class Job:
 def planned_of(path: Any, label: str) -> tuple[Planned, Toolpath, CellParameters]:
     """The results of a joint path object (None for one that is gone), of its toolpath and of its cell.
 
-    Raises InputError NO_RESULT naming `label`, and NO_INPUT, where one of them is not there.
+    Raises InputError NO_RESULT naming `label`, and NO_INPUT, if an object is missing.
     """
     if path is None or not path.Key:
         raise InputError("NO_RESULT", label, "there is no joint path yet; recompute the document")
@@ -78,12 +80,14 @@ def planned_of(path: Any, label: str) -> tuple[Planned, Toolpath, CellParameters
             raise InputError(
                 "NO_INPUT", path.Label, "its {} is missing; choose one and recompute", link.lower()
             )
-    planned, toolpath, cell = (one.Proxy.value(one) for one in (path, path.Toolpath, path.Cell))
+    planned, toolpath, cell = (
+        stage.Proxy.value(stage) for stage in (path, path.Toolpath, path.Cell)
+    )
     return planned, toolpath, cell
 
 
 class JointPath(Stage):
-    """Result: `Planned`. An infeasible one is kept too, to be looked at."""
+    """Result: `Planned`. An infeasible result is kept too, for inspection."""
 
     kind = "joint path"
     sections = (Section(JointParameters, "joints", "Joints"),)
@@ -115,11 +119,13 @@ class JointPath(Stage):
     )
 
     def look_ahead(self, obj: Any) -> None:
-        """Tell the programs of the joint path what makes them impossible, before long work for them begins."""
+        """Report on the programs of the joint path why they are impossible, before long work
+        begins.
+        """
         programs = [
-            found
-            for found in obj.InList
-            if (stage := stage_of(found)) is not None and stage.kind == "program"
+            candidate
+            for candidate in obj.InList
+            if (stage := stage_of(candidate)) is not None and stage.kind == "program"
         ]
         toolpath, cell = obj.Toolpath, obj.Cell
         if (
@@ -129,7 +135,7 @@ class JointPath(Stage):
             or cell.Status != UP_TO_DATE
         ):
             return
-        with contextlib.suppress(AmError):  # what is wrong with these they say themselves
+        with contextlib.suppress(AmError):  # their own status reports their errors
             resolved = cells.resolve(
                 cell.Proxy.value(cell), np.eye(4), folders=user_machines.folders()
             )
@@ -138,7 +144,7 @@ class JointPath(Stage):
                 program.Proxy.refuse_early(program, resolved, process, toolpath)
 
     def job(self, obj: Any) -> Job:
-        """Read the inputs. Raises InputError and InfeasibleError where there is nothing to plan of."""
+        """Read the inputs. Raises InputError and InfeasibleError without valid inputs."""
         linked = self.linked(obj)
         toolpath, cell = linked["Toolpath"], linked["Cell"]
         return Job(
@@ -167,7 +173,7 @@ class JointPath(Stage):
                 lambda fraction, text: progress.report(JOINTS * fraction, text),
                 cylinders,
             )
-            each = (time.monotonic() - started) / max(toolpath.point_count, 1)
+            seconds_per_point = (time.monotonic() - started) / max(toolpath.point_count, 1)
             progress.report(JOINTS, "joining the beads by rapid moves")
             motion, rapid_issues = assemble(
                 joint_path,
@@ -178,28 +184,28 @@ class JointPath(Stage):
                 toolpath.layer_height,
                 cylinders,
             )
-            near = (
+            margin_notes = (
                 ()
                 if not cylinders
                 else arm_issues(
                     motion, cell, toolpath, process, cylinders, (*joint_path.issues, *rapid_issues)
                 )
             )
-            notes = (*_not_kept(cell), *_not_known(cell), *_drawn_plain(cell), *_moved(cell))
-            found = (*joint_path.issues, *rapid_issues, *near)
-            if not has_errors(found):
+            notes = (*_not_kept(cell), *_not_known(cell), *_drawn_plain(cell), *_fit_notes(cell))
+            issues_found = (*joint_path.issues, *rapid_issues, *margin_notes)
+            if not has_errors(issues_found):
                 progress.report(TRYING, "looking for collisions of the arm")
-                found = (
-                    *found,
+                issues_found = (
+                    *issues_found,
                     *collision_issues(motion, cell, toolpath, process),
                     *margin_issues(motion, cell),
                 )
             issues = (
-                *found,
+                *issues_found,
                 *notes,
                 *_heights_as_run(joint_path, toolpath, process),
             )
-            asked = Tried(
+            tried = Tried(
                 lambda: toolpath,
                 job.settings,
                 job.folders,
@@ -213,9 +219,9 @@ class JointPath(Stage):
                 external_links=cell.external_links,
                 look=look,
             )
-            _tell_remedies(toolpath, issues, each)
+            _report_search_time(toolpath, issues, seconds_per_point)
             issues = (
-                *remedies(asked, joint_path, issues, lambda _, text: progress.report(TRYING, text)),
+                *remedies(tried, joint_path, issues, lambda _, text: progress.report(TRYING, text)),
                 *issues,
             )
             issues = (*issues, *payload.issues(motion, cell, toolpath, process))
@@ -230,20 +236,24 @@ class JointPath(Stage):
         return work
 
 
-def _tell_remedies(toolpath: Toolpath, issues: Sequence[Issue], each: float) -> None:
-    """Tell how long looking for what makes a job feasible takes, where that is long; each: s that a point took to plan."""
+def _report_search_time(
+    toolpath: Toolpath, issues: Sequence[Issue], seconds_per_point: float
+) -> None:
+    """Report how long the search for remedies takes, if long; seconds_per_point: planning time of
+    one point.
+    """
     from ..core.strategies import size
 
-    for issue in size.of_remedies(most_points(toolpath, issues), each, LONGEST_SEARCH):
-        progress.tell(issue)
+    for issue in size.of_remedies(most_points(toolpath, issues), seconds_per_point, LONGEST_SEARCH):
+        progress.report_issue(issue)
 
 
-def _moved(cell: cells.Cell) -> list[Issue]:
-    """A note on how well touched points tell where the part stands."""
+def _fit_notes(cell: cells.Cell) -> list[Issue]:
+    """A note on how well touched points determine the position of the part."""
     if cell.offset is None:
         return []
     residual, six = cell.offset.residual, cell.offset.six()
-    left, pose = (
+    residuals, pose = (
         ", ".join(f"{value:.{digits}g}" for value in values)
         for values, digits in ((residual, 3), (six, 7))
     )
@@ -256,7 +266,7 @@ def _moved(cell: cells.Cell) -> list[Issue]:
                 "left at the points: {} mm, {:.3g} mm in the mean of squares",
                 len(residual),
                 pose,
-                left,
+                residuals,
                 float(np.sqrt((residual**2).mean())),
             ),
         )
@@ -264,10 +274,10 @@ def _moved(cell: cells.Cell) -> list[Issue]:
 
 
 def _not_kept(cell: cells.Cell) -> list[Issue]:
-    """A note where there are obstacles that planning was not asked to keep links clear of."""
+    """A note if the cell has obstacles that planning does not keep links clear of."""
     if not cell.obstacles or cell.arm_clearance is not None or not cell.arrangement.links_known:
         return []
-    names = ", ".join(one.name for one in cell.obstacles)
+    names = ", ".join(obstacle.name for obstacle in cell.obstacles)
     return [
         Issue(
             NOTE,
@@ -282,7 +292,9 @@ def _not_kept(cell: cells.Cell) -> list[Issue]:
 
 
 def _not_known(cell: cells.Cell) -> list[Issue]:
-    """A note on positioners and tracks of which nothing is kept clear, for no file says what they are made of."""
+    """A note on positioners and tracks that take no part in collision checks, as no file has their
+    shape.
+    """
     if cell.external is None or not (
         lacking := ", ".join(of_unknown_shape(cell.external, cell.external_links))
     ):
@@ -301,7 +313,7 @@ def _not_known(cell: cells.Cell) -> list[Issue]:
 
 
 def _drawn_plain(cell: cells.Cell) -> list[Issue]:
-    """A note on what the URDF of a robot tells that was left out, such as meshes that cannot be drawn."""
+    """A note on content of a robot's URDF that was left out, such as meshes that cannot be drawn."""
     notes = cell.robot.remarks if cell.robot.controller_remark == UNKNOWN_REMARK else ()
     return (
         [Issue(NOTE, "URDF_LOOKS", Text("{}: {}", cell.robot.title, Text.joined("; ", notes)))]
@@ -313,11 +325,13 @@ def _drawn_plain(cell: cells.Cell) -> list[Issue]:
 def _heights_as_run(
     path: JointsOfBeads, toolpath: Toolpath, process: ProcessParameters
 ) -> list[Issue]:
-    """What a bead model predicts of the heights where beads are slowed, in place of what the toolpath told."""
+    """The heights that a bead model predicts where beads are slowed, in place of the toolpath's
+    prediction.
+    """
     model = None if toolpath.law is None else bead_table.process_model(process)
     if model is None or not any(issue.code == SLOWED for issue in path.issues):
         return []
-    beads = [one.bead for one in path.beads]
+    beads = [entry.bead for entry in path.beads]
     return [predicted.height_issue(beads, toolpath.layer_height, process, model, as_run=True)]
 
 

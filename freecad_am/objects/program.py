@@ -35,7 +35,9 @@ from .work import progress
 
 @dataclass(frozen=True)
 class Written:
-    """The result of a program: file name -> content, and how the read-back went (None where there is no post)."""
+    """The result of a program: file name -> content, and how the read-back went (None without a
+    post).
+    """
 
     files: dict[str, bytes]
     verification: verification.Verification | None
@@ -66,7 +68,7 @@ class Posted:
 
 
 class Program(Stage):
-    """Result: `Written`. Its cell, toolpath and process are those of the joint path."""
+    """Result: `Written`. Cell, toolpath and process come from the joint path."""
 
     kind = "program"
     sections = (Section(ProgramParameters, "program", "Program"),)
@@ -90,7 +92,7 @@ class Program(Stage):
         super().complete(obj)
 
     def job(self, obj: Any) -> Job:
-        """Read the inputs. Raises InputError and InfeasibleError where there is nothing to write."""
+        """Read the inputs. Raises InputError and InfeasibleError without valid inputs."""
         if not obj.ProgramName:
             raise InputError(
                 "NO_NAME", f"{obj.Label}.ProgramName", "the program has no name; give one"
@@ -112,7 +114,7 @@ class Program(Stage):
         job, label = self.job(obj), obj.Label
         if job.parameters.post == "none":
             return lambda: Outcome(Written({}, None), figures=(("Files", []),))
-        return lambda: _written(job, label)
+        return lambda: _write_program(job, label)
 
     def further_inputs(self, obj: Any) -> list[str]:
         return [obj.ProgramName]
@@ -133,10 +135,11 @@ class Program(Stage):
 
 
 def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramParameters) -> None:
-    """What can be refused before anything is planned: InputError WRONG_CONTROLLER, NOT_FOR_WRIST,
-    NO_PULSES, NO_SPEED_UNIT, NO_WIRE_OUTPUT,
-    UNSUPPORTED_FRAME and others of the post. A cell resolved without the feature's frame will do; an origin that is given by
-    numbers is then not looked at."""
+    """Reject unsuitable settings before planning: InputError WRONG_CONTROLLER, NOT_FOR_WRIST,
+    NO_PULSES, NO_SPEED_UNIT, NO_WIRE_OUTPUT, UNSUPPORTED_FRAME and others of the post. A cell
+    resolved without the feature's frame will do; an origin that is given by numbers is then not
+    checked.
+    """
     if parameters.post == "none":
         return
     post = catalogue.load(parameters.post)
@@ -204,17 +207,17 @@ def posted(job: Job) -> Posted:
     return Posted(cell, toolpath, _run(motion, parameters), program, post.write(program))
 
 
-def _written(job: Job, label: str) -> Outcome:
+def _write_program(job: Job, label: str) -> Outcome:
     """The files of a joint path, written and read back. InputError; InfeasibleError NOT_VERIFIED naming `label`."""
-    made = posted(job)
+    posted_job = posted(job)
     progress.report(0.5, "reading back and checking")
     checked = verification.verify(
-        made.cell,
-        made.motion,
-        made.program,
-        made.files,
+        posted_job.cell,
+        posted_job.motion,
+        posted_job.program,
+        posted_job.files,
         catalogue.load(job.parameters.post),
-        made.toolpath.chord_error,
+        posted_job.toolpath.chord_error,
     )
     if has_errors(checked.issues):
         raise InfeasibleError(
@@ -224,12 +227,14 @@ def _written(job: Job, label: str) -> Outcome:
             issues=tuple(checked.issues),
         )
     issues = (
-        *controllers.size_issues(made.toolpath, job.parameters),
-        *controllers.base_issues(made.cell.machine, job.parameters),
-        *controllers.machine_issues(made.cell, job.parameters),
+        *controllers.size_issues(posted_job.toolpath, job.parameters),
+        *controllers.base_issues(posted_job.cell.machine, job.parameters),
+        *controllers.machine_issues(posted_job.cell, job.parameters),
         *checked.issues,
     )
-    return Outcome(Written(made.files, checked), issues, (("Files", sorted(made.files)),))
+    return Outcome(
+        Written(posted_job.files, checked), issues, (("Files", sorted(posted_job.files)),)
+    )
 
 
 def _run(motion: Motion, parameters: ProgramParameters) -> Motion:
@@ -241,8 +246,9 @@ def _run(motion: Motion, parameters: ProgramParameters) -> Motion:
 
 
 def files_of(obj: Any) -> dict[str, bytes]:
-    """The controller's files of a program object. InputError 'NO_PROGRAM' when there are none, or when they do not fit the
-    document as it is now, saying why."""
+    """The controller's files of a program object. InputError 'NO_PROGRAM', with the reason, if
+    files are missing or do not fit the current document.
+    """
     template = "no program fits its inputs ({}); mend that and recompute it"
     if not obj.Key or obj.Status != UP_TO_DATE:
         raise InputError("NO_PROGRAM", obj.Label, template, reason_stale(obj) or obj.Status)

@@ -12,7 +12,7 @@ from typing import Any
 
 from .stage import CLASS_PROPERTY, Stage, stage_of
 
-_HERE = __name__.rpartition(".")[0] + "."
+_PACKAGE_PREFIX = __name__.rpartition(".")[0] + "."
 
 
 def revive(document: Any) -> None:
@@ -27,10 +27,10 @@ def revive(document: Any) -> None:
 def _stage_class(path: str) -> type[Stage] | None:
     """The stage of a class path, None unless it is one of ours."""
     module, _, name = path.rpartition(".")
-    if not module.startswith(_HERE):
+    if not module.startswith(_PACKAGE_PREFIX):
         return None
     try:
-        found = getattr(importlib.import_module(module), name, None)
+        candidate = getattr(importlib.import_module(module), name, None)
     except ImportError:
         return None
-    return found if isinstance(found, type) and issubclass(found, Stage) else None
+    return candidate if isinstance(candidate, type) and issubclass(candidate, Stage) else None

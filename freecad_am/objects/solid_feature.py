@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Any solids in a document, in layers of any kind: what to deposit, what it stands on, how it is cut and filled."""
+"""Any solids in a document, in layers of any kind: sources, substrate, layers and filling."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ..core.parameters.filled import SolidParameters
 from ..core.strategies import size
 from .checks.on_substrate import gap_issues
 from .results.fingerprints import fingerprint, shape_fingerprint
-from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, taken
+from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, snapshot_of
 from .shapes.chosen import FeatureStage, names_of, source_of
 from .shapes.meshes import is_mesh
 from .stage_parts import Link, Outcome, Section, Work
@@ -79,11 +79,11 @@ class SolidFeature(FeatureStage):
         strategy = self.parameters(obj, SolidParameters)
         self.parameters(
             obj, BuildDirectionParameters
-        )  # bad ones are told where they stand, not by the toolpath
-        objects = tuple(taken(one) for one in (source_of(obj)[0], *obj.Further))
-        ground = () if obj.Substrate is None else (taken(obj.Substrate),)
+        )  # bad values are reported here, not by the toolpath
+        objects = tuple(snapshot_of(entry) for entry in (source_of(obj)[0], *obj.Further))
+        ground = () if obj.Substrate is None else (snapshot_of(obj.Substrate),)
         fixtures, label = fixtures_of(obj), objects[0].label
-        guide = _picked(
+        guide = _select_elements(
             obj,
             "Guide",
             strategy,
@@ -95,7 +95,7 @@ class SolidFeature(FeatureStage):
                 )
             ),
         )
-        start = _picked(
+        start = _select_elements(
             obj,
             "StartFaces",
             strategy,
@@ -111,16 +111,16 @@ class SolidFeature(FeatureStage):
         def work() -> Outcome:
             solid: list[Body] = []
             issues: tuple[Issue, ...] = ()
-            for one in objects:
-                found = bodies_of(
-                    one.body() if one.shape is None else one.shape,
-                    one.label,
+            for entry in objects:
+                bodies_found = bodies_of(
+                    entry.body() if entry.shape is None else entry.shape,
+                    entry.label,
                     strategy.chord_error,
                     strategy.mend,
                     True,
                 )
-                solid += found.bodies
-                issues += found.issues
+                solid += bodies_found.bodies
+                issues += bodies_found.issues
             if strategy.layers == "along":
                 edges = None if guide is None else edges_of(*guide)
                 solids = prepare_guided(solid, edges, strategy, label, issues)
@@ -140,8 +140,8 @@ class SolidFeature(FeatureStage):
             height = max(
                 float(base.surface.distance(base.inside(body.vertices)).max()) for body in solid
             )
-            apart = gap_issues(label, solid, (), ground, strategy.layer_height)
-            solids = dataclasses.replace(solids, issues=(*solids.issues, *apart))
+            gap_notes = gap_issues(label, solid, (), ground, strategy.layer_height)
+            solids = dataclasses.replace(solids, issues=(*solids.issues, *gap_notes))
             return Outcome(
                 solids, (*solids.issues, *large), (("Solids", len(solid)), ("Height", height))
             )
@@ -159,7 +159,7 @@ class SolidFeature(FeatureStage):
         start = [shape_fingerprint(faces[0]), " ".join(faces[1])] if faces else []
         return [
             fingerprint(source_of(obj)[0]),
-            *(fingerprint(other) for other in obj.Further),
+            *(fingerprint(further) for further in obj.Further),
             "|",
             *ground,
             "|",
@@ -169,11 +169,13 @@ class SolidFeature(FeatureStage):
         ]
 
 
-def _picked(
+def _select_elements(
     obj: Any, name: str, strategy: SolidParameters, layers: tuple[str, ...], refusal: str
 ) -> tuple[Any, tuple[str, ...], str] | None:
-    """The shape that a link of a feature is of, the names of its faces or edges, none for all, and what it is called; None
-    where nothing is chosen. layers: those that have it; others are refused. InputError NOT_FOR_FAMILY, NO_SHAPE."""
+    """The linked shape of a feature, the names of its faces or edges (empty for all), and its
+    label; None if nothing is chosen. layers: kinds that use the link; others are rejected.
+    InputError NOT_FOR_FAMILY, NO_SHAPE.
+    """
     if not getattr(obj, name, None):
         return None
     if strategy.layers not in layers:

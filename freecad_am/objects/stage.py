@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What all stages share: parameters as properties, a stored result with the key of its inputs, a status.
+"""Common base of stages: parameters as properties, a stored result with the key of its inputs, a
+status.
 
 A stage is computed by `renew`, which raises the errors of the core; FreeCAD's recompute goes through `execute`, which
 turns them into the status, a message and one line on the console. Results are read back when first asked for.
@@ -55,8 +56,9 @@ class Stage(Stored):
     # ---- what a stage defines
 
     def prepare(self, obj: Any) -> Work:
-        """Read the inputs; the work that makes the result of them without the document. Both raise InputError and
-        InfeasibleError."""
+        """Read the inputs and return the work that makes the result without the document. Both
+        raise InputError and InfeasibleError.
+        """
         raise NotImplementedError
 
     def further_inputs(self, obj: Any) -> list[str]:
@@ -143,7 +145,8 @@ class Stage(Stored):
     # ---- computing
 
     def renew(self, obj: Any, force: bool = False) -> Any:
-        """Compute when an input differs from those of the stored result (or when forced) and store; the value.
+        """Compute and store if an input differs from the stored result's (or if forced); return the
+        value.
 
         Raises AmError; the object then says so and keeps its last result. Raises Cancelled, and keeps it too, when the
         user cancels, or when the object is gone by the time it is computed.
@@ -159,14 +162,18 @@ class Stage(Stored):
                 key = self.key(obj)
                 refused = obj.Status != INFEASIBLE and has_errors(
                     issues_of(obj)
-                )  # what is told is of other inputs
+                )  # the messages belong to other inputs
                 outdated = (force or refused or key != obj.Key) and self._compute(obj, key)
-            found = issues_of(obj)
+            issues_found = issues_of(obj)
             with self._own_changes():
                 if outdated:
                     say(obj, STALE, "an input changed while it was computed; recompute")
                 else:
-                    say(obj, INFEASIBLE if has_errors(found) else UP_TO_DATE, first_message(found))
+                    say(
+                        obj,
+                        INFEASIBLE if has_errors(issues_found) else UP_TO_DATE,
+                        first_message(issues_found),
+                    )
         except progress.Cancelled:
             if is_there(obj) and key != obj.Key:
                 with self._own_changes():
@@ -190,7 +197,7 @@ class Stage(Stored):
         return self.value(obj)
 
     def _compute(self, obj: Any, key: str) -> bool:
-        """Compute and store; whether the inputs are others by then."""
+        """Compute and store; return whether the inputs have changed meanwhile."""
         started, changes, label = time.perf_counter(), self.changes, obj.Label
         work = self.prepare(obj)
 
@@ -200,7 +207,7 @@ class Stage(Stored):
                 return outcome, *store.pack(outcome.value, key)
 
         try:
-            made = hooks.carry_out(packed, obj.Label)
+            packed_result = hooks.carry_out(packed, obj.Label)
         except AmError:
             if is_there(obj):
                 raise
@@ -208,7 +215,7 @@ class Stage(Stored):
         if not is_there(obj):
             raise progress.Cancelled
         with self._own_changes():
-            self._store(obj, *made, key, time.perf_counter() - started)
+            self._store(obj, *packed_result, key, time.perf_counter() - started)
         return self.changes != changes
 
     @contextlib.contextmanager
@@ -221,21 +228,22 @@ class Stage(Stored):
             self._busy = False
 
     def key(self, obj: Any) -> str:
-        """Fingerprint of all inputs. Raises InputError for a missing or failed one."""
-        return keys.of_inputs(self, obj, keys.of_all)
+        """Fingerprint of the inputs. Raises InputError for a missing or failed one."""
+        return keys.key_of_inputs(self, obj, keys.key_of_stage)
 
     def linked(self, obj: Any) -> dict[str, Any]:
-        """The linked stages by property name, lists of them where a link has many, checked: of the right kind, and
-        computed."""
+        """The linked stages by property name (lists for links to many), checked for the right kind
+        and a result.
+        """
         if missing := self.missing(obj):
             raise InputError("NO_INPUT", obj.Label, missing)
         return {link.name: checked(obj, link) for link in self.links if link.kind}
 
     def missing(self, obj: Any) -> str:
-        """What to do about a required input that is not there, '' when all are."""
+        """A remedy for a missing required input, '' if none is missing."""
         for link in self.links:
             if link.required and not getattr(obj, link.name):
-                return Text("{} is missing; choose {}", link.name, link.wanted)
+                return Text("{} is missing; choose {}", link.name, link.help_phrase)
             if broken := broken_link(getattr(obj, link.name)):
                 return _lost_link(obj, broken, link.name)
         return expressions.broken(obj)
@@ -251,15 +259,16 @@ class Stage(Stored):
         obj.Key = key  # last: views draw when it changes
 
     def say_failed(self, obj: Any, error: AmError) -> None:
-        """Say why it will fail, before what it waits for is computed."""
+        """Report why it will fail, before its inputs are computed."""
         with self._own_changes():
             say(obj, FAILED, error.sentence)
 
     # ---- called by FreeCAD
 
     def execute(self, obj: Any) -> None:
-        """Renew, and report what is wrong in the status and in one line on the console. What follows one that was
-        cancelled waits for it."""
+        """Renew, and report errors in the status and in one line on the console. Stages after a
+        cancelled one wait for it.
+        """
         self.was_run = True
         if _deferred:
             return
@@ -284,19 +293,21 @@ class Stage(Stored):
             for link in self.links
             if link.kind
         ]
-        return [one for some in linked for one in some if stage_of(one) is not None]
+        return [entry for entries in linked for entry in entries if stage_of(entry) is not None]
 
     def mustExecute(self, obj: Any) -> bool:
         """A stale stage is due at the next recompute, whatever made it stale; a failed one is tried again."""
         return obj.Status in (STALE, FAILED)
 
     def onChanged(self, obj: Any, name: str) -> None:
-        """Mark what follows as stale at once."""
+        """Mark dependent stages as stale at once."""
         if not self._busy and "Status" in obj.PropertiesList and name not in staleness.RESULTS:
             staleness.changed(obj, name)
 
     def onDocumentRestored(self, obj: Any) -> None:
-        """Migrate an old document, show a document that was made without a window, and tell what a copy lacks."""
+        """Migrate an old document, show a document that was made without a window, and report what
+        a copy lacks.
+        """
         with self._own_changes():
             self.complete(obj)
             if missing := self.missing(obj):
@@ -350,11 +361,14 @@ def stage_of(obj: Any) -> Stage | None:
 
 
 def checked(obj: Any, link: Link) -> Any:
-    """The linked stage, or a list of them: of the right kind, and computed; None without one. InputError BAD_INPUT,
-    INPUT_FAILED; InfeasibleError INPUT_INFEASIBLE."""
+    """The linked stage, or a list for a link to many, checked for the right kind and a result; None
+    without one. InputError BAD_INPUT, INPUT_FAILED; InfeasibleError INPUT_INFEASIBLE.
+    """
     linked = getattr(obj, link.name)
     return (
-        [_checked(obj, link, one) for one in linked] if link.many else _checked(obj, link, linked)
+        [_checked(obj, link, entry) for entry in linked]
+        if link.many
+        else _checked(obj, link, linked)
     )
 
 

@@ -32,7 +32,7 @@ class Link:
         return words[0].upper() + words[1:]
 
     @property
-    def wanted(self) -> str:
+    def help_phrase(self) -> str:
         """Its help within a sentence: 'the cell that runs it'."""
         return self.help[0].lower() + self.help[1:].rstrip(".")
 

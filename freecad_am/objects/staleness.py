@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Marks what follows a change as stale, at once and before any recompute."""
+"""Marks stages after a change as stale, at once and before any recompute."""
 
 from __future__ import annotations
 
@@ -63,7 +63,9 @@ def watch() -> None:
 
 
 class _Observer:
-    """FreeCAD tells a stage nothing when an object it links to changes, nor when that is moved by what it is nested in."""
+    """Needed because FreeCAD does not notify a stage when a linked object changes, or is moved by
+    its container.
+    """
 
     def slotChangedObject(self, obj: Any, name: str) -> None:
         if name in RESULTS or hasattr(obj, "ResultLayout") or not hasattr(obj, "InList"):
@@ -76,13 +78,16 @@ class _Observer:
             _mark_followers(obj)
 
     def slotBeforeRecomputeDocument(self, document: Any) -> None:
-        """What FreeCAD told nobody of, such as changes of frozen objects and files, counts in this recompute."""
+        """Include changes without a notification, such as of frozen objects and files, in the
+        recompute.
+        """
         _mark_outdated(document)
         _forget_runs(document)
 
     def slotRecomputedDocument(self, document: Any) -> None:
-        """FreeCAD does not run what follows an object that failed, such as a link to nothing: tell what is missing. Stages of
-        documents that link to this one wait for a recompute of their own."""
+        """FreeCAD does not run stages after a failed object, such as a link to nothing: report what
+        is missing. Stages of documents that link to `document` wait for a recompute of their own.
+        """
         for obj in document.Objects:
             if hasattr(obj, "ResultLayout") and obj.Status == STALE and obj.Proxy.missing(obj):
                 _mark(obj, "")
@@ -97,7 +102,7 @@ class _Observer:
 
 
 def _mark_followers(obj: Any) -> None:
-    """Mark what is made of an object, and of what it moves what stands elsewhere by now."""
+    """Mark stages made from an object, and moved stages in containers that it moves."""
     followers, placed = dependents_of(obj)
     for follower in followers:
         if hasattr(follower, "ResultLayout"):
@@ -111,8 +116,9 @@ def _mark_followers(obj: Any) -> None:
 
 
 def _mark_outdated(document: Any) -> list[Any]:
-    """Mark the stages of a document whose inputs are not those that their results were made from; those stages and what
-    follows them."""
+    """Mark the stages of a document whose inputs differ from their results' inputs; return them
+    with their followers.
+    """
     marked: dict[Any, None] = {}
     for obj in document.Objects:
         if hasattr(obj, "ResultLayout") and is_outdated(obj):
@@ -126,8 +132,9 @@ def _mark_outdated(document: Any) -> list[Any]:
 def _run_outdated(document: Any) -> None:
     """Run the stages that a recompute of a document left with results of other inputs.
 
-    FreeCAD may run a stage before an expression moves the container of its part, and 1.1 asks no stage again before a
-    recompute. Stages that FreeCAD is still to run, after a recompute of some objects alone, are left to that.
+    FreeCAD may run a stage before an expression moves the container of its part, and 1.1 asks no
+    stage again before a recompute. Stages that FreeCAD is still to run, after a recompute of only
+    some objects, are left to FreeCAD.
     """
     stages = [obj for obj in _mark_outdated(document) if obj.Document == document]
     for obj in sorted(stages, key=lambda stage: len(stage.OutListRecursive)):
@@ -143,23 +150,27 @@ def _forget_runs(document: Any) -> None:
 
 
 def is_outdated(obj: Any) -> bool:
-    """Whether a stage that says that it is up to date was made from other inputs than those of now."""
+    """Whether a stage with the status up-to-date was made from other inputs than the current ones."""
     if obj.Status != UP_TO_DATE or not obj.Key:
         return False
     try:
         return bool(obj.Proxy.key(obj) != obj.Key)
     except AmError:
-        return False  # what is wrong is told when it is recomputed
+        return False  # the recompute reports the error
 
 
 def _is_left_out(obj: Any) -> bool:
-    """Whether a stage is still stale after a recompute that did not run it, though nothing that it is made of stood against
-    that. FreeCAD 1.0 does so with frozen objects, and does not tell which these are."""
+    """Whether a stage is still stale after a recompute that did not run it, though none of its
+    inputs prevented it. FreeCAD 1.0 does so with frozen objects, and does not expose which these
+    are.
+    """
     if obj.Status != STALE or obj.Proxy.was_run:
         return False
     inputs = obj.OutListRecursive
-    waits = any(getattr(one, "Status", "") in (STALE, FAILED, INFEASIBLE) for one in inputs)
-    return not waits and not any("Invalid" in one.State for one in inputs)
+    waits = any(
+        getattr(stage_input, "Status", "") in (STALE, FAILED, INFEASIBLE) for stage_input in inputs
+    )
+    return not waits and not any("Invalid" in stage_input.State for stage_input in inputs)
 
 
 def _mark(obj: Any, cause: str) -> None:

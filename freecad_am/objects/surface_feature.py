@@ -14,7 +14,7 @@ from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import FRONTS, SurfaceParameters
 from ..core.strategies import size
 from .results.fingerprints import fingerprint
-from .shapes.bodies import FIXTURES, bodies, fixtures_of, taken
+from .shapes.bodies import FIXTURES, bodies, fixtures_of, snapshot_of
 from .shapes.chosen import FeatureStage, names_of, source_of
 from .stage_parts import Link, Outcome, Section, Work
 
@@ -59,11 +59,11 @@ class SurfaceFeature(FeatureStage):
         strategy = self.parameters(obj, SurfaceParameters)
         self.parameters(
             obj, BuildDirectionParameters
-        )  # bad ones are told where they stand, not by the toolpath
+        )  # bad values are reported here, not by the toolpath
         source, faces = source_of(obj)
-        substrates = () if obj.Substrate is None else (taken(obj.Substrate),)
-        part, label, edges, fixtures = (
-            taken(source),
+        substrates = () if obj.Substrate is None else (snapshot_of(obj.Substrate),)
+        source_body, label, edges, fixtures = (
+            snapshot_of(source),
             source.Label,
             _start_edges(obj),
             fixtures_of(obj),
@@ -76,7 +76,7 @@ class SurfaceFeature(FeatureStage):
                 "that is there before it, or none where the wall starts on the platform or from edges",
                 label,
             )
-        if part.shape is None and faces:
+        if source_body.shape is None and faces:
             raise InputError("UNKNOWN_FACE", label, "a mesh has no faces to choose; leave them out")
 
         def work() -> Outcome:
@@ -87,7 +87,9 @@ class SurfaceFeature(FeatureStage):
                     (ground[0] if substrate.shape is None else substrate.shape),
                     substrate.label,
                 )
-            shape = part.body() if part.shape is None else part.shape.copy(False)
+            shape = (
+                source_body.body() if source_body.shape is None else source_body.shape.copy(False)
+            )
             wall = wall_on(
                 shape,
                 faces,
@@ -102,15 +104,17 @@ class SurfaceFeature(FeatureStage):
             large = size.judged(size.of_wall(wall, strategy), strategy)
             depths = (
                 None
-                if part.shape is None
-                else face_depths(part.shape, wall.faces, label, ground[0] if ground else None)
+                if source_body.shape is None
+                else face_depths(
+                    source_body.shape, wall.faces, label, ground[0] if ground else None
+                )
             )
             wall = dataclasses.replace(
                 wall, surroundings=(*ground, *bodies(fixtures)), depths=depths
             )
             kind = (
                 "mesh"
-                if part.shape is None
+                if source_body.shape is None
                 else "patches"
                 if isinstance(wall, PatchWall)
                 else wall.kind
@@ -129,7 +133,9 @@ class SurfaceFeature(FeatureStage):
 
 
 def _start_edges(obj: Any) -> tuple[str, ...]:
-    """Names of the edges chosen. InputError 'BAD_EDGES' for those of another object, and for what is not an edge."""
+    """Names of the chosen edges. InputError 'BAD_EDGES' for edges of another object, and for other
+    elements.
+    """
     if not obj.StartEdges:
         return ()
     owner, names = obj.StartEdges[0], names_of(obj.StartEdges)

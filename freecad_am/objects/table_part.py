@@ -19,22 +19,24 @@ from ..core.issues import InputError, Word
 
 CSV, GCODE, ADA = "csv", "gcode", "ada3dp"
 _PROPERTY, _FORM = "Table", "TableForm"
-_LARGEST = 200  # MB
+_MAX_FILE_MB = 200  # MB
 _DRAWN = 0.1  # mm, chord error of arcs as they are seen
 
 
 @dataclass(frozen=True)
 class Points:
-    """What a file of points says: its form, CSV, GCODE or ADA, and its text; of ADA the bytes as base64."""
+    """The content of a file of points: its form, CSV, GCODE or ADA, and its text; for ADA the bytes
+    as base64.
+    """
 
     form: str
     text: str
 
     def read(self, label: str, chord_error: float, roles: str, rotary: str) -> ReadCurves:
-        """Its beads, arcs within the chord error (mm), and what of it is not read.
+        """Its beads, arcs within the chord error (mm), and the content that is not read.
 
-        roles, rotary: of G-code, as `gcode.read` has them. InputError BAD_TABLE, BAD_GCODE, BAD_ADA3DP; BAD_VALUE for roles
-        that are not there; NOT_USED for roles and rotary words of other files.
+        roles, rotary: for G-code, as in `gcode.read`. InputError BAD_TABLE, BAD_GCODE, BAD_ADA3DP;
+        BAD_VALUE for missing roles; NOT_USED for roles and rotary words with other files.
         """
         if self.form == GCODE:
             return gcode.read(self.text, label, chord_error, roles, rotary)
@@ -46,23 +48,23 @@ class Points:
 
 
 def open_points(document: Any, path: str) -> Any:
-    """A file of points as an object. InputError NO_FILE, BAD_FILE, and those of `Points.curves`."""
+    """A file of points as an object. InputError NO_FILE, BAD_FILE, and the errors of `Points.read`."""
     name = os.path.basename(path)
-    found = _read(path, name, POINT_FILES[os.path.splitext(name)[1].lower()])
-    curves = found.read(name, _DRAWN, gcode_roles.ALL, gcode.ANY_ROTARY).curves
-    part = document.addObject("Part::Feature", "Table")
-    part.Label = os.path.splitext(name)[0]
-    part.addProperty(
+    content = _read(path, name, POINT_FILES[os.path.splitext(name)[1].lower()])
+    curves = content.read(name, _DRAWN, gcode_roles.ALL, gcode.ANY_ROTARY).curves
+    table_object = document.addObject("Part::Feature", "Table")
+    table_object.Label = os.path.splitext(name)[0]
+    table_object.addProperty(
         "App::PropertyStringList", _PROPERTY, "Table", "The points as they were read.", 1
     )
-    setattr(part, _PROPERTY, found.text.splitlines())
-    if found.form != CSV:
-        part.addProperty("App::PropertyString", _FORM, "Table", "What the file is.", 1)
-        setattr(part, _FORM, found.form)
-    part.Shape = Part.Compound(
-        [Part.makePolygon([App.Vector(*row) for row in one.points.tolist()]) for one in curves]
+    setattr(table_object, _PROPERTY, content.text.splitlines())
+    if content.form != CSV:
+        table_object.addProperty("App::PropertyString", _FORM, "Table", "What the file is.", 1)
+        setattr(table_object, _FORM, content.form)
+    table_object.Shape = Part.Compound(
+        [Part.makePolygon([App.Vector(*row) for row in curve.points.tolist()]) for curve in curves]
     )
-    return part
+    return table_object
 
 
 def refuse_gcode_keys(label: str, roles: str, rotary: str) -> None:
@@ -80,7 +82,7 @@ def refuse_gcode_keys(label: str, roles: str, rotary: str) -> None:
 
 def _read(path: str, name: str, form: str) -> Points:
     try:
-        data = read_content(path, _LARGEST, "BAD_FILE", name)
+        data = read_content(path, _MAX_FILE_MB, "BAD_FILE", name)
         if form == GCODE:  # comments may be in any encoding; commands are ASCII, and read as such
             return Points(form, data.decode(errors="replace"))
         return Points(form, base64.encodebytes(data).decode() if form == ADA else data.decode())

@@ -18,13 +18,13 @@ from ..core.process.deposit import balance as deposit_balance
 from ..core.process.model import bead_table
 from ..core.strategies.sequence import BY_FEATURE, BY_HEIGHT
 from ..core.toolpath import Toolpath as CoreToolpath
-from .checks.on_its_part import looked_at
+from .checks.on_its_part import check_on_part
 from .fields import rows
 from .planned.in_sequence import member, planned_in_sequence
 from .planned.toolpaths import Given, planned, seen_of
-from .planned.upright import in_planes, with_remedy
+from .planned.upright import in_planes, try_remedy
 from .results import keys
-from .shapes.bodies import taken
+from .shapes.bodies import snapshot_of
 from .stage import Stage, stage_of
 from .stage_parts import Link, Outcome, Section, Work
 
@@ -42,7 +42,8 @@ LEANING = (
 class Toolpath(Stage):
     """Result: core.toolpath.Toolpath. Without a cell the nozzle has its default shape and there is no platform.
 
-    FeatureProcess: of several features, what differs of each one's process, as JSON by row key in inner values.
+    FeatureProcess: for several features, the differences of each one's process, as JSON by row key
+    in inner values.
     """
 
     kind = "toolpath"
@@ -92,11 +93,13 @@ class Toolpath(Stage):
         super().complete(obj)
 
     def key(self, obj: Any) -> str:
-        """As of any stage, but of its cell what `seen_of` leaves is all: where a part stands, and which machine deposits it,
-        is for joint paths. In a document from before, which fits yet, as of any stage."""
-        key = keys.of_inputs(self, obj, _input_key)
-        before = obj.Key not in ("", key) and obj.Key == super().key(obj)
-        return str(obj.Key) if before else key
+        """As for any stage, except that only the part of the cell left by `seen_of` counts:
+        position and machine concern joint paths. A document of an earlier version that still fits
+        keeps the key of any stage.
+        """
+        key = keys.key_of_inputs(self, obj, _input_key)
+        fits_old_key = obj.Key not in ("", key) and obj.Key == super().key(obj)
+        return str(obj.Key) if fits_old_key else key
 
     def prepare(self, obj: Any) -> Work:
         for following in obj.InList:
@@ -106,8 +109,8 @@ class Toolpath(Stage):
         linked = self.linked(obj)
         features = [linked["Feature"], *linked["Further"]]
         cell = _cell(obj)
-        given = [
-            _given(feature, process, cell)
+        inputs = [
+            _feature_inputs(feature, process, cell)
             for feature, process in zip(features, self.processes(obj), strict=True)
         ]
         fixed, look = self.fixed(obj), self._look(obj)
@@ -120,55 +123,61 @@ class Toolpath(Stage):
                     "leave it out, or deposit them one by one",
                 )
             members = [
-                member(feature, one, features) for feature, one in zip(features, given, strict=True)
+                member(feature, entry, features)
+                for feature, entry in zip(features, inputs, strict=True)
             ]
-            names = [tuple(one.Name for one in _sources(feature)) for feature in features]
+            names = [tuple(entry.Name for entry in _sources(feature)) for feature in features]
             order = obj.Sequence
             return lambda: _outcome(
-                with_remedy(look(planned_in_sequence(members, order, names)), fixed)
+                try_remedy(look(planned_in_sequence(members, order, names)), fixed)
             )
-        sources = tuple(taken(one) for one in _sources(features[0]))
+        sources = tuple(snapshot_of(entry) for entry in _sources(features[0]))
         fit = self._fit(obj)
 
         def work() -> Outcome:
-            made = planned(given[0]) if fit is None else planned(given[0], fit)
-            toolpath = looked_at(made, given[0], sources)
-            more = deposit_balance.issues(
+            planned_toolpath = planned(inputs[0]) if fit is None else planned(inputs[0], fit)
+            toolpath = check_on_part(planned_toolpath, inputs[0], sources)
+            balance_issues = deposit_balance.issues(
                 deposit_balance.toolpath_balance(
-                    given[0].wall, toolpath, given[0].process.bead_width
+                    inputs[0].wall, toolpath, inputs[0].process.bead_width
                 )
             )
-            other = in_planes(given[0], fit) if fixed is None else fixed
+            alternative = in_planes(inputs[0], fit) if fixed is None else fixed
             return _outcome(
-                with_remedy(
-                    look(dataclasses.replace(toolpath, issues=(*more, *toolpath.issues))), other
+                try_remedy(
+                    look(dataclasses.replace(toolpath, issues=(*balance_issues, *toolpath.issues))),
+                    alternative,
                 )
             )
 
         return work
 
     def targets(self, obj: Any) -> list[Target]:
-        """What each of its features is to deposit, for work that does not touch the document. InputError."""
+        """The target of each feature, for work that does not touch the document. InputError."""
         features = features_of(obj)
         cell = _cell(obj)
         from .checks.predicted_shape import Target
 
         return [
             Target(
-                _given(one, process, cell), tuple(map(taken, _sources(one))), tuple(one.Source[1])
+                _feature_inputs(feature, process, cell),
+                tuple(map(snapshot_of, _sources(feature))),
+                tuple(feature.Source[1]),
             )
-            for one, process in zip(features, self.processes(obj), strict=True)
+            for feature, process in zip(features, self.processes(obj), strict=True)
         ]
 
     def _look(self, obj: Any) -> Callable[[CoreToolpath], CoreToolpath]:
-        """What compares the predicted deposit with the part where an allowance is asked for; else nothing."""
+        """A function that compares the predicted deposit with the part if an allowance is set; else
+        the identity.
+        """
         allowance = self.parameters(obj, ProcessParameters).machining_allowance
         if allowance is None:
-            return lambda made: made
+            return lambda toolpath: toolpath
         from .checks import predicted_shape  # jobs without an allowance need none of it
 
         targets = self.targets(obj)
-        return lambda made: predicted_shape.with_shape_issues(made, targets, allowance)
+        return lambda toolpath: predicted_shape.add_shape_issues(toolpath, targets, allowance)
 
     def _fit(self, obj: Any) -> Callable[[CoreToolpath], CoreToolpath] | None:
         """What fits the layers to a scan; None without one. InputError."""
@@ -180,16 +189,16 @@ class Toolpath(Stage):
         return fit_of(obj, parameters)
 
     def processes(self, obj: Any) -> list[ProcessParameters]:
-        """The process of each feature. InputError for what of it no feature has of its own."""
+        """The process of each feature. InputError for parameters that a feature cannot override."""
         process = self.parameters(obj, ProcessParameters)
         texts = [*obj.FeatureProcess, *[""] * (1 + len(obj.Further))][: 1 + len(obj.Further)]
-        found = []
+        feature_processes = []
         for text in texts:
             try:
-                own = json.loads(text) if text else {}
+                own_values = json.loads(text) if text else {}
             except (ValueError, RecursionError):
-                own = None
-            if not isinstance(own, dict) or not set(own) <= set(OF_FEATURE):
+                own_values = None
+            if not isinstance(own_values, dict) or not set(own_values) <= set(OF_FEATURE):
                 raise InputError(
                     "BAD_VALUE",
                     f"{obj.Label}.FeatureProcess",
@@ -197,40 +206,48 @@ class Toolpath(Stage):
                     text,
                     ", ".join(OF_FEATURE),
                 )
-            found.append(
-                rows.build(ProcessParameters, {**rows.flat(process), **own}) if own else process
+            feature_processes.append(
+                rows.build(ProcessParameters, {**rows.flat(process), **own_values})
+                if own_values
+                else process
             )
-        return found
+        return feature_processes
 
     def fixed(self, obj: Any) -> Fixed | None:
-        """The toolpath with one build direction, the axis of the part, made anew without the document; None where it has
-        that, and without walls. Of several features those alone are changed."""
+        """A function that plans the toolpath with one build direction, the axis of the part,
+        without the document; None if it has one already, and without walls. With several features
+        only the walls are changed.
+        """
         from ..core.planning.tried import Fixed
 
         features = features_of(obj)
-        shapes = [stage_of(one) for one in features]
+        shapes = [stage_of(entry) for entry in features]
         if not features or None in shapes:
             return None
         turned = [
             strategy_of(shape) in LEANING
-            and shape.parameters(one, BuildDirectionParameters).mode != FIXED
-            for one, shape in zip(features, shapes, strict=True)
+            and shape.parameters(entry, BuildDirectionParameters).mode != FIXED
+            for entry, shape in zip(features, shapes, strict=True)
         ]
         if not any(turned):
             return None
         process = self.parameters(obj, ProcessParameters)
         carried = _cell(obj)
         if len(features) > 1:
-            made = [
-                _given(one, own, carried)
-                for one, own in zip(features, self.processes(obj), strict=True)
+            inputs_of_features = [
+                _feature_inputs(entry, feature_process, carried)
+                for entry, feature_process in zip(features, self.processes(obj), strict=True)
             ]
-            made = [_upright(one) if turn else one for one, turn in zip(made, turned, strict=True)]
+            inputs_of_features = [
+                _upright(entry) if turn else entry
+                for entry, turn in zip(inputs_of_features, turned, strict=True)
+            ]
             members = [
-                member(one, given, features) for one, given in zip(features, made, strict=True)
+                member(entry, inputs, features)
+                for entry, inputs in zip(features, inputs_of_features, strict=True)
             ]
             names, order = (
-                [tuple(one.Name for one in _sources(feature)) for feature in features],
+                [tuple(entry.Name for entry in _sources(feature)) for feature in features],
                 obj.Sequence,
             )
             fixed = (
@@ -245,43 +262,50 @@ class Toolpath(Stage):
         build, fit = shape.parameters(feature, BuildDirectionParameters), self._fit(obj)
 
         def make() -> CoreToolpath:
-            given = _upright(Given(wall(), strategy, build, process, carried))
-            return planned(given) if fit is None else planned(given, fit)
+            inputs = _upright(Given(wall(), strategy, build, process, carried))
+            return planned(inputs) if fit is None else planned(inputs, fit)
 
         return Fixed("`build_direction.mode: fixed`", make)
 
     def own_speeds(self, obj: Any) -> tuple[bool, ...]:
-        """Of several features, whether each has a travel speed of its own; of one nothing."""
+        """For several features, whether each has its own travel speed; empty for one feature."""
         if not obj.Further:
             return ()
         speed = self.parameters(obj, ProcessParameters).travel_speed
-        return tuple(one.travel_speed != speed for one in self.processes(obj))
+        return tuple(
+            feature_process.travel_speed != speed for feature_process in self.processes(obj)
+        )
 
     def further_inputs(self, obj: Any) -> list[str]:
         processes = self.processes(obj)
-        models = [bead_table.load(one.bead_model) for one in processes if one.bead_model != "none"]
+        models = [
+            bead_table.load(feature_process.bead_model)
+            for feature_process in processes
+            if feature_process.bead_model != "none"
+        ]
         sequence = [obj.Sequence, *obj.FeatureProcess] if obj.Further else []
         return [*map(repr, models), *sequence]
 
 
 def own_process(process: ProcessParameters, of_job: ProcessParameters) -> str:
-    """What of a feature's process differs from that of the job, as FeatureProcess has it. InputError for what no feature has
-    of its own."""
+    """The differences of a feature's process from the job's, in the form of FeatureProcess.
+    InputError for parameters that a feature cannot override.
+    """
     job = rows.flat(of_job)
-    own = {key: value for key, value in rows.flat(process).items() if value != job[key]}
-    shared = sorted(set(own) - set(OF_FEATURE))
+    differences = {key: value for key, value in rows.flat(process).items() if value != job[key]}
+    shared = sorted(set(differences) - set(OF_FEATURE))
     if shared:
         raise InputError(
             "NOT_FOR_FEATURE",
             f"process.{shared[0]}",
             "it holds for the whole program, not for one of its features; give it at the top level",
         )
-    return json.dumps(own) if own else ""
+    return json.dumps(differences) if differences else ""
 
 
 def features_of(obj: Any) -> list[Any]:
     """The feature objects of a toolpath object, in their order."""
-    return [one for one in (obj.Feature, *obj.Further) if one is not None]
+    return [feature for feature in (obj.Feature, *obj.Further) if feature is not None]
 
 
 def strategy_of(feature: Stage) -> type:
@@ -296,7 +320,9 @@ def _sources(feature: Any) -> tuple[Any, ...]:
 
 def _input_key(link: str, linked: Any) -> str:
     return (
-        repr(seen_of(linked.Proxy.value(linked))) if link == "Cell" else keys.of_all(link, linked)
+        repr(seen_of(linked.Proxy.value(linked)))
+        if link == "Cell"
+        else keys.key_of_stage(link, linked)
     )
 
 
@@ -305,7 +331,7 @@ def _cell(obj: Any) -> CellParameters | None:
     return None if obj.Cell is None else seen_of(obj.Cell.Proxy.value(obj.Cell))
 
 
-def _given(feature: Any, process: ProcessParameters, cell: CellParameters | None) -> Given:
+def _feature_inputs(feature: Any, process: ProcessParameters, cell: CellParameters | None) -> Given:
     shape = stage_of(feature)
     assert shape is not None
     strategy, build = (
@@ -315,9 +341,9 @@ def _given(feature: Any, process: ProcessParameters, cell: CellParameters | None
     return Given(shape.value(feature), strategy, build, process, cell)
 
 
-def _upright(given: Given) -> Given:
+def _upright(inputs: Given) -> Given:
     """The same with the axis of the part as its one build direction."""
-    return dataclasses.replace(given, build=dataclasses.replace(given.build, mode=FIXED))
+    return dataclasses.replace(inputs, build=dataclasses.replace(inputs.build, mode=FIXED))
 
 
 def _outcome(toolpath: CoreToolpath) -> Outcome:

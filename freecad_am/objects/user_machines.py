@@ -20,26 +20,31 @@ FOLDER = os.path.join("RoboticAM", "machines")
 _travelled: tuple[str, ...] | None = None  # folders of the machine that a job has come from
 
 
-def travelled(named: tuple[str, ...]) -> None:
-    """From now on `folders` are those of another machine, whose files are copies (`core.geometry.located`)."""
+def use_folders(named: tuple[str, ...]) -> None:
+    """Make `folders` return the folders of another computer, whose files are copies
+    (`core.geometry.located`).
+    """
     global _travelled
     _travelled = named
 
 
 def folders() -> tuple[str, ...]:
-    """Folders with the user's machine files, those that exist."""
+    """Existing folders with the user's machine files."""
     if _travelled is not None:
         return _travelled
-    own = os.path.join(App.getUserAppDataDir(), FOLDER)
+    own_folder = os.path.join(App.getUserAppDataDir(), FOLDER)
     return tuple(
-        folder for folder in (own, preferences.machine_folder()) if preferences.existing(folder)
+        folder
+        for folder in (own_folder, preferences.machine_folder())
+        if preferences.existing(folder)
     )
 
 
 def save(name: str, text: str) -> str:
-    """Write the text of a machine file as that of a machine of this id; the path. It is there whole or not at all.
+    """Write the text of a machine file under an id; return the path. The file is written completely
+    or not at all.
 
-    Raises InputError NOT_WRITTEN where it cannot be written, or where there is a machine of that id already.
+    Raises InputError NOT_WRITTEN if it cannot be written, or if the id is already taken.
     """
     folder = os.path.join(App.getUserAppDataDir(), FOLDER)
     path = os.path.join(folder, f"{name}.json")
@@ -63,13 +68,15 @@ def save(name: str, text: str) -> str:
 
 
 def files_of(name: str) -> list[str]:
-    """The user's files that a machine given by its id or by a path is made of; none of a built-in or unknown one."""
+    """The user's files of a machine given by its id or by a path; empty for a built-in or unknown
+    one.
+    """
     measured = calibration.named(name)
     if measured is not None:
         return [*files_of(measured.machine), *([measured.file] if is_there(measured.file) else [])]
-    meant = urdf_reference.reference(name)
+    reference = urdf_reference.reference(name)
     candidates = [
-        name if meant is None else meant.file,
+        name if reference is None else reference.file,
         *(os.path.join(folder, f"{name}.json") for folder in folders()),
     ]
     return [path for path in candidates if is_there(path)][:1]

@@ -298,7 +298,7 @@ def test_what_the_job_at_hand_would_need_is_entered_whole_or_told(
         torch = settings.setup == "tool-on-robot"
         return replace(settings, external=POSITIONER, branch="auto") if torch else settings
 
-    monkeypatch.setattr(cell_panel.suited_cell, "of_toolpath", lambda toolpath: suited)
+    monkeypatch.setattr(cell_panel.suited_cell, "suit_to_toolpath", lambda toolpath: suited)
     label = planned[1].Label
     person.click("RoboticAM_Cell")
     panel = person.panel(PANEL)

@@ -12,7 +12,7 @@ from freecad_am.gui.registry import edit
 from freecad_am.gui.tools.commands import GROUPS
 from freecad_am.objects.job_group import is_group
 from freecad_am.objects.planned.proposed_family import proposed
-from freecad_am.objects.shapes.bodies import taken
+from freecad_am.objects.shapes.bodies import snapshot_of
 from tests.gui.nested_cone import nested_cone
 
 EXAMPLES = Path(__file__).resolve().parent.parent.parent / "resources" / "examples"
@@ -208,7 +208,7 @@ def test_what_is_proposed_is_what_jobs_of_kind_auto_get(person):
             f"a proposal for {name}",
             30,
         )
-        auto = proposed(taken(part), (), None, False, 8.0, True)
+        auto = proposed(snapshot_of(part), (), None, False, 8.0, True)
         assert auto.reason.split(" (")[0].split(";")[0] in person.field(panel, "reason").text()
         told[name] = person.field(panel, "Kind").currentText()
     assert told == {

@@ -219,11 +219,11 @@ def test_progress_is_told_and_may_cancel(job):
 
 def test_what_is_found_on_the_way_is_told():
     issue, told = Issue("note", "LARGE", "it takes long"), []
-    progress.tell(issue)
+    progress.report_issue(issue)
     with api.told_to(lambda fraction, text: None, told.append):
-        progress.tell(issue)
+        progress.report_issue(issue)
         with api.told_to(lambda fraction, text: None):
-            progress.tell(issue)
+            progress.report_issue(issue)
     assert told == [issue]
 
 

@@ -17,7 +17,7 @@ def made(monkeypatch):
     monkeypatch.setattr(fingerprints, "_shapes", [])
     monkeypatch.setattr(fingerprints, "_meshes", {})
     found = []
-    for name in ("_of_shape", "body_of"):
+    for name in ("_shape_text", "body_of"):
         own = getattr(fingerprints, name)
         monkeypatch.setattr(
             fingerprints, name, lambda source, own=own: (found.append(source), own(source))[1]

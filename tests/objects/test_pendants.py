@@ -39,7 +39,7 @@ def test_what_scipy_says_is_read_and_shown(controller):
         )
         assert found[:3] == (10.5, -20.0, 300.0)
         assert np.abs(frames.bryant(found)[:3, :3] - turn.as_matrix()).max() < 1e-12
-        again = pendants.shown(controller, found)
+        again = pendants.pendant_values(controller, found)
         assert again[:3] == found[:3]
         back = pendants.six([controller, *(f"{number:.17g}" for number in again)], "here")
         assert np.abs(frames.bryant(back)[:3, :3] - turn.as_matrix()).max() < 1e-9
@@ -110,8 +110,12 @@ def test_numbers_that_posts_write_and_pendants_show_are_the_same_ones():
         six = (1.0, 2.0, 3.0, *frames.to_bryant(turn.as_matrix()))
         place = np.array([[1.0, 2.0, 3.0]])
         np.testing.assert_allclose(
-            pendants.shown("kuka", six), krl.frames(place, turn.as_matrix()[None])[0], atol=1e-4
+            pendants.pendant_values("kuka", six),
+            krl.frames(place, turn.as_matrix()[None])[0],
+            atol=1e-4,
         )
         np.testing.assert_allclose(
-            pendants.shown("fanuc", six), tp.poses(place, turn.as_matrix()[None])[0], atol=1e-3
+            pendants.pendant_values("fanuc", six),
+            tp.poses(place, turn.as_matrix()[None])[0],
+            atol=1e-3,
         )

@@ -80,7 +80,7 @@ def test_a_fitted_wall_is_held_against_its_faces_once_it_is_fitted(doc, tmp_path
         made = api.make_toolpath(doc, feature, scan=scan)
         (promise,) = [
             one
-            for one in preflight.of_stages(made)
+            for one in preflight.stage_preflight(made)
             if one.promise == "What is deposited lies on the part"
         ]
         return api.result(made), promise

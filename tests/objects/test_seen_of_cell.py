@@ -74,7 +74,7 @@ def test_a_document_from_before_fits_until_its_cell_changes(stages, tmp_path, mo
     with monkeypatch.context() as before:
         before.setattr(Toolpath, "key", Stage.key)
         api.recompute(toolpath.Document, force=True)
-    assert toolpath.Key == keys.of_inputs(toolpath.Proxy, toolpath, keys.of_all)
+    assert toolpath.Key == keys.key_of_inputs(toolpath.Proxy, toolpath, keys.key_of_stage)
     toolpath.Document.saveAs(str(tmp_path / "before.FCStd"))
     App.closeDocument(toolpath.Document.Name)
     again = App.openDocument(str(tmp_path / "before.FCStd"))

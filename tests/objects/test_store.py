@@ -63,17 +63,17 @@ def test_parts_alone_are_those_of_the_whole(seed):
         ("layers", 0, "beads"),
         ("frame",),
     )
-    parts = store.picked(*store.pack(path, "k"), "k", "x", *places)
+    parts = store.unpack_parts(*store.pack(path, "k"), "k", "x", *places)
     assert equal(
         parts, (path.layers[-1].beads[-1].points, 1.0, path, path.layers[0].beads, path.frame)
     )
-    alone = store.picked(
+    alone = store.unpack_parts(
         *store.pack(path, "k"), "k", "x", *places[:2], *places[3:]
     )  # where nothing asks for the whole
     assert equal(alone, (*parts[:2], *parts[3:]))
     for wrong in (("height",), ("layers", 9), ("layer_height", 0)):
         with pytest.raises(InputError, match="cannot be read"):
-            store.picked(*store.pack(path, "k"), "k", "x", wrong)
+            store.unpack_parts(*store.pack(path, "k"), "k", "x", wrong)
 
 
 @pytest.mark.parametrize("length", [0, 1, 5, 6, 7, 1000, 100_003])
@@ -144,7 +144,7 @@ def test_no_module_is_named_in_a_document():
 def test_every_schema_has_its_class():
     for name, schema in schemas.SCHEMAS.items():
         kind = schemas.class_of(name)
-        assert dataclasses.is_dataclass(kind) and schemas.of_class(kind) == (name, schema)
+        assert dataclasses.is_dataclass(kind) and schemas.schema_of_class(kind) == (name, schema)
 
 
 def test_a_class_that_is_renamed_and_changed_reads_what_was_stored_before(monkeypatch):
@@ -240,7 +240,7 @@ def test_a_table_that_says_it_is_huge_is_damaged():
     assert huge != text
     for places in ((), (("layers", 0, "beads", 0, "points"),)):
         with pytest.raises(InputError, match="cut short"):
-            store.picked(floats, huge, "k", "x", *places, ())
+            store.unpack_parts(floats, huge, "k", "x", *places, ())
 
 
 def test_parts_of_two_results_do_not_pass_for_one():

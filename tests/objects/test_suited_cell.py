@@ -129,7 +129,7 @@ def test_what_is_proposed_is_named_as_the_panel_names_it(doc, monkeypatch):
     monkeypatch.setattr(suit, "App", types.SimpleNamespace(Console=console))
     monkeypatch.setattr(
         suit.suited_cell,
-        "of_toolpath",
+        "suit_to_toolpath",
         lambda *_: lambda cell: dataclasses.replace(cell, platform=7.0, arm_clearance=3.0),
     )
     cell = api.make_cell(doc)

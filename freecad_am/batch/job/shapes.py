@@ -14,7 +14,7 @@ from freecad_am.brep.shapes.overlap import touching
 from freecad_am.core.issues import NOTE, InputError, Issue
 from freecad_am.core.parameters.inspection import NONE as AS_MEASURED
 from freecad_am.core.strategies.families import NONE, family_of
-from freecad_am.objects.shapes.bodies import taken
+from freecad_am.objects.shapes.bodies import snapshot_of
 
 from .features import UPRIGHT, about_feature, chosen, leans, planes_of
 from .job import Job
@@ -76,9 +76,9 @@ class Shapes:
         try:
             planes = planes_of(self.of)
             found = proposed(
-                taken(self.part),
+                snapshot_of(self.part),
                 self.faces,
-                None if ground is None else taken(ground),
+                None if ground is None else snapshot_of(ground),
                 bool(self.of.part.start_edges),
                 self.of.process.bead_width,
                 self.job.cell is not None,

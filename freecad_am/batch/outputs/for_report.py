@@ -25,7 +25,7 @@ def results(stages: Any, programs: Sequence[str]) -> Any:
         stages.issues,
         programs,
         lambda: survey().distances,
-        lambda: preflight.of_stages(stages.toolpath, path, stages.program, survey),
+        lambda: preflight.stage_preflight(stages.toolpath, path, stages.program, survey),
     )
 
 

@@ -175,7 +175,11 @@ class ProposingPanel(PreviewPanel):
             return
         with contextlib.suppress(AmError):
             draft = Draft(self.proxy, self.document, self.draft, self._links(), self._values())
-            made, suited, label = draft.prepare(), suited_cell.of_toolpath(toolpath), toolpath.Label
+            made, suited, label = (
+                draft.prepare(),
+                suited_cell.suit_to_toolpath(toolpath),
+                toolpath.Label,
+            )
             entered = self._all_held()
 
             def work() -> tuple[dict[str, Any], dict[str, Any]]:

@@ -14,7 +14,7 @@ from ...core.parameters.filled import DevelopableParameters
 from ...core.process.deposit import balance as deposit_balance
 from ...objects.developable_feature import found_in
 from ...objects.planned.proposed_family import COARSE
-from ...objects.shapes.bodies import Taken, taken
+from ...objects.shapes.bodies import Taken, snapshot_of
 from .proposal import DEVELOPABLE, REVOLUTION, SURFACE, JobProposal
 
 
@@ -22,10 +22,10 @@ def left_out(found: JobProposal, width: float) -> Callable[[], tuple[Issue, ...]
     """The work, which touches no document, that finds what of the part would not be deposited as it is understood, by beads
     of a width, mm.
     What refuses the job is told by who makes it."""
-    parts, ground = [taken(pick.obj) for pick in found.parts], found.ground
+    parts, ground = [snapshot_of(pick.obj) for pick in found.parts], found.ground
     names = found.parts[0].names
     own = ground is not None and ground.obj == found.parts[0].obj
-    under = None if ground is None or own else taken(ground.obj)
+    under = None if ground is None or own else snapshot_of(ground.obj)
 
     def work() -> tuple[Issue, ...]:
         try:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ...core.parameters.filled import GEODESIC, PLANES
 from ...objects.planned.proposed_family import Proposal, proposed, stands_on_hub
-from ...objects.shapes.bodies import Taken, global_shape, taken
+from ...objects.shapes.bodies import Taken, global_shape, snapshot_of
 from ..picking import picking
 from ..picking.picking import Pick
 from ..texts.translation import tr, translated
@@ -200,5 +200,5 @@ def _with_edges(pick: Pick) -> Pick:
 
 def _looked_at(pick: Pick) -> Taken:
     """What an object is now; a copy, as the window draws the original, maybe at the very moment it is looked at."""
-    found = taken(pick.obj)
+    found = snapshot_of(pick.obj)
     return found if found.shape is None else Taken(found.label, found.shape.copy(False))

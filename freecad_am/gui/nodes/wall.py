@@ -12,7 +12,7 @@ from pivy import coin
 from freecad_am.core.types import Array
 
 from ...core.issues import InputError
-from ...objects.shapes.bodies import Taken, taken
+from ...objects.shapes.bodies import Taken, snapshot_of
 from .lines import DASHED, Faces, Lines
 
 COLOUR = (0.96, 0.47, 0.0)
@@ -65,7 +65,7 @@ class WallNodes:
     def set_faces(self, source: Any, names: Sequence[str]) -> None:
         """Tint faces of an object, all where none are named; nothing where it has none such now."""
         try:
-            found = drawn(taken(source), names)
+            found = drawn(snapshot_of(source), names)
         except InputError:  # the shape is not read yet
             found = NONE
         self.faces.set(*found)

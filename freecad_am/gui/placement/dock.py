@@ -16,7 +16,7 @@ from ...core.parameters.place import PlaceParameters
 from ...core.placement.place import Placed
 from ...core.placement.reach import Reach, reach
 from ...objects import user_machines
-from ...objects.checks.placed import Placing, given, placing_of
+from ...objects.checks.placed import Placing, change_parameters, placing_of
 from ...objects.fields.shown_units import in_user_units
 from ...objects.work import progress
 from ...objects.work.progress import Cancelled
@@ -107,13 +107,13 @@ class PlacementDock:
             self._name_buttons()
             return
         try:
-            parameters: PlaceParameters = given(None, self.form.values())
+            parameters: PlaceParameters = change_parameters(None, self.form.values())
             self.placing = placing_of(self.obj)
         except (AmError, ReferenceError) as error:
             self.form.tell(translated_error(error), True)
             return
         placing = self.placing
-        self.work.start(lambda: placing.placed(parameters))
+        self.work.start(lambda: placing.search_poses(parameters))
         self._name_buttons()
 
     def _judged(self, found: Placed | None) -> None:

@@ -9,7 +9,7 @@ from PySide import QtCore, QtGui
 
 from ...core.parameters.place import SIDES, PlaceParameters
 from ...core.placement.place import Placed
-from ...objects.checks.placed import given
+from ...objects.checks.placed import change_parameters
 from ...objects.fields.rows import flat, rows
 from ..colours import PLAIN, WRONG, set_role
 from ..texts.translation import tr
@@ -28,7 +28,7 @@ class Form(QtGui.QWidget):
         column = QtGui.QVBoxLayout(self)
         self.fields: dict[str, fields.Field] = {}
         box, more = Fold(tr("Poses to try"), True), Fold(tr("More"), False)
-        current = flat(given(None, values))
+        current = flat(change_parameters(None, values))
         for row in rows(PlaceParameters):
             field = fields.make(row, current[row.key], None, "", SECTION)
             self.fields[row.key] = field

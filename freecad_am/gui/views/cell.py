@@ -122,7 +122,7 @@ def _of_toolpath(obj: Any, *places: Place) -> Any:
     toolpath = toolpath_of(obj)
     if toolpath is not None:
         with contextlib.suppress(InputError):  # within undo
-            return stage_of(toolpath).picked(toolpath, *places)
+            return stage_of(toolpath).parts(toolpath, *places)
     return None
 
 

@@ -197,7 +197,7 @@ def _toolpath_of(obj: Any) -> Any:
 
 def _layer_height(obj: Any) -> float:
     """Of the toolpath, which is not read for it. InputError as `_toolpath_of`."""
-    return float(_linked(obj).Proxy.picked(obj.Toolpath, ("layer_height",))[0])
+    return float(_linked(obj).Proxy.parts(obj.Toolpath, ("layer_height",))[0])
 
 
 def _known_layer_height(obj: Any) -> float:

@@ -54,7 +54,7 @@ class PendantLine:
             InputError, TypeError, ValueError
         ):  # a field holds an expression, or nothing
             x, y, z, *angles = self.read()
-            numbers = pendants.shown(controller, (x, y, z, *map(math.radians, angles)))
+            numbers = pendants.pendant_values(controller, (x, y, z, *map(math.radians, angles)))
             text = " ".join(
                 f"{number + 0.0:.{3 if k < 3 else pendant.digits}f}"
                 for k, number in enumerate(numbers)

@@ -24,7 +24,7 @@ from ...core.issues import InputError, Text, Word
 from ...objects.fields.expressions import MARK, is_expression
 from ...objects.fields.rows import plain_blanks
 from ...objects.fields.rows import quantity as quantity_of
-from ...objects.fields.shown_units import feet_and_inches, field_text, without_noise
+from ...objects.fields.shown_units import feet_and_inches, field_text, round_conversion
 from ..signals import connect
 from ..texts.translation import tr
 
@@ -188,7 +188,7 @@ class QuantityField:
         except InputError:
             return
         if not isinstance(number, str):
-            self.show(without_noise(number + steps * self.per_bare))
+            self.show(round_conversion(number + steps * self.per_bare))
 
     def _number(self, text: str) -> float:
         locale = self.box.locale()
@@ -218,7 +218,7 @@ class QuantityField:
         if not (is_bare or quantity.Unit == self.dimension) or not math.isfinite(quantity.Value):
             raise self._wrong(text, Text("give a quantity in {}", self.shown_unit))
         if is_bare:
-            return without_noise(float(quantity.Value) * self.per_bare)
+            return round_conversion(float(quantity.Value) * self.per_bare)
         return float(quantity.getValueAs(self.unit))
 
     def _wrong(self, text: str, remedy: str) -> InputError:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What of a planned job is in something else, arm or platform, and how near its axes come to their limits: findings of every
-joint path, whether or not planning kept clearances."""
+"""Collisions of a planned job with arm or platform, and the margins of its axes: findings of every
+joint path, whether or not planning kept clearances.
+"""
 
 from __future__ import annotations
 
@@ -37,15 +38,17 @@ LEAST_MARGIN = 0.5  # deg or mm to a limit, below which it is reported; as Simul
 def collision_issues(
     motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters
 ) -> list[Issue]:
-    """The errors about what the arm, on the whole motion, and the platform are in, and warnings and notes about
-    what links that are drawn from the kinematics alone come near. None for machines of whose links no file tells enough."""
+    """Errors about collisions of the arm, on the whole motion, and of the platform, and warnings
+    and notes about links that are drawn only from the kinematics. Empty for machines whose links no
+    file describes well enough.
+    """
     if not cell.arrangement.links_known:
         return []
     width = toolpath.bead_width or process.bead_width
     deposit = deposit_obstacles(motion, width, toolpath.layer_height)
-    found = in_platform(cell, toolpath, WARNING)
+    issues = in_platform(cell, toolpath, WARNING)
     joints, row, _ = places(motion.joints, None, tracks_of(cell))
-    before = np.cumsum(motion.deposit) - motion.deposit
+    deposited_before = np.cumsum(motion.deposit) - motion.deposit
     shapes = meshes_of(cell.machine)
     collisions = arm_collisions(
         cell,
@@ -53,25 +56,38 @@ def collision_issues(
         toolpath.surroundings,
         deposit,
         joints,
-        before[row],
+        deposited_before[row],
         [shape is not None for shape in shapes],
     )
-    return [*found, *(_arm_issue(one, motion, row[one.rows], len(joints)) for one in collisions)]
+    return [
+        *issues,
+        *(
+            _arm_issue(collision, motion, row[collision.rows], len(joints))
+            for collision in collisions
+        ),
+    ]
 
 
 def look(path: JointPath, cell: Cell, toolpath: Toolpath) -> list[Issue]:
-    """The collisions of a joint path, maybe of some layers of a toolpath alone, at the points of its beads."""
+    """The collisions of a joint path, maybe of only some layers of a toolpath, at the points of its
+    beads.
+    """
     if not cell.arrangement.links_known:
         return []
-    found = in_platform(cell, toolpath)
-    if found:
-        return found
+    platform_issues = in_platform(cell, toolpath)
+    if platform_issues:
+        return platform_issues
     beads = [bead for _, _, bead in toolpath]
     width = toolpath.bead_width or toolpath.layer_height
     deposit = Beads.of(beads, width, toolpath.layer_height).solid(LINK_GRAIN)
     counts = np.cumsum([0, *(len(bead) for bead in beads)])
-    first = {(layer, index): int(n) for (layer, index, _), n in zip(toolpath, counts, strict=False)}
-    moment = [first.get((one.layer, one.index), first[one.layer, 0]) for one in path.beads]
+    start_index = {
+        (layer, index): int(n) for (layer, index, _), n in zip(toolpath, counts, strict=False)
+    }
+    moment = [
+        start_index.get((entry.layer, entry.index), start_index[entry.layer, 0])
+        for entry in path.beads
+    ]
     shapes = meshes_of(cell.machine)
     collisions = arm_collisions(
         cell,
@@ -79,21 +95,23 @@ def look(path: JointPath, cell: Cell, toolpath: Toolpath) -> list[Issue]:
         toolpath.surroundings,
         deposit,
         path.joints,
-        np.repeat(moment, [len(one.joints) for one in path.beads]),
+        np.repeat(moment, [len(entry.joints) for entry in path.beads]),
         [shape is not None for shape in shapes],
     )
     return [
-        Issue(ERROR, ARM_COLLISION, Text("{} with {}", one.what, one.link))
-        for one in collisions
-        if one.sure
+        Issue(ERROR, ARM_COLLISION, Text("{} with {}", entry.what, entry.link))
+        for entry in collisions
+        if entry.sure
     ]
 
 
 def in_platform(cell: Cell, toolpath: Toolpath, level: str = ERROR) -> list[Issue]:
-    """The issues about what of the substrate and the fixtures reaches into the platform. No program depends on the platform's
-    plate, whose usual size is a guess, so a planned job has them as warnings; a proposed cell must have none."""
+    """The issues about parts of the substrate and the fixtures that reach into the platform. No
+    program depends on the platform's plate, whose usual size is a guess, so a planned job has them
+    as warnings; a proposed cell must have none.
+    """
     collisions = platform_collisions(cell, toolpath.surroundings)
-    return [_platform_issue(cell, one, level) for one in collisions]
+    return [_platform_issue(cell, collision, level) for collision in collisions]
 
 
 def _platform_issue(cell: Cell, collision: Collision, level: str) -> Issue:
@@ -109,11 +127,11 @@ def _platform_issue(cell: Cell, collision: Collision, level: str) -> Issue:
     )
 
 
-def _arm_issue(collision: Collision, motion: Motion, rows: Index, looked: int) -> Issue:
+def _arm_issue(collision: Collision, motion: Motion, rows: Index, sample_count: int) -> Issue:
     """The issue about a link, at the first row of the motion where it is in something."""
     row = int(rows[0])
-    share = 100.0 * len(rows) / max(looked, 1)
-    place = {
+    share = 100.0 * len(rows) / max(sample_count, 1)
+    location = {
         "layer": int(motion.layer[row]),
         "bead": int(motion.bead[row]),
         "point": int(motion.point[row]),
@@ -132,7 +150,7 @@ def _arm_issue(collision: Collision, motion: Motion, rows: Index, looked: int) -
                 share,
                 where,
             ),
-            **place,
+            **location,
         )
     if collision.deep:
         return Issue(
@@ -147,7 +165,7 @@ def _arm_issue(collision: Collision, motion: Motion, rows: Index, looked: int) -
                 share,
                 where,
             ),
-            **place,
+            **location,
         )
     return Issue(
         NOTE,
@@ -160,7 +178,7 @@ def _arm_issue(collision: Collision, motion: Motion, rows: Index, looked: int) -
             share,
             where,
         ),
-        **place,
+        **location,
     )
 
 
@@ -168,26 +186,26 @@ def margin_issues(motion: Motion, cell: Cell) -> list[Issue]:
     """An issue for each limit that an axis comes nearer to than LEAST_MARGIN, where it is nearest: a warning, but a note about
     the last axis of a robot, whose range plans often use up for the rotation about the tool."""
     margins = shown_margins(cell, motion.joints)
-    known = np.isfinite(margins)
-    if not known.any():
+    is_known = np.isfinite(margins)
+    if not is_known.any():
         return []
-    rows = np.argmin(np.where(known, margins, np.inf), axis=0)
+    rows = np.argmin(np.where(is_known, margins, np.inf), axis=0)
     units, labels = cell.machine.units, cell.limits.labels
-    last = cell.robot.chain.axes - 1 if cell.machine.free else -1
-    found = []
+    last_axis = cell.robot.chain.axes - 1 if cell.machine.free else -1
+    issues = []
     for limit, row in enumerate(rows.tolist()):
-        least = float(margins[row, limit])
-        if not -ROUNDING <= least < LEAST_MARGIN:
+        margin = float(margins[row, limit])
+        if not -ROUNDING <= margin < LEAST_MARGIN:
             continue
         share = float(cell.limits.shares(motion.joints[row][None])[0, limit])
         text = Text(
             "{} comes within {:.3g} {} of its limit, {:.1f} % of half its range; move the part, or choose another "
             "cell.branch or joints.rotation_range",
             labels[limit],
-            max(least, 0.0),
+            max(margin, 0.0),
             units[limit] if limit < len(units) else "deg",
             100.0 * max(share, 0.0),
         )
-        place = int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row])
-        found.append(Issue(NOTE if limit == last else WARNING, LOW_MARGIN, text, *place))
-    return found
+        location = int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row])
+        issues.append(Issue(NOTE if limit == last_axis else WARNING, LOW_MARGIN, text, *location))
+    return issues

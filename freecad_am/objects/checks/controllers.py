@@ -45,7 +45,7 @@ def check_controller(machine: Machine, post: str) -> None:
             "plan without a program, or make a machine file of it with New Machine…",
             machine.title,
         )
-    known = (
+    readable = (
         Text("use one of {}", ", ".join(machine.posts))
         if machine.posts
         else ("there is no post for it yet: plan without a program; waypoints.csv has its axes")
@@ -56,13 +56,14 @@ def check_controller(machine: Machine, post: str) -> None:
         "the controller of {} does not read {}; {}",
         machine.title,
         post,
-        Word(known),
+        Word(readable),
     )
 
 
 def check_beads(toolpath: Toolpath, post: str, max_points: int) -> None:
-    """InputError BEAD_TOO_LONG when a bead alone has more points than a file of the program may have: programs tell all
-    points of beads."""
+    """InputError BEAD_TOO_LONG if one bead has more points than a file of the program may have:
+    programs hold all points of beads.
+    """
     if not controller(post).whole_beads:
         return
     points, layer, index = max(
@@ -82,8 +83,10 @@ def check_beads(toolpath: Toolpath, post: str, max_points: int) -> None:
 
 
 def size_issues(toolpath: Toolpath, parameters: ProgramParameters) -> list[Issue]:
-    """A warning where the program will be larger than what a controller of this kind was known to have room for, a note where
-    it is large or of many files. It is estimated from the points of the toolpath, before anything is planned."""
+    """A warning if the program will be larger than the known capacity of such controllers, a note
+    if it is large or has many files. It is estimated from the points of the toolpath, before
+    anything is planned.
+    """
     if parameters.post == "none":
         return []
     kind = controller(parameters.post)
@@ -94,7 +97,7 @@ def size_issues(toolpath: Toolpath, parameters: ProgramParameters) -> list[Issue
     is_too_large = bool(kind.memory_mb) and megabytes > kind.memory_mb
     if not is_too_large and megabytes < LARGE_MB and files < MANY_FILES:
         return []
-    known = (
+    room = (
         Text(
             "a controller of this kind was known to have room for about {:g} MB in all",
             kind.memory_mb,
@@ -113,7 +116,7 @@ def size_issues(toolpath: Toolpath, parameters: ProgramParameters) -> list[Issue
                 count(points),
                 files,
                 megabytes,
-                known,
+                room,
             ),
         )
     ]
@@ -170,7 +173,7 @@ def check_external(cell: Cell, post: str) -> None:
         if cell.external.slides is None
         else ("a track and a positioner together" if cell.external.turning else "a track")
     )
-    known = (
+    reason = (
         Text("use one of {}", ", ".join(written))
         if written
         else "plan without a program; waypoints.csv has all axes"
@@ -181,7 +184,7 @@ def check_external(cell: Cell, post: str) -> None:
         "programs of {} are not written with {}; {}",
         post,
         Word(external),
-        Word(known),
+        Word(reason),
     )
 
 
@@ -203,7 +206,9 @@ def check_wrist(machine: Machine, motion: str, post: str) -> None:
 
 
 def check_pulses(machine: Machine, motion: str, post: str) -> None:
-    """InputError NO_PULSES, NO_SPEED_UNIT where a post needs what only the controller of that very robot tells."""
+    """InputError NO_PULSES, NO_SPEED_UNIT where a post needs figures that only the robot's own
+    controller has.
+    """
     if controller(post).pulses and not machine.pulses_per_degree:
         raise InputError(
             "NO_PULSES",
@@ -224,23 +229,24 @@ def check_pulses(machine: Machine, motion: str, post: str) -> None:
 
 
 def written_by(machine: Machine) -> tuple[str, ...] | None:
-    """The posts that programs for a machine can be written by, with what its file tells; None for any."""
+    """The posts that can write programs for a machine, by its file; None for any."""
     if machine.posts is None or machine.pulses_per_degree:
         return machine.posts
     return tuple(post for post in machine.posts if not controller(post).pulses)
 
 
 def writers(machine: Machine, posts: Sequence[str], setup: str) -> list[tuple[str, str]]:
-    """Posts, of these, with the motion that programs of a machine in a set-up are written in: those that write the usual one
-    first, then those that write the other."""
+    """The usable `posts` with the motion in which they write programs of a machine in a set-up:
+    posts that write the usual motion first, then posts that write the other one.
+    """
     usual = ProgramParameters().motion
-    found = [(post, usual) for post in fitting(posts, usual, setup)]
-    return found + [
+    written = [(post, usual) for post in fitting(posts, usual, setup)]
+    return written + [
         (post, motion)
         for motion in MOTIONS
         if motion != usual
         for post in fitting(posts, motion, setup)
-        if (post, usual) not in found and _is_written(machine, motion, post)
+        if (post, usual) not in written and _is_written(machine, motion, post)
     ]
 
 
@@ -253,16 +259,17 @@ def _is_written(machine: Machine, motion: str, post: str) -> bool:
     return True
 
 
-def post_of(settings: CellParameters, wanted: str, folders: Sequence[str]) -> tuple[str, str]:
-    """Post and motion of a new program in a cell: the post that is wanted, '' for the usual one, where the controller reads
-    it, else one that writes for it; ('', '') where none does."""
+def post_of(settings: CellParameters, preferred: str, folders: Sequence[str]) -> tuple[str, str]:
+    """Post and motion of a new program in a cell: the preferred post ('' for the usual one) if the
+    controller reads it, else another post that writes for it; ('', '') if none does.
+    """
     machine, usual = machines.load(settings.machine, tuple(folders)), ProgramParameters()
     posts = written_by(machine)
     if externals(settings.external):
-        posts = _with_external(posts)
-    wanted = wanted or usual.post
-    if posts is None or wanted in posts:
-        return next(iter(writers(machine, (wanted,), settings.setup)), (wanted, usual.motion))
+        posts = _select_external(posts)
+    preferred = preferred or usual.post
+    if posts is None or preferred in posts:
+        return next(iter(writers(machine, (preferred,), settings.setup)), (preferred, usual.motion))
     return next(iter(writers(machine, posts, settings.setup)), ("", ""))
 
 
@@ -276,21 +283,23 @@ def usual_motion(joint_path: Any, post: Any) -> dict[str, str]:
         return {}
     try:
         motion = motion_written(post or usual.post, str(setup))
-    except InputError:  # told when the program is made
+    except InputError:  # reported when the program is made
         return {}
     return {} if motion == usual.motion else {"motion": motion}
 
 
 def readers(cell: Cell) -> tuple[str, ...] | None:
-    """The posts that the controller of a cell reads, of those with external axes the ones that write these; None for any."""
+    """The posts that the controller of a cell reads; with external axes only posts that write them.
+    None for any.
+    """
     posts = cell.machine.posts
     if cell.external is None:
         return posts
-    return _with_external(posts)
+    return _select_external(posts)
 
 
-def _with_external(posts: Sequence[str] | None) -> tuple[str, ...]:
-    """Those of the posts, of all for None, that write external axes."""
+def _select_external(posts: Sequence[str] | None) -> tuple[str, ...]:
+    """The posts (any post for None) that write external axes."""
     return tuple(
         post for post in sorted(NAMES if posts is None else posts) if controller(post).external
     )

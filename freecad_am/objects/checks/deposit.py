@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What of a part would not be deposited, as far as that is known before there is a toolpath."""
+"""Regions of a part that would not be deposited, as far as known before planning a toolpath."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ from ..stage import stage_of
 
 
 def expected(value: Any, feature: Any = None) -> tuple[Issue, ...]:
-    """Findings about the result of a feature, of its object where there is one: with the beads of the toolpath made of it,
-    else with those of a new one."""
+    """Findings about the result of a feature (and its object, if given), with the beads of its
+    toolpath, else with beads of a new one.
+    """
     return deposit_balance.issues(deposit_balance.feature_balance(value, bead_width(feature)))
 
 
 def bead_width(feature: Any = None) -> float:
-    """Of the toolpath that is made of a feature, else of a new one, mm."""
+    """Bead width of the toolpath of a feature, else of a new one, mm."""
     for following in () if feature is None else feature.InList:
         stage = stage_of(following)
         if stage is not None and stage.kind == "toolpath":

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the links of a robot touch in a document, with the shapes that were attached to them, on a whole motion, between its
-points too; and what comes of `cell.arm_clearance`."""
+"""What the links of a robot touch in a document, with the shapes attached to them, on a whole
+motion, between its points too; and the result of `cell.arm_clearance`.
+"""
 
 from __future__ import annotations
 
@@ -23,9 +24,11 @@ from ..shapes.link_meshes import meshes_of
 
 
 def cylinders_of(cell: Cell) -> arm_kept.Cylinders:
-    """The rods of each link of the robot; none of machines with rotary axes, of whose links no file tells enough."""
-    known = cell.arrangement.links_known
-    return link_cylinders.of_robot(cell.robot.chain, meshes_of(cell.machine)) if known else ()
+    """The capsules of each link of the robot; empty for machines with rotary axes, whose links no
+    file describes well enough.
+    """
+    has_links = cell.arrangement.links_known
+    return link_cylinders.of_robot(cell.robot.chain, meshes_of(cell.machine)) if has_links else ()
 
 
 def arm_of(
@@ -34,11 +37,13 @@ def arm_of(
     toolpath: Toolpath,
     process: ProcessParameters,
     shapes: tuple[Mesh | None, ...],
-    most: int | None = None,
+    max_positions: int | None = None,
     clearance: float = 0.0,
 ) -> ArmTouches | None:
-    """What the links of a robot touch, or come nearer to than `clearance` mm, looked at in so many places at most; None for
-    machines with rotary axes, of whose links no file tells enough."""
+    """What the links of a robot touch, or come nearer to than `clearance` mm, checked at up to
+    `max_positions` positions; None for machines with rotary axes, whose links no file describes
+    well enough.
+    """
     if not cell.arrangement.links_known:
         return None
     return _touches(
@@ -47,7 +52,7 @@ def arm_of(
         toolpath,
         process,
         link_cylinders.of_robot(cell.robot.chain, shapes),
-        most,
+        max_positions,
         clearance,
     )
 
@@ -58,14 +63,16 @@ def _touches(
     toolpath: Toolpath,
     process: ProcessParameters,
     cylinders: arm_kept.Cylinders,
-    most: int | None,
+    max_positions: int | None,
     clearance: float,
 ) -> ArmTouches:
     deposited = deposit_obstacles(
         motion, toolpath.bead_width or process.bead_width, toolpath.layer_height
     )
     return arm_touches(
-        motion, ArmContact(cell, cylinders, toolpath.surroundings, deposited, clearance), most
+        motion,
+        ArmContact(cell, cylinders, toolpath.surroundings, deposited, clearance),
+        max_positions,
     )
 
 
@@ -75,21 +82,24 @@ def arm_issues(
     toolpath: Toolpath,
     process: ProcessParameters,
     cylinders: arm_kept.Cylinders,
-    known: Sequence[Issue],
+    known_issues: Sequence[Issue],
 ) -> tuple[Issue, ...]:
-    """An error for each bead that nothing known is told of, on which or on the way to which one of the links, which are
-    these cylinders, comes too near."""
+    """An error for each bead without a known issue on which, or on the way to which, a link (given
+    as cylinders) comes too near.
+    """
     assert cell.arm_clearance is not None
     touches = _touches(motion, cell, toolpath, process, cylinders, None, cell.arm_clearance)
-    done = {(issue.layer, issue.bead) for issue in known if issue.code == arm_kept.CODE}
-    found = []
+    reported = {(issue.layer, issue.bead) for issue in known_issues if issue.code == arm_kept.CODE}
+    issues = []
     for row in np.flatnonzero(touches.link != NONE).tolist():
-        place = int(motion.layer[row]), int(motion.bead[row])
-        if place not in done:
-            done.add(place)
+        location = int(motion.layer[row]), int(motion.bead[row])
+        if location not in reported:
+            reported.add(location)
             what = touches.names[touches.what[row]]
             link = touches.links[touches.link[row]]
-            found.append(
-                arm_kept.clearance_issue(cell, link, what, *place, on_way=not motion.deposit[row])
+            issues.append(
+                arm_kept.clearance_issue(
+                    cell, link, what, *location, on_way=not motion.deposit[row]
+                )
             )
-    return tuple(found)
+    return tuple(issues)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Whether what is deposited touches the substrate that is named for it."""
+"""Whether a deposit touches its named substrate."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ from ...core.strategies.support import ABOVE_SUBSTRATE
 from ...core.types import Array
 from ..shapes.bodies import Taken
 
-REACH = 1.5  # layer heights; what is no farther from a body lies on it, as of `support`
+REACH = (
+    1.5  # layer heights; a deposit this near to a body counts as supported by it, as in `support`
+)
 
 
 def gap_issues(
@@ -26,21 +28,25 @@ def gap_issues(
 ) -> tuple[Issue, ...]:
     """A warning where nothing of bodies, or of points (n, 3) of curves, is near the substrate that is named, with how far it
     is and where it comes nearest."""
-    found = []
-    for one in ground:
-        under = one.body()
-        seen = np.vstack([*(body.vertices for body in deposited), *points])
-        distance = SolidMesh(under.vertices, under.triangles).searched(layer_height).signed(seen)[0]
+    issues = []
+    for substrate in ground:
+        under = substrate.body()
+        deposit_points = np.vstack([*(body.vertices for body in deposited), *points])
+        distance = (
+            SolidMesh(under.vertices, under.triangles)
+            .searched(layer_height)
+            .signed(deposit_points)[0]
+        )
         nearest = int(distance.argmin())
-        gap, place = float(distance[nearest]), seen[nearest]
+        gap, position = float(distance[nearest]), deposit_points[nearest]
         for body in deposited if gap > REACH * layer_height else ():
             search = SolidMesh(body.vertices, body.triangles).searched(layer_height)
             back = search.signed(under.vertices)[0]
             if float(back.min()) < gap:
-                gap, place = float(back.min()), under.vertices[int(back.argmin())]
+                gap, position = float(back.min()), under.vertices[int(back.argmin())]
         if gap > REACH * layer_height:
-            x, y, z = (float(value) for value in place)
-            found.append(
+            x, y, z = (float(value) for value in position)
+            issues.append(
                 Issue(
                     WARNING,
                     ABOVE_SUBSTRATE,
@@ -48,7 +54,7 @@ def gap_issues(
                         "{} does not touch its substrate {}: it is {:.4g} mm away at ({:.4g}, {:.4g}, {:.4g}), where it comes "
                         "nearest; move it onto the substrate, or leave the substrate out",
                         label,
-                        one.label,
+                        substrate.label,
                         gap,
                         x,
                         y,
@@ -56,4 +62,4 @@ def gap_issues(
                     ),
                 )
             )
-    return tuple(found)
+    return tuple(issues)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is placed of a document: a toolpath, or a joint path of it with what it is planned with, in a cell."""
+"""The toolpath or joint path of a document that is to be placed in a cell, with its planning
+parameters.
+"""
 
 from __future__ import annotations
 
@@ -24,8 +26,9 @@ from .links_clear import cylinders_of
 
 
 class Placing(NamedTuple):
-    """What is read of a document: its cell and what makes the job, without the document. names: of the objects; document:
-    its name; cell: the object."""
+    """The inputs of a placement, read from a document: its cell, and a function that makes the job
+    without the document. names: of the objects; document: its name; cell: the object.
+    """
 
     settings: CellParameters
     job: Callable[[], Job]
@@ -33,14 +36,14 @@ class Placing(NamedTuple):
     names: tuple[str, ...]
     document: str
 
-    def placed(self, parameters: PlaceParameters) -> Placed:
-        """What the poses of a box come to; `progress` is told how far it is. Errors as `place.placed`."""
+    def search_poses(self, parameters: PlaceParameters) -> Placed:
+        """The results for the poses of a box; reports to `progress`. Errors as `place.placed`."""
         return placed(self.job(), self.settings, parameters, progress.report)
 
 
 def placing_of(path: Any, cell: Any = None, joints: JointParameters | None = None) -> Placing:
-    """What is placed of a joint path or a toolpath, in its own cell or in another. joints: with what it is planned, else
-    what the joint path has.
+    """The inputs of a placement of a joint path or a toolpath, in its own cell or in another.
+    joints: parameters of planning, by default the joint path's.
 
     Raises InputError BAD_INPUT for other objects, NO_INPUT where toolpath or cell are missing or have no result.
     """
@@ -50,27 +53,29 @@ def placing_of(path: Any, cell: Any = None, joints: JointParameters | None = Non
         raise InputError("BAD_INPUT", label, "it is neither a toolpath nor a joint path; give one")
     toolpath = path.Toolpath if stage.kind == "joint path" else path
     carried = cell if cell is not None else path.Cell
-    for one, what in ((toolpath, "toolpath"), (carried, "cell")):
-        if one is None or not one.Key:
+    for stage_object, what in ((toolpath, "toolpath"), (carried, "cell")):
+        if stage_object is None or not stage_object.Key:
             raise InputError(
                 "NO_INPUT", path.Label, "its {} is missing; choose one and recompute", what
             )
-    read, folders = toolpath.Proxy.reader(toolpath), tuple(user_machines.folders())
+    read_toolpath, folders = toolpath.Proxy.reader(toolpath), tuple(user_machines.folders())
     process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
-    own = (
+    own_joints = (
         stage.parameters(path, JointParameters) if stage.kind == "joint path" else JointParameters()
     )
     names = tuple(dict.fromkeys((path.Name, toolpath.Name, carried.Name)))
     return Placing(
         carried.Proxy.value(carried),
-        lambda: _job(read(), folders, process, joints or own),
+        lambda: _job(read_toolpath(), folders, process, joints or own_joints),
         carried,
         names,
         path.Document.Name,
     )
 
 
-def given(parameters: PlaceParameters | None, values: dict[str, Any]) -> PlaceParameters:
+def change_parameters(
+    parameters: PlaceParameters | None, values: dict[str, Any]
+) -> PlaceParameters:
     """Parameters with single ones changed, in outer units by row key. InputError UNKNOWN_PARAMETER, BAD_VALUE."""
     if not isinstance(parameters or PlaceParameters(), PlaceParameters):
         raise InputError(
@@ -80,27 +85,30 @@ def given(parameters: PlaceParameters | None, values: dict[str, Any]) -> PlacePa
             type(parameters).__name__,
             PlaceParameters.__name__,
         )
-    known = {row.key: row for row in rows.rows(PlaceParameters)}
-    unknown = sorted(set(values) - set(known))
+    rows_by_key = {row.key: row for row in rows.rows(PlaceParameters)}
+    unknown = sorted(set(values) - set(rows_by_key))
     if unknown:
         raise InputError(
             "UNKNOWN_PARAMETER",
             "place",
             "{} is not known; use one of {}",
             ", ".join(unknown),
-            ", ".join(sorted(known)),
+            ", ".join(sorted(rows_by_key)),
         )
     inner = rows.flat(parameters or PlaceParameters())
     try:
         inner.update(
-            {name: known[name].inner(value, f"place.{name}") for name, value in values.items()}
+            {
+                name: rows_by_key[name].inner(value, f"place.{name}")
+                for name, value in values.items()
+            }
         )
-        found: PlaceParameters = rows.build(PlaceParameters, inner)
+        changed: PlaceParameters = rows.build(PlaceParameters, inner)
     except ReferenceError:
         raise InputError(
             "BAD_INPUT", "place", "a value is an object that was deleted; give a number or a text"
         ) from None
-    return found
+    return changed
 
 
 def _job(
@@ -112,7 +120,7 @@ def _job(
     def cell(settings: CellParameters) -> Cell:
         return cell_obstacles.resolved(settings, toolpath, folders)
 
-    def cylinders(of: Cell) -> Cylinders:
-        return tuple(tuple(link) for link in cylinders_of(of))
+    def cylinders(resolved_cell: Cell) -> Cylinders:
+        return tuple(tuple(link) for link in cylinders_of(resolved_cell))
 
     return Job(toolpath, cell, cylinders, process, joints)

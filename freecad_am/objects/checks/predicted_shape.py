@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The deposit that a toolpath is predicted to leave, against the part that is to be cut out of it."""
+"""The deposit that a toolpath is predicted to leave, against the part to be machined from it."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from ..planned.toolpaths import Given
 from ..shapes.bodies import Taken
 from ..work import progress
 
-DEFLECTION = 0.05  # mm, of the triangles that stand for faces
+DEFLECTION = 0.05  # mm, of the triangles of faces
 NOTHING = "NO_PREDICTION"
 _OF_SOLIDS = "Give strategy.margin {} mm more than it has, or wider beads"
 _OF_WALLS = (
@@ -49,33 +49,35 @@ Report = Callable[[float, str], None]
 
 @dataclass(frozen=True)
 class Target:
-    """What a feature is to deposit: what it is planned of, the objects that it is made of, and the faces of the first that
-    were chosen, none where it is all of it."""
+    """The target of a feature: its planning inputs, its source objects, and the chosen faces of the
+    first one (empty for the whole object).
+    """
 
-    given: Given
+    inputs: Given
     sources: tuple[Taken, ...]
-    chosen: tuple[str, ...] = ()
+    faces: tuple[str, ...] = ()
 
     @property
     def kind(self) -> str:
-        """Of its family."""
-        return family_of(self.given.strategy).kind
+        """The kind of its family."""
+        return family_of(self.inputs.strategy).kind
 
 
-def with_shape_issues(
+def add_shape_issues(
     toolpath: CoreToolpath, targets: Sequence[Target], allowance: float
 ) -> CoreToolpath:
-    """The toolpath with what its predicted deposit comes to, and a warning where the part is not inside of it by the
-    allowance, mm, or where nobody can know."""
+    """The toolpath with figures of its predicted deposit, and a warning where the deposit does not
+    enclose the part by the allowance, mm, or where that is unknown.
+    """
     try:
-        deposit, found = predicted(toolpath, targets, progress.report)
+        deposit, comparison = predicted(toolpath, targets, progress.report)
     except InputError as error:
         return dataclasses.replace(
             toolpath, issues=(*toolpath.issues, Issue(WARNING, NOTHING, error.message))
         )
     shape = dataclasses.replace(
-        compare.figures(deposit, found, allowance),
-        deviation=deviation_map(deposit, found, len(toolpath.layers)),
+        compare.figures(deposit, comparison, allowance),
+        deviation=deviation_map(deposit, comparison, len(toolpath.layers)),
     )
     return dataclasses.replace(
         toolpath, predicted=shape, issues=(*toolpath.issues, *issues(toolpath, targets, shape))
@@ -85,30 +87,30 @@ def with_shape_issues(
 def issues(
     toolpath: CoreToolpath, targets: Sequence[Target], shape: PredictedShape
 ) -> tuple[Issue, ...]:
-    """What is to be told of a predicted deposit."""
-    first = np.zeros(len(toolpath.layers), dtype=bool)
+    """The issues of a predicted deposit."""
+    is_first_layer = np.zeros(len(toolpath.layers), dtype=bool)
     for _, numbers in toolpath.parts:
-        first[numbers[:1]] = True
-    first |= [layer.first for layer in toolpath.layers]
+        is_first_layer[numbers[:1]] = True
+    is_first_layer |= [layer.first for layer in toolpath.layers]
     courses = np.ones(len(toolpath.layers))
-    for part, numbers in toolpath.parts:
-        if is_spiral(part):
-            courses[numbers[0]] = turns_of(part.layers[0].beads[0])[-1] + 1
-    return compare.issues(shape, toolpath.layer_heights, first, remedy(targets), courses)
+    for feature_toolpath, numbers in toolpath.parts:
+        if is_spiral(feature_toolpath):
+            courses[numbers[0]] = turns_of(feature_toolpath.layers[0].beads[0])[-1] + 1
+    return compare.issues(shape, toolpath.layer_heights, is_first_layer, remedy(targets), courses)
 
 
 def predicted(
     toolpath: CoreToolpath, targets: Sequence[Target], report: Report
 ) -> tuple[PredictedDeposit, Compared]:
     """The deposit of a toolpath, and the faces of its features against it. InputError NO_PREDICTION."""
-    processes: list[ProcessParameters] = [target.given.process for target in targets]
+    processes: list[ProcessParameters] = [target.inputs.process for target in targets]
     parts = feature_parts(toolpath, processes)
-    if any(part.toolpath.bead_width is None for part in parts):
+    if any(feature_part.toolpath.bead_width is None for feature_part in parts):
         raise InputError(
             NOTHING, "toolpath", "it is not known how wide its beads count; plan it again"
         )
-    asked = [_faces(target) for target in targets if target.kind != "curves"]
-    if not asked:
+    target_faces = [_faces(target) for target in targets if target.kind != "curves"]
+    if not target_faces:
         raise InputError(
             NOTHING,
             "toolpath",
@@ -119,14 +121,14 @@ def predicted(
         parts, lambda share, text: report(0.8 * share, Text("predicting the deposit, {}", text))
     )
     report(0.8, "comparing the predicted deposit with the part")
-    found = compare.compare_deposit(deposit, uncovered_faces(asked))
-    if not len(found.faces):
+    comparison = compare.compare_deposit(deposit, uncovered_faces(target_faces))
+    if not len(comparison.faces):
         raise InputError(
             NOTHING,
             "toolpath",
             "the part has no faces above where the deposit begins; choose another part",
         )
-    return deposit, found
+    return deposit, comparison
 
 
 def inspected(
@@ -137,35 +139,37 @@ def inspected(
     label: str,
     report: Report,
 ) -> Inspected:
-    """The predicted deposit of a toolpath as if it had been measured: its surface outside of the part, or the part where
-    that sticks out of it, at places all over the part's faces. InputError NO_PREDICTION."""
-    deposit, found = predicted(toolpath, targets, report)
-    shape = compare.figures(deposit, found, allowance)
-    count, pieces = len(found.deviation), deposit.pieces
-    every = np.ones(count, dtype=np.bool_)
-    outside = np.maximum(found.deviation, 0.0)[:, None] * found.faces.normals
+    """The predicted deposit of a toolpath in the form of a measurement: its surface outside the
+    part, or the part where it protrudes, at points all over the part's faces. InputError
+    NO_PREDICTION.
+    """
+    deposit, comparison = predicted(toolpath, targets, report)
+    shape = compare.figures(deposit, comparison, allowance)
+    count, cells = len(comparison.deviation), deposit.pieces
+    all_points = np.ones(count, dtype=np.bool_)
+    outside = np.maximum(comparison.deviation, 0.0)[:, None] * comparison.faces.normals
     return Inspected(
-        found.faces.points + outside,
-        found.deviation,
-        every,
-        every,
+        comparison.faces.points + outside,
+        comparison.deviation,
+        all_points,
+        all_points,
         np.eye(4),
         (),
         tolerance,
         PREDICTED,
         label,
-        figures.spread(found.deviation, tolerance),
+        figures.spread(comparison.deviation, tolerance),
         None,
         (),
         None,
         issues(toolpath, targets, shape),
-        laid=np.column_stack([pieces.middle, pieces.layer, deposit.level]),
+        laid=np.column_stack([cells.middle, cells.layer, deposit.level]),
     )
 
 
 def remedy(targets: Sequence[Target]) -> str:
     """What to do where a deposit is too small, with {} for by how much."""
-    filled = family_of(targets[0].given.strategy).filled
+    filled = family_of(targets[0].inputs.strategy).filled
     return (
         _OF_WALLS if not filled else _OF_CLADDING if targets[0].kind == "cladding" else _OF_SOLIDS
     )
@@ -174,24 +178,29 @@ def remedy(targets: Sequence[Target]) -> str:
 def _faces(target: Target) -> Faces:
     """The faces of a feature that its deposit is to cover. InputError NO_FACES."""
     if target.kind in ("solid", "developable"):
-        bodies = [body for group in target.given.wall.groups for body in group.bodies]
+        bodies = [body for group in target.inputs.wall.groups for body in group.bodies]
         return thin_faces(join_faces([faces(body.vertices, body.triangles) for body in bodies]))
-    names = target.given.wall.faces if target.kind == "cladding" else target.chosen
+    names = target.inputs.wall.faces if target.kind == "cladding" else target.faces
     return thin_faces(
         join_faces(
-            [_of_source(source, names if k == 0 else ()) for k, source in enumerate(target.sources)]
+            [
+                _source_faces(source, names if k == 0 else ())
+                for k, source in enumerate(target.sources)
+            ]
         )
     )
 
 
-def _of_source(source: Taken, names: Sequence[str]) -> Faces:
+def _source_faces(source: Taken, names: Sequence[str]) -> Faces:
     if source.shape is None:
         body = source.body()
         return faces(body.vertices, body.triangles, OUTSIDE if _closed(body.triangles) else BOTH)
     shape = source.shape.copy(False)
-    known = {f"Face{number}": face for number, face in enumerate(shape.Faces, start=1)}
-    chosen: list[Any] = [known[name] for name in dict.fromkeys(names) if name in known]
-    if not chosen and not known:
+    faces_by_name = {f"Face{number}": face for number, face in enumerate(shape.Faces, start=1)}
+    selected: list[Any] = [
+        faces_by_name[name] for name in dict.fromkeys(names) if name in faces_by_name
+    ]
+    if not selected and not faces_by_name:
         raise InputError(
             NOTHING,
             "toolpath",
@@ -200,7 +209,10 @@ def _of_source(source: Taken, names: Sequence[str]) -> Faces:
         )
     side = OUTSIDE if shape.Solids else BOTH
     return join_faces(
-        [faces(*triangles_of(face, DEFLECTION), side) for face in chosen or known.values()]
+        [
+            faces(*triangles_of(face, DEFLECTION), side)
+            for face in selected or faces_by_name.values()
+        ]
     )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The preflight of a document's stages: what is promised of them, read from their results."""
+"""The preflight of a document's stages: promises about them, read from their results."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ from ..shapes.platforms import platforms
 from ..toolpath import features_of
 from .links_clear import arm_of
 
-# at which the arm is looked at, and the nozzle depositing and on rapids: together a tenth of the time that planning takes,
-# at most
+# sample limits for the arm, and for the nozzle depositing and on rapids: together at most a tenth
+# of the planning time
 ARM_PLACES, NOZZLE_PLACES, RAPID_PLACES = 6_000, 4_000, 12_000
 
 Work = Callable[[], tuple[Promise, ...]]
@@ -51,11 +51,11 @@ Work = Callable[[], tuple[Promise, ...]]
 
 @dataclass(frozen=True, eq=False)
 class Surveyed:
-    """What takes long to find, as `Evidence` has it: of a toolpath and, where there is one, of its joint path."""
+    """The slow part of the `Evidence` about a toolpath and, if given, its joint path."""
 
     distances: tuple[Array, ...]
     balance: Balance | None
-    looked: Looked | None
+    nozzle_check: Looked | None
     rapids: RapidsLooked | None = None
     arm: ArmTouches | None = None
 
@@ -64,11 +64,13 @@ Survey = Callable[[], Surveyed]
 What = tuple[Toolpath, Planned, Cell, tuple[Mesh | None, ...]]
 
 
-def of_stages(
+def stage_preflight(
     toolpath: Any, path: Any = None, program: Any = None, surveyed: Survey | None = None
 ) -> tuple[Promise, ...]:
-    """The preflight of a toolpath, its joint path and its program (document objects, None where there is none). surveyed:
-    as `survey_of` gives it, where it was begun already. Raises InputError 'NO_RESULT' where one has no result."""
+    """The preflight of a toolpath, its joint path and its program (document objects or None).
+    surveyed: as `survey_of` gives it, if already begun. Raises InputError 'NO_RESULT' where one has
+    no result.
+    """
     if program is None:
         return prepared(toolpath, path, surveyed=surveyed)()
     settings = program.Proxy.parameters(program, ProgramParameters)
@@ -78,25 +80,31 @@ def of_stages(
 
 
 def read_back_of(program: Any) -> Verification | None:
-    """How a program object was read back, None where it was not."""
-    found: Verification | None = program.Proxy.value(program).verification if program.Key else None
-    return found
+    """The verification of a program object, or None without a read-back."""
+    verification: Verification | None = (
+        program.Proxy.value(program).verification if program.Key else None
+    )
+    return verification
 
 
 def prepared(
     toolpath: Any,
     path: Any = None,
     settings: ProgramParameters | None = None,
-    read: Verification | None = None,
-    more: tuple[Issue, ...] = (),
+    verification: Verification | None = None,
+    further_issues: tuple[Issue, ...] = (),
     surveyed: Survey | None = None,
 ) -> Work:
-    """What makes the preflight of a toolpath and of its joint path (document objects), without the document, from which all
-    is read now. settings: of the program that is written of it; read: how that was read back; more: its findings;
-    surveyed: as `survey_of` gives it. Raises InputError 'NO_RESULT' where one has no result."""
+    """A function that makes the preflight of a toolpath and its joint path (document objects)
+    without the document, which is read now. settings: of the program; verification: of the
+    program's read-back; further_issues: the program's findings; surveyed: as `survey_of` gives it.
+    Raises InputError 'NO_RESULT' where one has no result.
+    """
     stages = [stage for stage in (*features_of(toolpath), toolpath, path) if stage is not None]
     issues = tuple(
-        dict.fromkeys([issue for stage in stages for issue in issues_of(stage)] + list(more))
+        dict.fromkeys(
+            [issue for stage in stages for issue in issues_of(stage)] + list(further_issues)
+        )
     )
     planned, process = (
         toolpath.Proxy.reader(toolpath),
@@ -107,21 +115,21 @@ def prepared(
 
     def preflight() -> tuple[Promise, ...]:
         as_it_runs = None if run is None else run.how(issues)
-        seen = survey()  # last: it may be waited for
-        known = Evidence(
+        survey_result = survey()  # last: it may be waited for
+        evidence = Evidence(
             planned(),
             process,
             issues,
-            distances=seen.distances,
-            balance=seen.balance,
-            looked=seen.looked,
-            rapids=seen.rapids,
-            arm=seen.arm,
+            distances=survey_result.distances,
+            balance=survey_result.balance,
+            looked=survey_result.nozzle_check,
+            rapids=survey_result.rapids,
+            arm=survey_result.arm,
         )
         return promises(
-            known
+            evidence
             if run is None or as_it_runs is None
-            else _with_motion(known, run, as_it_runs, read)
+            else _add_motion_evidence(evidence, run, as_it_runs, verification)
         )
 
     return preflight
@@ -130,8 +138,8 @@ def prepared(
 def survey_of(toolpath: Any, path: Any, settings: ProgramParameters | None) -> Survey:
     """Return the function that finds the slow part of the preflight of a toolpath and its joint path.
 
-    The documents are read now; the returned function needs them no more. `settings` are those of the program that is
-    written of the joint path. Raises InputError 'NO_RESULT' if a stage has no result.
+    The documents are read now; the returned function needs them no more. `settings` belong to the
+    program of the joint path. Raises InputError 'NO_RESULT' if a stage has no result.
     """
     return _survey(toolpath, None if path is None else _Run(path, settings))
 
@@ -146,41 +154,47 @@ def _survey(toolpath: Any, run: _Run | None) -> Survey:
         toolpath.Proxy.reader(toolpath),
         [feature.Proxy.reader(feature) for feature in features],
     )
-    widths = [one.bead_width for one in toolpath.Proxy.processes(toolpath)]
+    widths = [feature_process.bead_width for feature_process in toolpath.Proxy.processes(toolpath)]
     cell = None if toolpath.Cell is None else toolpath.Cell.Proxy.value(toolpath.Cell)
 
     def survey() -> Surveyed:
-        made = planned()
+        toolpath_now = planned()
         balance = deposit_balance.sum_balances(
             [
-                deposit_balance.toolpath_balance(shape(), part, width)
-                for shape, width, (part, _) in zip(shapes, widths, made.parts, strict=True)
+                deposit_balance.toolpath_balance(shape(), feature_part, width)
+                for shape, width, (feature_part, _) in zip(
+                    shapes, widths, toolpath_now.parts, strict=True
+                )
             ]
         )
-        looked = _nozzle_looked(made, cell, [build.clearance != "none" for build in builds])
+        nozzle_check = _nozzle_looked(
+            toolpath_now, cell, [build.clearance != "none" for build in builds]
+        )
         if run is None:
-            return Surveyed(tuple(spacing.between_layers(made)), balance, looked)
-        return _of_motion(Surveyed((), balance, looked), process, *run.what, run.how(()))
+            return Surveyed(tuple(spacing.between_layers(toolpath_now)), balance, nozzle_check)
+        return _survey_motion(Surveyed((), balance, nozzle_check), process, *run.what, run.how(()))
 
     return survey
 
 
 def _nozzle_looked(
-    toolpath: Toolpath, cell: CellParameters | None, asked: list[bool]
+    toolpath: Toolpath, cell: CellParameters | None, clearance_asked: list[bool]
 ) -> Looked | None:
     """What the nozzle touches on the features that ask for clearance."""
-    bodies = (*toolpath.surroundings, *platforms(cell, toolpath)) if any(asked) else ()
+    bodies = (*toolpath.surroundings, *platforms(cell, toolpath)) if any(clearance_asked) else ()
     nozzle = NozzleParameters() if cell is None else cell.nozzle
     return clearance_look.together(
         [
-            clearance_look.looked_at(toolpath, bodies, nozzle, NOZZLE_PLACES // len(asked), number)
-            for number, clear in enumerate(asked)
+            clearance_look.looked_at(
+                toolpath, bodies, nozzle, NOZZLE_PLACES // len(clearance_asked), number
+            )
+            for number, clear in enumerate(clearance_asked)
             if clear
         ]
     )
 
 
-def _of_motion(
+def _survey_motion(
     of_deposit: Surveyed,
     process: ProcessParameters,
     toolpath: Toolpath,
@@ -189,11 +203,13 @@ def _of_motion(
     shapes: tuple[Mesh | None, ...],
     as_it_runs: AsRun,
 ) -> Surveyed:
-    """What was found of the deposit, at the distances that it is run at, with what is found of the motion."""
+    """The findings about the deposit, at the distances of the motion as it is run, with findings
+    about the motion.
+    """
     path = planned.joint_path
     rapids = rapid_look.looked_at(
         planned.motion,
-        [one.bead for one in path.beads],
+        [entry.bead for entry in path.beads],
         cell,
         toolpath.surroundings,
         toolpath.bead_width or process.bead_width,
@@ -212,7 +228,9 @@ def _of_motion(
 
 
 class _Run:
-    """How a joint path (document object) is run, by a program with `settings` where there are any, without the document."""
+    """How a joint path (document object) is run, by a program with `settings` if given, without the
+    document.
+    """
 
     def __init__(self, path: Any, settings: ProgramParameters | None) -> None:
         self._toolpath, self._planned = (
@@ -238,14 +256,15 @@ class _Run:
         return as_run(planned, cell, toolpath.chord_error, self.settings, issues)
 
 
-def _with_motion(
-    known: Evidence, run: _Run, as_it_runs: AsRun, read: Verification | None
+def _add_motion_evidence(
+    evidence: Evidence, run: _Run, as_it_runs: AsRun, verification: Verification | None
 ) -> Evidence:
-    """What is known of a joint path, or of the program that is written of it; known: of its toolpath, and what was surveyed.
-    read: None where that was not read back."""
+    """The evidence about a joint path or its program. evidence: about its toolpath, with the
+    survey; verification: None without a read-back.
+    """
     toolpath, planned, cell, shapes = run.what
     return replace(
-        known,
+        evidence,
         toolpath=planned.joint_path.toolpath(toolpath),
         issues=as_it_runs.issues,
         cell=cell,
@@ -253,19 +272,19 @@ def _with_motion(
         condition=as_it_runs.condition,
         threshold=as_it_runs.threshold,
         true_shapes=bool(shapes) and None not in shapes,
-        read=None if read is None else _read_back(read, toolpath.chord_error),
+        read=None if verification is None else _read_back(verification, toolpath.chord_error),
         on_controller=()
         if run.settings is None
         else catalogue.load(run.settings.post).ON_CONTROLLER,
     )
 
 
-def _read_back(read: Verification, chord_error: float) -> ReadBack:
+def _read_back(verification: Verification, chord_error: float) -> ReadBack:
     return ReadBack(
-        not has_errors(read.issues),
-        read.at_points_mm,
-        read.between_mm,
-        read.bound_mm,
-        chord_error + read.bound_mm if math.isfinite(read.bound_mm) else math.inf,
-        len(read.solvers),
+        not has_errors(verification.issues),
+        verification.at_points_mm,
+        verification.between_mm,
+        verification.bound_mm,
+        chord_error + verification.bound_mm if math.isfinite(verification.bound_mm) else math.inf,
+        len(verification.solvers),
     )

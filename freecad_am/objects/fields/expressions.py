@@ -30,18 +30,20 @@ def is_expression(value: Any) -> bool:
 def evaluated(value: str, obj: Any, where: str) -> Any:
     """What an expression gives now, a quantity or a number, names in it seen from `obj`. InputError 'BAD_EXPRESSION'."""
     try:
-        found = obj.evalExpression(_bare(value))
+        result = obj.evalExpression(_bare(value))
     except Exception as error:  # FreeCAD's own errors share no base
         raise _wrong(value, where, error) from None
-    if isinstance(found, bool) or not (isinstance(found, (int, float)) or hasattr(found, "Unit")):
+    if isinstance(result, bool) or not (
+        isinstance(result, (int, float)) or hasattr(result, "Unit")
+    ):
         raise InputError(
             "BAD_EXPRESSION",
             where,
             "{!r} gives {!r}, which is not a number; write one that gives a number",
             value,
-            found,
+            result,
         )
-    return found
+    return result
 
 
 def follow(obj: Any, row: Row, value: str | None) -> None:
@@ -57,14 +59,15 @@ def follow(obj: Any, row: Row, value: str | None) -> None:
 
 
 def of(obj: Any, row: Row) -> str:
-    """The expression that the property of a row follows, '' when there is none."""
+    """The expression that the property of a row follows, or ''."""
     text = dict(obj.ExpressionEngine).get(row.name)
     return f"{MARK}{text}" if text else ""
 
 
 def broken(obj: Any) -> str:
-    """What to do about an expression of an object that gives nothing any more, '' where there is none such: FreeCAD then
-    computes nothing, and tells nobody but the report view."""
+    """A remedy for an expression of an object that no longer gives a value, else ''. FreeCAD then
+    computes nothing and writes only to the report view.
+    """
     for name, text in getattr(obj, "ExpressionEngine", ()):
         try:
             obj.evalExpression(text)

@@ -16,7 +16,8 @@ _NAME_LENGTH = 20
 def proposed_name(text: str) -> str:
     """A program name that controllers take, from a label: letters A to Z, digits and underscores.
 
-    `am.proposed_name("Hémisphère n° 1")` is "HEMISPHERE_N_1". Raises InputError BAD_VALUE for what is not a text.
+    `am.proposed_name("Hémisphère n° 1")` is "HEMISPHERE_N_1". Raises InputError BAD_VALUE for other
+    types.
     """
     checked_words([text], "text")
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().upper()

@@ -17,31 +17,37 @@ from ...core.types import Array
 from ...posts import catalogue
 
 UNIT = 1e-3  # by which a quaternion that is shown with few digits may be longer or shorter than 1
-WHOLE = 2.0 * math.pi + 1e-3  # rad, a rotation vector is no longer
-_AT = re.compile(r"(?<=\sat\s)(.+?)(?=\s+carries\s)")  # where a text says that something stands
+MAX_ROTATION_RAD = 2.0 * math.pi + 1e-3  # rad, a rotation vector is no longer
+_AT = re.compile(r"(?<=\sat\s)(.+?)(?=\s+carries\s)")  # position of a thing in a text
 
 Pose = tuple[float, float, float, float, float, float]
 
 
 @cache
 def pendants() -> dict[str, Pendant]:
-    """The pendants that show frames otherwise than we do, by controller, in the order of their makers."""
-    found = {name: catalogue.load(name).PENDANT for name in catalogue.NAMES}
+    """The pendants that show frames in a different convention, by controller, ordered by
+    manufacturer.
+    """
+    by_name = {name: catalogue.load(name).PENDANT for name in catalogue.NAMES}
     return dict(
-        sorted(((name, one) for name, one in found.items() if one), key=lambda pair: pair[1].maker)
+        sorted(
+            ((name, pendant) for name, pendant in by_name.items() if pendant),
+            key=lambda pair: pair[1].maker,
+        )
     )
 
 
 def named(words: Sequence[str]) -> str:
     """The controller that one of the words of a pose names, '' where none does."""
-    found = next((word.lower() for word in words if word.lower() in catalogue.NAMES), "")
+    controller = next((word.lower() for word in words if word.lower() in catalogue.NAMES), "")
     return (
-        found if found and catalogue.load(found).PENDANT else ""
-    )  # all of them take long to import
+        controller if controller and catalogue.load(controller).PENDANT else ""
+    )  # importing every post takes long
 
 
 def six(words: Sequence[str], where: str) -> Pose:
-    """x y z RX RY RZ, mm and rad (Bryant), of the words of a pose, of which one names the controller: kuka 1 0 3 90 0 0.
+    """x y z RX RY RZ, mm and rad (Bryant), of the words of a pose, one of them the controller's
+    name: kuka 1 0 3 90 0 0.
 
     Raises InputError BAD_VALUE, at `where`.
     """
@@ -60,7 +66,7 @@ def six(words: Sequence[str], where: str) -> Pose:
 
 
 def _rotation(pendant: Pendant, numbers: Array, where: str) -> Array:
-    """(3, 3) of what a pendant shows after X Y Z."""
+    """The rotation (3, 3) of the values that a pendant shows after X Y Z."""
     size = float(np.linalg.norm(numbers))
     if pendant.orientation is QUATERNION and abs(size - 1.0) > UNIT:
         raise InputError(
@@ -69,7 +75,7 @@ def _rotation(pendant: Pendant, numbers: Array, where: str) -> Array:
             "q1 to q4 are together {:.4g} long, a quaternion is 1; look at the digits",
             size,
         )
-    if pendant.orientation is ROTATION_VECTOR and size > WHOLE:
+    if pendant.orientation is ROTATION_VECTOR and size > MAX_ROTATION_RAD:
         raise InputError(
             "BAD_VALUE",
             where,
@@ -81,7 +87,7 @@ def _rotation(pendant: Pendant, numbers: Array, where: str) -> Array:
     return np.asarray(pendant.orientation.rotations(numbers[None])[0])
 
 
-def shown(controller: str, pose: Sequence[float]) -> tuple[float, ...]:
+def pendant_values(controller: str, pose: Sequence[float]) -> tuple[float, ...]:
     """What a pendant shows of a pose x y z RX RY RZ, mm and rad: X Y Z, and degrees, a quaternion, or rad."""
     orientation = pendants()[controller].orientation
     numbers = orientation.numbers(frames.bryant(pose)[None, :3, :3])[0]
@@ -91,17 +97,18 @@ def shown(controller: str, pose: Sequence[float]) -> tuple[float, ...]:
 
 
 def plain(text: str, where: str) -> str:
-    """A text that says where things stand, such as External: poses that name a controller as x y z RX RY RZ, mm and deg.
+    """A text with positions, such as External, with poses that name a controller rewritten as x y z
+    RX RY RZ, mm and deg.
 
     Raises InputError BAD_VALUE, at `where`.
     """
-    return _AT.sub(lambda found: _plain(found[0], where), text)
+    return _AT.sub(lambda match: _plain(match[0], where), text)
 
 
 def _plain(pose: str, where: str) -> str:
     words = pose.replace(",", " ").split()
     if not named(words):
         return pose
-    found = six(words, where)
-    numbers = (*found[:3], *(math.degrees(angle) for angle in found[3:]))
+    pose_values = six(words, where)
+    numbers = (*pose_values[:3], *(math.degrees(angle) for angle in pose_values[3:]))
     return " ".join(f"{number:.14g}" for number in numbers)

@@ -20,11 +20,13 @@ def is_text(value: Any) -> bool:
 def checked_words(words: Any, where: str) -> list[str]:
     """A list of texts. InputError BAD_VALUE naming `where` for anything else."""
     if not isinstance(words, (list, tuple)) or not all(map(is_text, words)):
-        raise InputError("BAD_VALUE", where, "{} is not a text; give one in quotes", shown(words))
+        raise InputError(
+            "BAD_VALUE", where, "{} is not a text; give one in quotes", safe_repr(words)
+        )
     return list(words)
 
 
-def shown(value: Any) -> str:
+def safe_repr(value: Any) -> str:
     """A value in a message, where it may be of an object that is gone and cannot even be named."""
     try:
         return repr(value)

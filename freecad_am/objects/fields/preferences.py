@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What a user prefers, from FreeCAD's parameters: the only place that reads and writes them.
 
-Preferences are of the window: what it proposes, shows and where it looks. Without one nothing of them counts, so that a job
-gives the same program on every computer.
+Preferences belong to the window: its proposals, its display and its folders. They have no effect
+without a window, so that a job gives the same program on every computer.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from .unit_scheme import scheme_speed_unit
 
 GROUP = "User parameter:BaseApp/Preferences/Mod/RoboticAM"
 UNIT_SETTINGS, SCHEME = "User parameter:BaseApp/Preferences/Units", "UserSchema"  # of FreeCAD
-SPEED_UNITS = {  # how many of them 1 mm/s is
+SPEED_UNITS = {  # factor from mm/s
     "mm/s": 1.0,
     "mm/min": 60.0,
     "m/min": 0.06,
     "in/min": 60.0 / 25.4,
     "ft/min": 60.0 / 304.8,
 }
-SHOWN = ("SpeedUnit", "Ramp", "MachineColour")  # entries that what is drawn and told depends on
+SHOWN = ("SpeedUnit", "Ramp", "MachineColour")  # entries that affect display and texts
 RAMPS = ("blue to yellow", "violet to orange", "grey")
 MACHINE_COLOUR = (0.86, 0.87, 0.88)
 # parameters of the process that are proposed for new toolpaths, by row key
@@ -77,8 +77,9 @@ def machine_folder() -> str:
 
 
 def programs_folder() -> str:
-    """Where programs are written first: the folder that is preferred, else that of last time; '' for next to
-    the document."""
+    """Where programs are written first: the preferred folder, else the last one; '' for next to the
+    document.
+    """
     return text("ProgramsFolder") or text("ExportFolder")
 
 
@@ -89,26 +90,28 @@ def process_rows() -> tuple[rows.Row, ...]:
 
 def label(row: rows.Row) -> str:
     """What the page calls it: 'Wire diameter', 'Wait between layers'."""
-    *before, last = (str(step).replace("_", " ") for step in row.path)
-    words = [last, *before] if before and before[0].startswith("between") else [*before, last]
+    *leading, final = (str(step).replace("_", " ") for step in row.path)
+    words = [final, *leading] if leading and leading[0].startswith("between") else [*leading, final]
     return " ".join(words).capitalize() + (f" ({row.spec.unit})" if row.spec.unit else "")
 
 
 def process() -> dict[str, Any]:
-    """What is preferred for the process in place of the defaults, by row key in outer units."""
-    found: dict[str, Any] = {}
+    """Preferred process values in place of the defaults, by row key in outer units."""
+    values: dict[str, Any] = {}
     for row in process_rows() if App.GuiUp else ():
         number = App.ParamGet(GROUP).GetFloat(row.name, math.nan)
         value = (
             text(row.name) or number if row.form == rows.MIXED else number
-        )  # those that take words were numbers once
+        )  # entries with words were numbers in earlier versions
         if value != row.outer(row.default) and value == value:
-            found[row.key] = value
-    return found
+            values[row.key] = value
+    return values
 
 
 def keep_process(values: dict[str, Any]) -> None:
-    """Keep figures in outer units by row key, texts of those that take words; those that are the defaults leave no entry."""
+    """Keep figures in outer units by row key, as texts for rows with words; defaults leave no
+    entry.
+    """
     for row in process_rows():
         if row.key in values and row.form == rows.MIXED:
             App.ParamGet(GROUP).RemFloat(row.name)
@@ -125,7 +128,9 @@ def check(row: rows.Row, value: Any) -> None:
 
 
 def proposed(section: str, row: rows.Row) -> Any:
-    """The inner value that the panel of a new stage proposes for a parameter: what is preferred, else its default."""
+    """The inner value that the panel of a new stage proposes for a parameter: the preferred one,
+    else its default.
+    """
     preferred: dict[str, Any] = {}
     if section == "cell":
         preferred = {"machine": machine()}
@@ -136,17 +141,17 @@ def proposed(section: str, row: rows.Row) -> Any:
     return row.inner(preferred[row.key], row.name) if row.key in preferred else row.default
 
 
-# ---- what is shown
+# ---- display
 
 
 def preferred_speed_unit() -> str:
-    """The unit of speeds that the user has chosen, '' for that of FreeCAD's unit scheme."""
+    """The unit of speeds that the user has chosen, '' for the unit of FreeCAD's scheme."""
     unit = text("SpeedUnit")
     return unit if unit in SPEED_UNITS else ""
 
 
 def speed_unit() -> str:
-    """The unit of speeds in read-outs: the chosen one, else that of FreeCAD's unit scheme."""
+    """The unit of speeds in read-outs: the chosen one, else the unit of FreeCAD's scheme."""
     return preferred_speed_unit() or scheme_speed_unit()
 
 

@@ -64,13 +64,15 @@ def add(obj: Any, cls: type, group: str) -> None:
             row.form == f.CHOICE
             and tuple(obj.getEnumerationsOfProperty(row.name) or ()) != row.spec.choices
         ):
-            chosen = getattr(obj, row.name)
+            current = getattr(obj, row.name)
             setattr(obj, row.name, list(row.spec.choices))
-            _set(obj, row, chosen if chosen in row.spec.choices else row.default)
+            _set(obj, row, current if current in row.spec.choices else row.default)
 
 
 def write(obj: Any, parameters: Any) -> None:
-    """Set the properties of a parameters dataclass; only those that differ, so that nothing else is touched."""
+    """Set the properties of a parameters dataclass; only changed ones, so that nothing else is
+    touched.
+    """
     values = flat(parameters)
     for row in rows(type(parameters)):
         if _differs(obj, row, values[row.key]):
@@ -131,12 +133,12 @@ def _set(obj: Any, row: Row, value: Any) -> None:
         setattr(obj, row.name, row.outer(value))
         if row.form == f.ANGLE and abs(row.inner(getattr(obj, row.name), row.name) - value) > 1e-9:
             # FreeCAD keeps angles within a turn and says nothing
-            shown = f.outer_text(row.spec, value)
+            outer_text = f.outer_text(row.spec, value)
             raise InputError(
                 "BAD_VALUE",
                 f"{obj.Label}.{row.name}",
                 "{} is out of range; give -360 to 360 deg",
-                shown,
+                outer_text,
             )
 
 

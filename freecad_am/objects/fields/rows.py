@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parameters dataclasses laid out flat: one row per property of a document object, field of a panel, macro keyword.
+"""Flattened parameters dataclasses: one row per property of a document object, field of a panel,
+macro keyword.
 
 Outside, numbers are mm, deg, mm/s and s and poses are x y z RX RY RZ; inside, angles are rad.
 """
@@ -29,7 +30,7 @@ _UNITS = {  # with an example that all parameters of the kind may be
     f.TIME: (App.Units.TimeSpan, "a time such as 0.1 s"),
     f.TURN_RATE: (App.Units.Unit(-1, 0, 0, 0, 0, 0, 0, 1), "a turn per length such as 10 deg/mm"),
 }
-# what FreeCAD reads in a quantity beside the signs of ASCII
+# non-ASCII signs that FreeCAD reads in a quantity
 _OTHER_SIGNS = "\N{DEGREE SIGN}\N{MICRO SIGN}\N{PRIME}\N{DOUBLE PRIME}\N{MINUS SIGN}"
 # a comma that may begin decimals, a no-break blank that may group digits
 _TWO_WAYS = re.compile(r"(?:^|\s),\d|\d,\d.*\s|\s.*\d,\d|\d[\u00a0\u2009\u202f]\d", re.DOTALL)
@@ -74,12 +75,14 @@ class Row:
 
     @property
     def unit(self) -> str:
-        """The outer unit, '' when there is none."""
+        """The outer unit, or ''."""
         return f.OUTER_UNIT.get(self.spec.kind, "")
 
     @property
     def label(self) -> str:
-        """Its name in a panel: 'Layer height' for layer_height; the group is told by its box."""
+        """Its name in a panel: 'Layer height' for layer_height; the box of the group names the
+        group.
+        """
         words = [("from", "to")[step] if isinstance(step, int) else step for step in self.path]
         if len(words) == 1 and words[0] in _LABELS:
             return _LABELS[words[0]]
@@ -141,13 +144,13 @@ class Row:
         """The value as a text with its unit: what a MIXED or LENGTH_OR_POSE property holds."""
         return self.outer_text(self.outer(value))
 
-    def outer_text(self, shown: Any) -> str:
+    def outer_text(self, outer_value: Any) -> str:
         """The same of a value in outer units."""
-        if shown is None or isinstance(shown, str):
-            return shown or ""
-        if _is_list(shown):
-            return " ".join(repr(number) for number in shown)
-        return f"{shown!r} {self.unit}".strip()
+        if outer_value is None or isinstance(outer_value, str):
+            return outer_value or ""
+        if _is_list(outer_value):
+            return " ".join(repr(number) for number in outer_value)
+        return f"{outer_value!r} {self.unit}".strip()
 
 
 def group_of(row: Row) -> str:
@@ -169,20 +172,20 @@ def property_name(key: str) -> str:
 @cache
 def rows(cls: type) -> tuple[Row, ...]:
     """The rows of a parameters dataclass, groups flattened, in the order of its fields."""
-    found: list[Row] = []
+    result: list[Row] = []
     for field in dataclasses.fields(cls):
         spec = f.spec_of(field)
         if spec.kind == f.GROUP:
             factory: Any = field.default_factory
-            found += [
+            result += [
                 dataclasses.replace(row, path=(field.name, *row.path)) for row in rows(factory)
             ]
         elif spec.kind in f.END_OF:
             end = dataclasses.replace(spec, kind=f.END_OF[spec.kind])
-            found += [Row((field.name, i), end, end.kind, field.default[i]) for i in (0, 1)]
+            result += [Row((field.name, i), end, end.kind, field.default[i]) for i in (0, 1)]
         else:
-            found.append(Row((field.name,), spec, _form(spec, str(field.type)), field.default))
-    return tuple(found)
+            result.append(Row((field.name,), spec, _form(spec, str(field.type)), field.default))
+    return tuple(result)
 
 
 def build(cls: type, values: dict[str, Any]) -> Any:
@@ -190,22 +193,22 @@ def build(cls: type, values: dict[str, Any]) -> Any:
     nested: dict[str, Any] = {}
     for row in rows(cls):
         value = values.get(row.key, row.default)
-        here: Any = nested
+        group: Any = nested
         for step in row.path[:-1]:
-            here = here.setdefault(step, {})
-        here[row.path[-1]] = value
+            group = group.setdefault(step, {})
+        group[row.path[-1]] = value
     return _assemble(cls, nested)
 
 
 def flat(parameters: Any) -> dict[str, Any]:
     """Inner values by row key of a parameters dataclass."""
-    found = {}
+    values = {}
     for row in rows(type(parameters)):
         value = parameters
         for step in row.path:
             value = value[step] if isinstance(step, int) else getattr(value, step)
-        found[row.key] = value
-    return found
+        values[row.key] = value
+    return values
 
 
 def degrees(angle: float) -> float:
@@ -265,9 +268,11 @@ def plain_blanks(text: str) -> str:
 
 
 def quantity(text: str) -> Any:
-    """FreeCAD's quantity of a text. ValueError for what is none, also where FreeCAD would end at a sign it does not know
-    and leave out the rest, unit and all: of '1’234 mm' it takes the 1; or where a '[' begins a comment to it, which
-    all later quantities would be within. 'ms', which FreeCAD does not know (0.20), is read here."""
+    """FreeCAD's quantity of a text. ValueError for other texts, also where FreeCAD would stop at an
+    unknown sign and drop the rest with the unit ('1’234 mm' would give 1), or where a '[' would
+    begin a comment that swallows all later quantities. 'ms', which FreeCAD does not know (0.20), is
+    read here.
+    """
     plain = plain_blanks(text).replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}")
     if "[" in plain or any(not sign.isascii() and sign not in _OTHER_SIGNS for sign in plain):
         raise ValueError(text)
@@ -281,7 +286,7 @@ def _number(spec: f.Spec, value: Any, where: str) -> Any:
     if spec.kind not in _UNITS:
         percentage = spec.kind == f.RATIO
         try:
-            number = float(_without_percent_sign(value) if percentage else value)
+            number = float(_strip_percent_sign(value) if percentage else value)
         except (TypeError, ValueError):
             if percentage:
                 message = Text(
@@ -294,14 +299,18 @@ def _number(spec: f.Spec, value: Any, where: str) -> Any:
             return int(number) if number.is_integer() else number
         return number * f.TO_INNER.get(spec.kind, 1.0)
     unit, example = _UNITS[spec.kind]
-    wanted = Text.joined(" or ", (example, *spec.words))
-    found = _quantity(value, where, wanted)
-    if found.Unit != unit and found.Unit != App.Units.Unit():
-        raise InputError("BAD_UNIT", where, "{!s} has another dimension; give {}", value, wanted)
-    return math.radians(found.Value) if spec.kind in (f.ANGLE, f.TURN_RATE) else float(found.Value)
+    expected = Text.joined(" or ", (example, *spec.words))
+    quantity_value = _quantity(value, where, expected)
+    if quantity_value.Unit != unit and quantity_value.Unit != App.Units.Unit():
+        raise InputError("BAD_UNIT", where, "{!s} has another dimension; give {}", value, expected)
+    return (
+        math.radians(quantity_value.Value)
+        if spec.kind in (f.ANGLE, f.TURN_RATE)
+        else float(quantity_value.Value)
+    )
 
 
-def _without_percent_sign(value: Any) -> Any:
+def _strip_percent_sign(value: Any) -> Any:
     """The number of a text such as '20 %' or '20%', still a text; any other value as it is."""
     if isinstance(value, str) and value.rstrip().endswith("%"):
         return value.rstrip()[:-1]
@@ -341,8 +350,8 @@ def _pose(value: Any, where: str) -> tuple[float, ...]:
         numbers = split(value, where) if isinstance(value, str) else list(value)
     except TypeError:
         numbers = []
-    if pendants.named([one for one in numbers if isinstance(one, str)]):
-        return pendants.six([str(one) for one in numbers], where)
+    if pendants.named([entry for entry in numbers if isinstance(entry, str)]):
+        return pendants.six([str(entry) for entry in numbers], where)
     try:
         floats = [float(number) for number in numbers]
     except (TypeError, ValueError):

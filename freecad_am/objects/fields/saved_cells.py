@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cells saved as files of their own: in RoboticAM/cells in FreeCAD's folder of user data, and beside a document."""
+"""Cells saved as files of their own: in RoboticAM/cells in FreeCAD's folder of user data, and next
+to a document.
+"""
 
 from __future__ import annotations
 
@@ -11,16 +13,16 @@ import FreeCAD as App
 
 FOLDER = os.path.join("RoboticAM", "cells")
 ENDINGS = (".yaml", ".yml")
-PATTERN = "(*.yaml *.yml)"  # of these files in a file dialog
-START = 20_000  # characters of a file that are looked at
+PATTERN = "(*.yaml *.yml)"  # filter in a file dialog
+START = 20_000  # characters of a file that are read
 MACHINE = re.compile(r"^machine\s*:", re.MULTILINE)
 OF_JOBS = re.compile(
     r"^(part|cell|features|version)\s*:", re.MULTILINE
-)  # a job file beside it is none
+)  # a job file next to it is not a cell
 
 
 def own_folder() -> str:
-    """The folder of the user's own cells, which may not be there yet."""
+    """The folder of the user's own cells, which may not exist yet."""
     return os.path.join(App.getUserAppDataDir(), FOLDER)
 
 
@@ -35,24 +37,25 @@ def path_of(name: str) -> str:
 
 
 def known(doc: Any) -> list[tuple[str, str]]:
-    """Path and name of the cell files in the user's folder and beside a document, by name; two of one name are told apart by
-    their folders. Files that cannot be read, and those of jobs, are none."""
+    """Path and name of the cell files in the user's folder and next to a document, by name; equal
+    names get their folders. Unreadable files and job files are skipped.
+    """
     folders = [
         own_folder(),
         *([os.path.dirname(doc.FileName)] if doc is not None and doc.FileName else []),
     ]
     paths = [path for folder in dict.fromkeys(folders) for path in _files(folder)]
     names = [os.path.splitext(os.path.basename(path))[0] for path in paths]
-    found = [
+    cells = [
         (path, f"{name} ({os.path.dirname(path)})" if names.count(name) > 1 else name)
         for path, name in zip(paths, names, strict=True)
     ]
-    return sorted(found, key=lambda one: (one[1].lower(), one[0]))
+    return sorted(cells, key=lambda entry: (entry[1].lower(), entry[0]))
 
 
 def _files(folder: str) -> list[str]:
     try:
-        entries = sorted(os.scandir(folder), key=lambda one: one.name)
+        entries = sorted(os.scandir(folder), key=lambda file_entry: file_entry.name)
     except OSError:
         return []
     return [entry.path for entry in entries if is_file_of_cell(entry.name) and _is_cell(entry.path)]

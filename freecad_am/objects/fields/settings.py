@@ -11,34 +11,36 @@ from ..stage import Stage
 from . import expressions, properties, rows
 
 
-def given(obj: Any, stage: Stage, dataclasses: Sequence[Any], values: dict[str, Any]) -> None:
+def set_parameters(
+    obj: Any, stage: Stage, dataclasses: Sequence[Any], values: dict[str, Any]
+) -> None:
     """Set the parameters of a stage: whole dataclasses (None leaves the properties) and, over them, single values in
     outer units by row key, or expressions (`=Spreadsheet.height`) that they follow from now on.
 
-    All are checked before the first is set. InputError names what was given.
+    All are checked before the first is set. InputError names the bad value.
     """
-    known = {row.key: row for section in stage.sections for row in rows.rows(section.cls)}
-    unknown = sorted(set(values) - set(known))
+    rows_by_key = {row.key: row for section in stage.sections for row in rows.rows(section.cls)}
+    unknown = sorted(set(values) - set(rows_by_key))
     if unknown:
         raise InputError(
             "UNKNOWN_PARAMETER",
             obj.Label,
             "{} is not known; use one of {}",
             ", ".join(unknown),
-            ", ".join(sorted(known)),
+            ", ".join(sorted(rows_by_key)),
         )
-    whole = {type(entry): entry for entry in dataclasses if entry is not None}
-    for cls in whole.keys() - {section.cls for section in stage.sections}:
-        wanted = ", ".join(section.cls.__name__ for section in stage.sections)
+    by_class = {type(entry): entry for entry in dataclasses if entry is not None}
+    for cls in by_class.keys() - {section.cls for section in stage.sections}:
+        expected = ", ".join(section.cls.__name__ for section in stage.sections)
         raise InputError(
             "BAD_INPUT",
             obj.Label,
             "{} is none of the parameters that it takes; give {}",
             cls.__name__,
-            wanted,
+            expected,
         )
     try:
-        checked = _checked(obj, stage, whole, values)
+        checked = _checked(obj, stage, by_class, values)
     except ReferenceError:  # an object that is gone cannot even be named
         raise InputError(
             "BAD_INPUT", obj.Label, "a value is an object that was deleted; give a number or a text"
@@ -46,19 +48,23 @@ def given(obj: Any, stage: Stage, dataclasses: Sequence[Any], values: dict[str, 
     for parameters in checked:
         properties.write(obj, parameters)
     for key, value in values.items():
-        expressions.follow(obj, known[key], value if expressions.is_expression(value) else None)
+        expressions.follow(
+            obj, rows_by_key[key], value if expressions.is_expression(value) else None
+        )
 
 
-def _checked(obj: Any, stage: Stage, whole: dict[type, Any], values: dict[str, Any]) -> list[Any]:
-    """The dataclasses of which something is given, by class as a whole, or by key."""
+def _checked(
+    obj: Any, stage: Stage, by_class: dict[type, Any], values: dict[str, Any]
+) -> list[Any]:
+    """The dataclasses with given values, by class as a whole or by key."""
     checked = []
     for section in stage.sections:
-        mine = {row.key: row for row in rows.rows(section.cls) if row.key in values}
-        if section.cls not in whole and not mine:
+        own_rows = {row.key: row for row in rows.rows(section.cls) if row.key in values}
+        if section.cls not in by_class and not own_rows:
             continue
-        base = whole.get(section.cls)
+        base = by_class.get(section.cls)
         inner = rows.flat(base if base is not None else stage.parameters(obj, section.cls))
-        for key, row in mine.items():
+        for key, row in own_rows.items():
             inner[key] = row.inner(
                 _plain(obj, row, values[key], f"{section.prefix}.{key}"), f"{section.prefix}.{key}"
             )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The units that a user reads and types: those of FreeCAD's unit scheme, and the preferred unit of speeds.
+"""The units that a user reads and types: FreeCAD's unit scheme, and the preferred unit of speeds.
 
 Job files, CSV, programs and reports of commands are metric whatever the scheme is.
 """
@@ -21,7 +21,7 @@ from ...core.quantities import (
 from . import preferences
 from .unit_scheme import is_metric, plain_name, scheme_unit
 
-ORDINARY = {"mm": 10.0, "mm/s": 6.0}  # what tells the unit of a field that has no number yet
+ORDINARY = {"mm": 10.0, "mm/s": 6.0}  # values that decide the unit of a field without a number
 _BARE = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _LEAST_OF_FEET = 0.1  # square or cubic feet; less is in inches
 _METRIC = re.compile(r"(?:µ|n|m|c|k)?m(?:\^[23]|²|³)?(?:/.*)?|ml|l|k?g|t")
@@ -39,7 +39,7 @@ def conversion(value: float, unit: str) -> tuple[float, str] | None:
         per_unit, name = _in_inches(per_unit, plain_name(name))
     if name == unit or (_METRIC.fullmatch(name) and not _is_length(unit)):
         return None
-    return 1.0 / per_unit, _with_powers(plain_name(name))
+    return 1.0 / per_unit, _format_powers(plain_name(name))
 
 
 def _in_inches(per_unit: float, name: str) -> tuple[float, str]:
@@ -48,26 +48,27 @@ def _in_inches(per_unit: float, name: str) -> tuple[float, str]:
     return (per_unit, name) if power is None else (per_unit / 12.0**power, f"in^{power}")
 
 
-def scale_of(most: float, unit: str) -> tuple[float, str]:
-    """How many of the unit that is shown make one `unit`, and its name, for values of up to `most`: of an axis of a picture,
-    a legend, a column."""
+def scale_of(largest: float, unit: str) -> tuple[float, str]:
+    """The factor from `unit` to the displayed unit, and the name of the displayed unit, for values
+    up to `largest` on a plot axis, legend or column.
+    """
     base, per_hour, _ = unit.partition("/h")
-    other = conversion(most, UNITS[base]) if base in UNITS else None
-    return (1.0, unit) if other is None else (other[0], other[1] + per_hour)
+    converted = conversion(largest, UNITS[base]) if base in UNITS else None
+    return (1.0, unit) if converted is None else (converted[0], converted[1] + per_hour)
 
 
 def _speed_conversion(unit: str) -> tuple[float, str] | None:
-    preferred, shown = preferences.preferred_speed_unit(), preferences.speed_unit()
-    if shown == unit or (not preferred and shown == "mm/s"):
+    preferred, display_unit = preferences.preferred_speed_unit(), preferences.speed_unit()
+    if display_unit == unit or (not preferred and display_unit == "mm/s"):
         return None  # mm/min and m/min, as is usual of torches and wire, are metric as well
-    return float(App.Units.Quantity(f"1 {unit}").getValueAs(shown).Value), shown
+    return float(App.Units.Quantity(f"1 {unit}").getValueAs(display_unit).Value), display_unit
 
 
 def _is_length(unit: str) -> bool:
     return bool(App.Units.Quantity(f"1 {unit}").Unit == App.Units.Length)
 
 
-def _with_powers(name: str) -> str:
+def _format_powers(name: str) -> str:
     return name.replace("^2", "²").replace("^3", "³")
 
 
@@ -84,23 +85,29 @@ def in_user_units(text: str) -> str:
 
 def quantity_text(value: float, unit: str, digits: int = 4) -> str:
     """A quantity for people, in the user's units. value: in `unit`, one of `core.quantities.UNITS`, or deg, s or %."""
-    other = conversion(value, UNITS[unit]) if unit in UNITS else None
-    factor, name = (1.0, unit) if other is None else other
+    converted = conversion(value, UNITS[unit]) if unit in UNITS else None
+    factor, name = (1.0, unit) if converted is None else converted
     return f"{significant(value * factor, digits)} {name}"
 
 
 def field_text(value: float, unit: str, display: str = "") -> tuple[str, float, str]:
-    """What a field shows of a value in `unit`: the text, how many `unit` a bare number there is, and the unit's name.
+    """The display of a value in `unit` in a field: the text, the number of `unit` per bare number,
+    and the unit's name.
 
-    display: the unit it is shown in; '' for that of FreeCAD's scheme. A fraction of inches is shown where it is the value.
+    display: the display unit; '' for FreeCAD's scheme. A fraction of inches is shown where it is
+    the value.
     """
     if display:
         per_unit = App.Units.Quantity(f"1 {display}").getValueAs(unit).Value
         return f"{exact_or_rounded(value / per_unit)} {display}", per_unit, display
     per_unit, name = scheme_unit(value or ORDINARY.get(unit, 0.0), unit)
     fraction = _fraction(value, unit, name)
-    shown = plain_name(name) if name in ('"', "'") else name
-    return fraction or f"{exact_or_rounded(value / per_unit)} {shown}", per_unit, shown
+    display_name = plain_name(name) if name in ('"', "'") else name
+    return (
+        fraction or f"{exact_or_rounded(value / per_unit)} {display_name}",
+        per_unit,
+        display_name,
+    )
 
 
 def _fraction(value: float, unit: str, name: str) -> str:
@@ -111,8 +118,8 @@ def _fraction(value: float, unit: str, name: str) -> str:
     text = str(quantity.UserString)
     if not text.endswith(("'", '"')):
         return ""
-    read = feet_and_inches(text)
-    return text if read is not None and math.isclose(read, quantity.Value, rel_tol=1e-9) else ""
+    parsed = feet_and_inches(text)
+    return text if parsed is not None and math.isclose(parsed, quantity.Value, rel_tol=1e-9) else ""
 
 
 _FEET = re.compile(
@@ -127,25 +134,28 @@ def feet_and_inches(text: str) -> float | None:
     if match is None or (match["feet"] is None and match["inches"] is None):
         return None
     inches = 12.0 * float(match["feet"] or 0.0)
-    for part in re.split(r"\s*\+\s*|(?<=\d)\s+(?=\d)", (match["inches"] or "0").replace('"', "")):
-        above, _, below = part.partition("/")
+    for summand in re.split(
+        r"\s*\+\s*|(?<=\d)\s+(?=\d)", (match["inches"] or "0").replace('"', "")
+    ):
+        above, _, below = summand.partition("/")
         if below and float(below) == 0.0:
             return None
         inches += float(above) / float(below or 1.0)
     return 25.4 * (-inches if match["sign"] == "-" else inches)
 
 
-def without_noise(value: float) -> float:
+def round_conversion(value: float) -> float:
     """A number typed in one unit, in another one, without the last digits that conversion leaves."""
     return float(f"{value:.14g}")
 
 
 def typed_text(text: str, unit: str, per_bare: float) -> str:
-    """A text typed into a plain line, for a parameter in `unit`: a number without a unit gets `per_bare` of it each. Other
-    texts, such as words, stay."""
+    """A text typed into a plain line, for a parameter in `unit`: a number without a unit is
+    multiplied by `per_bare`. Other texts, such as words, stay.
+    """
     inches = feet_and_inches(text) if unit == "mm" else None
     if inches is not None:
-        return f"{without_noise(inches)!r} mm"
+        return f"{round_conversion(inches)!r} mm"
     if per_bare != 1.0 and _BARE.fullmatch(text):
-        return f"{without_noise(float(text) * per_bare)!r} {unit}"
+        return f"{round_conversion(float(text) * per_bare)!r} {unit}"
     return text

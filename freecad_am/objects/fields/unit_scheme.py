@@ -6,7 +6,7 @@ from __future__ import annotations
 import FreeCAD as App
 
 _NAMES = {'"': "in", "'": "ft", "sqft": "ft²", "cft": "ft³"}
-_ORDINARY_MM = 10.0  # a length by which a scheme is told: 10 mm, 0.394 in
+_ORDINARY_MM = 10.0  # a length that identifies a scheme: 10 mm, 0.394 in
 
 
 def scheme_unit(value: float, unit: str) -> tuple[float, str]:
@@ -25,7 +25,7 @@ def plain_name(name: str) -> str:
 
 
 def is_metric() -> bool:
-    """Whether the scheme shows lengths of this trade in mm."""
+    """Whether the scheme shows lengths of usual parts in mm."""
     return scheme_unit(_ORDINARY_MM, "mm")[1] == "mm"
 
 

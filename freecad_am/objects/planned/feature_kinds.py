@@ -21,7 +21,7 @@ _PROXIES = {
 
 
 def proxy_of(kind: str) -> type[Any]:
-    """The class of the features of a family. InputError BAD_VALUE for a kind that there is not."""
+    """The class of the features of a family. InputError BAD_VALUE for an unknown kind."""
     if kind not in KINDS:
         raise InputError(
             "BAD_VALUE",
@@ -31,5 +31,5 @@ def proxy_of(kind: str) -> type[Any]:
             Text.joined(", ", KINDS),
         )
     module, name = _PROXIES[kind]
-    found: type[Any] = getattr(importlib.import_module(f"freecad_am.objects.{module}"), name)
-    return found
+    proxy_class: type[Any] = getattr(importlib.import_module(f"freecad_am.objects.{module}"), name)
+    return proxy_class

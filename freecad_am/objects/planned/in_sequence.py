@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Several features as one toolpath: each planned by its family, then kept clear of what is deposited of the others by then,
-which carries it too."""
+"""Several features as one toolpath: each planned by its family, then kept clear of the others'
+deposit at that time, which carries it too.
+"""
 
 from __future__ import annotations
 
@@ -21,8 +22,8 @@ from ...core.process.deposit import balance as deposit_balance
 from ...core.strategies import sequence, support
 from ...core.strategies.families import NONE, family_of
 from ...core.toolpath import Toolpath as CoreToolpath
-from ..checks.on_its_part import looked_at
-from ..shapes.bodies import Taken, bodies, taken
+from ..checks.on_its_part import check_on_part
+from ..shapes.bodies import Taken, bodies, snapshot_of
 from ..shapes.platforms import platforms
 from ..work import progress
 from .toolpaths import (
@@ -31,11 +32,11 @@ from .toolpaths import (
     STRATEGY,
     Given,
     above_platform,
+    add_wire_speed,
     bases_of,
     kept_clear,
     layers_of,
     over_edge,
-    with_wire,
 )
 
 OVERLAP = 0.01  # of the smaller part
@@ -45,135 +46,171 @@ TOLERANCE_MM = 1e-9  # mm
 
 @dataclass(frozen=True)
 class Member:
-    """A feature of a sequence. given: None of it needs the document. on: the substrate's own objects that are parts of other
-    features; neighbours: those that are not, where it has both. whole: it is all of its sources, not faces of one."""
+    """A feature of a sequence. inputs: independent of the document. on: objects of the substrate
+    that are parts of other features; neighbours: objects of the substrate that are not, if it has
+    both. is_complete: it deposits its whole sources, not faces of one.
+    """
 
     label: str
-    given: Given
+    inputs: Given
     sources: tuple[Taken, ...]
     on: tuple[str, ...] = ()
     neighbours: tuple[Taken, ...] = ()
-    whole: bool = True
+    is_complete: bool = True
 
-    def around(self) -> tuple[Body, ...]:
-        """What stands around it from the beginning: no parts of other features, which are deposited by and by."""
+    def surroundings(self) -> tuple[Body, ...]:
+        """The bodies around it from the beginning, without parts of other features, which are
+        deposited later.
+        """
         if not self.on:
-            return tuple(self.given.wall.surroundings)
-        return (*bodies(self.neighbours), *self.given.wall.surroundings[1:])
+            return tuple(self.inputs.wall.surroundings)
+        return (*bodies(self.neighbours), *self.inputs.wall.surroundings[1:])
 
 
-def member(feature: Any, given: Given, all_features: Sequence[Any]) -> Member:
+def member(feature: Any, inputs: Given, all_features: Sequence[Any]) -> Member:
     """A feature object as one of several."""
-    own = (feature.Source[0], *getattr(feature, "Further", ()))
-    others = [
+    own_sources = (feature.Source[0], *getattr(feature, "Further", ()))
+    other_sources = [
         source
-        for one in all_features
-        if one is not feature
-        for source in (one.Source[0], *getattr(one, "Further", ()))
+        for other_feature in all_features
+        if other_feature is not feature
+        for source in (other_feature.Source[0], *getattr(other_feature, "Further", ()))
     ]
     substrate = getattr(feature, "Substrate", None)
     stands_on = [] if substrate is None else _leaves(substrate)
-    on = tuple(one.Name for one in stands_on if one in others)
-    neighbours = tuple(taken(one) for one in stands_on if one not in others) if on else ()
-    whole = not any(feature.Source[1])
-    return Member(feature.Label, given, tuple(taken(one) for one in own), on, neighbours, whole)
+    on = tuple(other_feature.Name for other_feature in stands_on if other_feature in other_sources)
+    neighbours = (
+        tuple(
+            snapshot_of(other_feature)
+            for other_feature in stands_on
+            if other_feature not in other_sources
+        )
+        if on
+        else ()
+    )
+    is_complete = not any(feature.Source[1])
+    return Member(
+        feature.Label,
+        inputs,
+        tuple(snapshot_of(other_feature) for other_feature in own_sources),
+        on,
+        neighbours,
+        is_complete,
+    )
 
 
 def _leaves(obj: Any) -> list[Any]:
     """The objects that a compound is made of, or the object itself."""
     links = getattr(obj, "Links", None) if obj.TypeId == "Part::Compound" else None
-    return [obj] if links is None else [leaf for one in links for leaf in _leaves(one)]
+    return [obj] if links is None else [leaf for child in links for leaf in _leaves(child)]
 
 
 def planned_in_sequence(
     members: Sequence[Member], order: str, names: Sequence[tuple[str, ...]]
 ) -> CoreToolpath:
-    """One toolpath of several features. order: `sequence` of the job; names: of the objects that each is made of.
+    """One toolpath of several features. order: `sequence` of the job; names: of the source objects
+    of each feature.
 
-    Raises InputError OVERLAP, FLOATS, and those of the families; what is about one feature names it.
+    Raises InputError OVERLAP, FLOATS, and the errors of the families; an error about one feature
+    names it.
     """
     _refuse_overlaps(members, names)
-    cell = members[0].given.cell
-    made: list[CoreToolpath] = []
+    cell = members[0].inputs.cell
+    planned_parts: list[CoreToolpath] = []
     stands = None
-    for number, one in enumerate(members):
-        given = dataclasses.replace(one.given, stands=stands if cell is not None else None)
+    for number, entry in enumerate(members):
+        inputs = dataclasses.replace(entry.inputs, stands=stands if cell is not None else None)
         try:
             with progress.one_of(number, len(members), 0.0, STRATEGY):
-                layers = with_wire(layers_of(given), given)
+                layers = add_wire_speed(layers_of(inputs), inputs)
         except InputError as error:
-            raise InputError(error.code, f"{one.label}: {error.where}", error.message) from None
-        made.append(dataclasses.replace(layers, feature_label=one.label))
+            raise InputError(error.code, f"{entry.label}: {error.where}", error.message) from None
+        planned_parts.append(dataclasses.replace(layers, feature_label=entry.label))
         if stands is None:
             stands = mounted(cell or CellParameters(), layers.frame, layers.family)
     assert stands is not None
-    around = _distinct([body for one in members for body in one.around()])
-    toolpath = sequence.joined(made, order, stands[:3, 2], around)
+    around = _distinct([body for entry in members for body in entry.surroundings()])
+    toolpath = sequence.joined(planned_parts, order, stands[:3, 2], around)
     plates = platforms(cell, toolpath)
     progress.report(STRATEGY, CLEARING)
-    for number, one in enumerate(members):
-        if one.given.build.clearance != "none":
+    for number, entry in enumerate(members):
+        if entry.inputs.build.clearance != "none":
             with progress.one_of(number, len(members), STRATEGY, CHECKED):
-                toolpath = kept_clear(toolpath, one.given, (*around, *plates), number)
+                toolpath = kept_clear(toolpath, entry.inputs, (*around, *plates), number)
     progress.report(CHECKED, "looking for beads over nothing")
-    for number, one in enumerate(members):
-        toolpath = _judged(toolpath, number, one, plates, stands)
-    parts = toolpath.features
-    on_parts = [part.on_part for part in parts if part.on_part is not None]
-    worst = max(on_parts, key=lambda one: one[1] / one[2], default=None)
+    for number, entry in enumerate(members):
+        toolpath = _judge_feature(toolpath, number, entry, plates, stands)
+    feature_parts = toolpath.features
+    on_parts = [
+        feature_part.on_part for feature_part in feature_parts if feature_part.on_part is not None
+    ]
+    worst = max(on_parts, key=lambda entry: entry[1] / entry[2], default=None)
     return dataclasses.replace(
         toolpath,
-        unsupported=math.fsum(part.unsupported or 0.0 for part in parts),
-        on_part=None if worst is None else (sum(one[0] for one in on_parts), *worst[1:]),
+        unsupported=math.fsum(feature_part.unsupported or 0.0 for feature_part in feature_parts),
+        on_part=None if worst is None else (sum(entry[0] for entry in on_parts), *worst[1:]),
     )
 
 
-def _judged(
-    toolpath: CoreToolpath, number: int, one: Member, plates: Sequence[Body], stands: Any
+def _judge_feature(
+    toolpath: CoreToolpath, number: int, entry: Member, plates: Sequence[Body], stands: Any
 ) -> CoreToolpath:
-    """The toolpath with what carries a feature of it, whether that lies on its part, and what is left out of it."""
-    part, numbers = toolpath.parts[number]
+    """The toolpath with the support of one of its features, its distance from the part, and its
+    omissions.
+    """
+    feature_part, numbers = toolpath.parts[number]
     planes: tuple[Any, ...] = ()
-    bases = bases_of(one.given)
-    if part.family == "revolution" and (plates or _lowest(toolpath, part)):
-        planes = (stands if plates else part.frame,)
-    if part.family == "solid" and not _lowest(toolpath, part):
+    bases = bases_of(entry.inputs)
+    if feature_part.family == "revolution" and (plates or _lowest(toolpath, feature_part)):
+        planes = (stands if plates else feature_part.frame,)
+    if feature_part.family == "solid" and not _lowest(toolpath, feature_part):
         bases = []
-    ground = (*one.given.wall.surroundings, *plates)
-    lengths, found = support.of_feature(toolpath, number, planes, ground, bases)
+    ground = (*entry.inputs.wall.surroundings, *plates)
+    lengths, support_issues = support.of_feature(toolpath, number, planes, ground, bases)
     sequence.refuse_floating(toolpath, number, lengths)
-    given = dataclasses.replace(one.given, stands=stands)
-    seen = looked_at(part if planes else over_edge(part, given), one.given, one.sources)
-    balance = deposit_balance.toolpath_balance(one.given.wall, part, one.given.process.bead_width)
-    seen = dataclasses.replace(seen, unsupported=math.fsum(lengths.values()))
-    own = (*(above_platform(part, given) if bases else ()), *seen.issues)
-    more = (*deposit_balance.issues(balance), *found, *sequence.renumbered(own, numbers))
-    return sequence.with_feature(toolpath, number, seen, more)
-
-
-def _lowest(toolpath: CoreToolpath, part: CoreToolpath) -> bool:
-    """Whether nothing of the other features lies lower along the feature's own vertical."""
-    up = part.frame[:3, 2]
-    low, lowest = (
-        min(float((bead.points @ up).min()) for _, _, bead in one) for one in (part, toolpath)
+    inputs = dataclasses.replace(entry.inputs, stands=stands)
+    checked = check_on_part(
+        feature_part if planes else over_edge(feature_part, inputs), entry.inputs, entry.sources
     )
-    return low <= lowest + part.layer_height
+    balance = deposit_balance.toolpath_balance(
+        entry.inputs.wall, feature_part, entry.inputs.process.bead_width
+    )
+    checked = dataclasses.replace(checked, unsupported=math.fsum(lengths.values()))
+    feature_issues = (*(above_platform(feature_part, inputs) if bases else ()), *checked.issues)
+    further_issues = (
+        *deposit_balance.issues(balance),
+        *support_issues,
+        *sequence.renumbered(feature_issues, numbers),
+    )
+    return sequence.with_feature(toolpath, number, checked, further_issues)
+
+
+def _lowest(toolpath: CoreToolpath, feature_part: CoreToolpath) -> bool:
+    """Whether no other feature reaches lower along the feature's own vertical."""
+    up = feature_part.frame[:3, 2]
+    low, lowest = (
+        min(float((bead.points @ up).min()) for _, _, bead in candidate)
+        for candidate in (feature_part, toolpath)
+    )
+    return low <= lowest + feature_part.layer_height
 
 
 def _refuse_overlaps(members: Sequence[Member], names: Sequence[tuple[str, ...]]) -> None:
     """InputError OVERLAP for parts that are within one another; what grows on another begins at its surface."""
-    for k, one in enumerate(members):
+    for k, entry in enumerate(members):
         cut = (
-            family_of(one.given.strategy).substrate != NONE
-            and family_of(one.given.strategy).kind != "solid"
+            family_of(entry.inputs.strategy).substrate != NONE
+            and family_of(entry.inputs.strategy).kind != "solid"
         )
-        for j, other in enumerate(members[:k]):
-            if not (one.whole and other.whole) or (cut and set(names[j]) & set(one.on)):
+        for j, other_entry in enumerate(members[:k]):
+            if not (entry.is_complete and other_entry.is_complete) or (
+                cut and set(names[j]) & set(entry.on)
+            ):
                 continue
             pairs = [
                 (a.shape, b.shape)
-                for a in one.sources
-                for b in other.sources
+                for a in entry.sources
+                for b in other_entry.sources
                 if a.shape and b.shape
             ]
             shared = sum(common_volume(a, b) for a, b in pairs)
@@ -183,22 +220,22 @@ def _refuse_overlaps(members: Sequence[Member], names: Sequence[tuple[str, ...]]
             if shared > OVERLAP * smaller > 0.0:
                 raise InputError(
                     "OVERLAP",
-                    one.label,
+                    entry.label,
                     "{:.4g} cm3 of it are within {} and would be deposited twice; cut one from the "
                     "other",
                     shared / MM3,
-                    other.label,
+                    other_entry.label,
                 )
 
 
 def _distinct(all_bodies: Sequence[Body]) -> tuple[Body, ...]:
-    """Bodies without those that are there before."""
-    kept: list[Body] = []
+    """Bodies without duplicates."""
+    distinct: list[Body] = []
     for body in all_bodies:
         if not any(
-            body.vertices.shape == other.vertices.shape
-            and np.abs(body.vertices - other.vertices).max() <= TOLERANCE_MM
-            for other in kept
+            body.vertices.shape == known_body.vertices.shape
+            and np.abs(body.vertices - known_body.vertices).max() <= TOLERANCE_MM
+            for known_body in distinct
         ):
-            kept.append(body)
-    return tuple(kept)
+            distinct.append(body)
+    return tuple(distinct)

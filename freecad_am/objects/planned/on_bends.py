@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Whether what is deposited stands on something bent, as a family is chosen for it."""
+"""Whether a deposit rests on a curved surface, for the choice of a family."""
 
 from __future__ import annotations
 
@@ -12,19 +12,21 @@ from ...core.issues import Text
 from ..shapes.bodies import Taken
 
 
-def on_bend(part: Taken, ground: Taken) -> bool:
-    """Whether a part lies on a face of the ground that is not flat; False of meshes, and where the kernel cannot tell."""
+def rests_on_bend(deposit: Taken, ground: Taken) -> bool:
+    """Whether a part rests on a curved face of the ground; False for meshes, and if the kernel
+    fails.
+    """
     with contextlib.suppress(*kernel.FAULTS):
         return (
-            part.shape is not None
+            deposit.shape is not None
             and ground.shape is not None
-            and lies_on_bend(part.shape, ground.shape)
+            and lies_on_bend(deposit.shape, ground.shape)
         )
     return False
 
 
-def carried(shape: Any) -> str:
-    """What is told of several solids where most stand on the bend of another one; '' of others."""
+def bend_hint(shape: Any) -> str:
+    """A hint for several solids if most rest on a curved face of another one; else ''."""
     with contextlib.suppress(*kernel.FAULTS):
         if name := carrier(shape.Solids):
             return Text(

@@ -15,28 +15,29 @@ from ...core.strategies.support import stands_on
 from ...core.toolpath import Toolpath
 from ...core.types import Array
 
-STEP = 5.0  # mm, to multiples of which diameters are rounded up
-LARGEST = next(
+STEP = 5.0  # mm; diameters are rounded up to multiples
+MAX_DIAMETER_MM = next(
     f.spec_of(field).high or math.inf
     for field in dataclasses.fields(CellParameters)
     if field.name == "platform_diameter"
-)  # mm; what lies beside it is warned about
+)  # mm; beads outside get a warning
 MIDDLE = 0.9  # of a diameter; a smaller one is worth another frame
 
 
 def fitted(toolpath: Toolpath, settings: CellParameters) -> CellParameters:
-    """The cell with a platform that all beads of the first layer lie on, or the largest there is. The feature's own frame sits on it where the layer
-    stands on that and needs a smaller platform so."""
-    own = mounted(settings, toolpath.frame, toolpath.family)
-    diameter, mount = needed(toolpath, own), settings.mount
-    other = needed(toolpath, toolpath.frame)
+    """The cell with a platform below all beads of the first layer, or the largest allowed one. The
+    feature's own frame sits on it if the layer then needs a smaller platform.
+    """
+    frame = mounted(settings, toolpath.frame, toolpath.family)
+    diameter, mount = needed(toolpath, frame), settings.mount
+    feature_diameter = needed(toolpath, toolpath.frame)
     if (
         mount == "auto"
-        and other < MIDDLE * diameter
+        and feature_diameter < MIDDLE * diameter
         and stands_on(toolpath, toolpath.frame, toolpath.surroundings)
     ):
-        diameter, mount = other, "feature"
-    diameter = min(max(diameter, settings.platform_diameter), LARGEST)
+        diameter, mount = feature_diameter, "feature"
+    diameter = min(max(diameter, settings.platform_diameter), MAX_DIAMETER_MM)
     return dataclasses.replace(settings, platform_diameter=diameter, mount=mount)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A scan of what a toolpath is deposited on, taken from an inspection of that, and what it makes of the toolpath."""
+"""A scan of the surface below a toolpath, taken from an inspection, and the toolpath fitted to it."""
 
 from __future__ import annotations
 
@@ -16,19 +16,20 @@ from ...core.issues import InputError
 from ...core.parameters.inspection import NONE, InspectionParameters
 from ...core.parameters.scan import ScanParameters
 from ...core.toolpath import Toolpath
-from ..shapes.bodies import taken
+from ..shapes.bodies import snapshot_of
 from ..stage import stage_of
 
 UNDERSTANDING = (
     "POINTS_READ",
     "FREE_MOTION",
-)  # of what an inspection finds: how the scan was understood
+)  # codes of inspection findings about how the scan was interpreted
 Fit = Callable[[Toolpath], Toolpath]
 
 
 def fit_of(obj: Any, parameters: ScanParameters) -> Fit | None:
-    """What fits the toolpath of a toolpath object to its scan, without the document; None where it has no scan.
-    InputError BAD_INPUT, and those of the inspection."""
+    """A function that fits the toolpath of a toolpath object to its scan, without the document;
+    None without a scan. InputError BAD_INPUT, and the errors of the inspection.
+    """
     scan = obj.Scan
     if scan is None:
         return None
@@ -52,7 +53,9 @@ def fit_of(obj: Any, parameters: ScanParameters) -> Fit | None:
         )
     inspected = scan.Proxy.value(scan)
     ground = getattr(obj.Feature, "Substrate", None)
-    substrate = None if ground is None or parameters.after_layer is not None else taken(ground)
+    substrate = (
+        None if ground is None or parameters.after_layer is not None else snapshot_of(ground)
+    )
 
     def fit(toolpath: Toolpath) -> Toolpath:
         fit_layers.refuse_family(toolpath, where)
@@ -67,22 +70,26 @@ def fit_of(obj: Any, parameters: ScanParameters) -> Fit | None:
 def fitted(
     toolpath: Toolpath, inspected: Inspected, body: Any, parameters: ScanParameters
 ) -> Toolpath:
-    """The toolpath on the surface that was scanned, and kept clear of that in place of the body. InputError."""
-    first = toolpath.layers[min(parameters.first, len(toolpath.layers) - 1)]
-    ways = np.concatenate([fit_layers.ways_of(toolpath)(bead) for bead in first.beads])
+    """The toolpath on the scanned surface, and kept clear of the scan in place of the body.
+    InputError.
+    """
+    first_layer = toolpath.layers[min(parameters.first, len(toolpath.layers) - 1)]
+    directions = np.concatenate([fit_layers.ways_of(toolpath)(bead) for bead in first_layer.beads])
     points = inspected.points
     if body is not None:
-        points = points[scanned_body.facing(points, body, ways)]
+        points = points[scanned_body.facing(points, body, directions)]
     scan = Scan(points, inspected.file, parameters.scan_within)
-    made = fit_layers.fitted(
+    fitted_toolpath = fit_layers.fitted(
         toolpath, scan, parameters, len(inspected.points) - len(points), inspected.motion
     )
     notes = [issue for issue in inspected.issues if issue.code in UNDERSTANDING]
-    made = dataclasses.replace(made, issues=(*notes, *made.issues))
+    fitted_toolpath = dataclasses.replace(fitted_toolpath, issues=(*notes, *fitted_toolpath.issues))
     if body is None:
-        return made
+        return fitted_toolpath
     around = tuple(
-        scanned_body.scanned(one, scan, ways) if one.name == body.name else one
-        for one in made.surroundings
+        scanned_body.scanned(surrounding, scan, directions)
+        if surrounding.name == body.name
+        else surrounding
+        for surrounding in fitted_toolpath.surroundings
     )
-    return dataclasses.replace(made, surroundings=around)
+    return dataclasses.replace(fitted_toolpath, surroundings=around)

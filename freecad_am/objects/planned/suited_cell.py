@@ -19,17 +19,19 @@ from ..shapes import cell_obstacles
 from ..work import progress
 
 
-def of_toolpath(
+def suit_to_toolpath(
     toolpath: Any, failed_layers: Collection[int] = ()
 ) -> Callable[[CellParameters], CellParameters]:
-    """What finds, beside the document, the parameters of a cell that suits the job of a toolpath object: those it is asked
-    about, or with another branch, another place, or a positioner. failed_layers: places of layers that could not be planned
-    in the cell found before. It raises what resolving a cell raises."""
-    read, folders = toolpath.Proxy.reader(toolpath), tuple(user_machines.folders())
+    """A function that finds, without the document, the parameters of a cell that suits the job of a
+    toolpath object: the given ones, or ones with another branch, position, or a positioner.
+    failed_layers: indices of layers that could not be planned in the cell found before. It raises
+    what resolving a cell raises.
+    """
+    read_toolpath, folders = toolpath.Proxy.reader(toolpath), tuple(user_machines.folders())
     process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
 
     def of(settings: CellParameters) -> CellParameters:
-        planned = read()
+        planned = read_toolpath()
         if not arrangement_of(settings.setup).planned:
             return settings
         cell = cell_obstacles.resolved(settings, planned, folders)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """How a feature of each family becomes a toolpath: layers and beads, the nozzle kept clear, what carries them.
 
-A family is imported when one of its features is planned: all of them take longer than to plan a small part.
+A family is imported when one of its features is planned: importing every family takes longer than
+planning a small part.
 """
 
 from __future__ import annotations
@@ -36,16 +37,17 @@ from ...core.toolpath import Toolpath as CoreToolpath
 from ..shapes.platforms import platforms
 from ..work import progress
 
-STRATEGY = 0.7  # of the time goes into layers and beads, the rest into keeping the nozzle clear
-CHECKED = 0.92  # and what is left into last looks
+STRATEGY = 0.7  # share of the time for layers and beads, the rest keeps the nozzle clear
+CHECKED = 0.92  # the remaining share is for the final checks
 CLEARING = "keeping the nozzle clear"
 
 
 @dataclass(frozen=True, eq=False)
 class Given:
-    """What a feature is planned of: its wall or its solids, which the feature object has found, and parameters. cell: as
-    `seen_of` leaves it. stands: (4, 4) in part coordinates, the frame that sits on the platform where an earlier feature
-    says which; else None."""
+    """The planning inputs of a feature: its wall or solids, which the feature object has found, and
+    parameters. cell: as `seen_of` leaves it. stands: (4, 4) in part coordinates, the frame on the
+    platform if an earlier feature sets it; else None.
+    """
 
     wall: Any
     strategy: Any
@@ -56,7 +58,7 @@ class Given:
 
     @property
     def nozzle(self) -> NozzleParameters:
-        """Of the cell, or the usual one."""
+        """The nozzle of the cell, or the usual one."""
         return NozzleParameters() if self.cell is None else self.cell.nozzle
 
     @property
@@ -66,67 +68,81 @@ class Given:
 
 
 def seen_of(cell: CellParameters) -> CellParameters:
-    """What a toolpath is planned by of a cell: nozzle, platform and which frame sits on that. All else is left as it usually
-    is, so that nothing of a toolpath can depend on it, and a change of it leaves layers as they are."""
+    """The part of a cell that affects a toolpath: nozzle, platform and the frame on it. Everything
+    else gets its default, so that no toolpath depends on it and a change keeps the layers.
+    """
     return CellParameters(
         nozzle=cell.nozzle, platform_diameter=cell.platform_diameter, mount=cell.mount
     )
 
 
 def planned(
-    of: Given, fit: Callable[[CoreToolpath], CoreToolpath] = lambda made: made
+    inputs: Given, fit: Callable[[CoreToolpath], CoreToolpath] = lambda toolpath: toolpath
 ) -> CoreToolpath:
-    """The toolpath of a feature that is deposited alone, layers changed by `fit`; what of it lies over nothing is told."""
-    made = fit(layers_of(of))
-    if of.build.clearance != "none":
+    """The toolpath of a single feature, layers changed by `fit`; unsupported beads are reported."""
+    toolpath = fit(layers_of(inputs))
+    if inputs.build.clearance != "none":
         progress.report(STRATEGY, CLEARING)
-        made = kept_clear(made, of, (*of.wall.surroundings, *platforms(of.cell, made)))
-    made = with_wire(made, of)
-    progress.report(CHECKED, "looking for beads over nothing")
-    plates = platforms(of.cell, made)
-    if made.family == "revolution":
-        stands = (
-            mounted(of.cell, made.frame, made.family)
-            if of.cell is not None and plates
-            else made.frame
+        toolpath = kept_clear(
+            toolpath, inputs, (*inputs.wall.surroundings, *platforms(inputs.cell, toolpath))
         )
-        return support.with_support(made, (stands,), made.surroundings, ())
-    aloft = above_platform(made, of)
-    made = dataclasses.replace(made, issues=(*made.issues, *aloft))
-    made = support.with_support(
-        made, (), (*made.surroundings, *plates), () if aloft else bases_of(of)
+    toolpath = add_wire_speed(toolpath, inputs)
+    progress.report(CHECKED, "looking for beads over nothing")
+    plates = platforms(inputs.cell, toolpath)
+    if toolpath.family == "revolution":
+        stands = (
+            mounted(inputs.cell, toolpath.frame, toolpath.family)
+            if inputs.cell is not None and plates
+            else toolpath.frame
+        )
+        return support.with_support(toolpath, (stands,), toolpath.surroundings, ())
+    aloft = above_platform(toolpath, inputs)
+    toolpath = dataclasses.replace(toolpath, issues=(*toolpath.issues, *aloft))
+    toolpath = support.with_support(
+        toolpath, (), (*toolpath.surroundings, *plates), () if aloft else bases_of(inputs)
     )
-    return over_edge(made, of)
+    return over_edge(toolpath, inputs)
 
 
-def over_edge(made: CoreToolpath, of: Given) -> CoreToolpath:
+def over_edge(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:
     """The toolpath with a warning where it begins beyond the edge of the platform."""
-    if of.cell is None or of.cell.platform_diameter <= 0.0:
-        return made
+    if inputs.cell is None or inputs.cell.platform_diameter <= 0.0:
+        return toolpath
     feature = (
-        made.frame if of.stands is None else None
+        toolpath.frame if inputs.stands is None else None
     )  # of several the first one's frame counts for all
-    found = support.over_edge(
-        made, _stands(made, of, of.cell), of.cell.platform_diameter, made.surroundings, feature
+    edge_issues = support.over_edge(
+        toolpath,
+        _stands(toolpath, inputs, inputs.cell),
+        inputs.cell.platform_diameter,
+        toolpath.surroundings,
+        feature,
     )
-    return dataclasses.replace(made, issues=(*made.issues, *found))
+    return dataclasses.replace(toolpath, issues=(*toolpath.issues, *edge_issues))
 
 
-def above_platform(made: CoreToolpath, of: Given) -> list[Issue]:
-    """A warning where a solid that stands on a plane begins above the platform: that plane carries nothing then."""
-    if of.cell is None or of.cell.platform_diameter <= 0.0 or not support.on_planes(bases_of(of)):
+def above_platform(toolpath: CoreToolpath, inputs: Given) -> list[Issue]:
+    """A warning if a solid with a plane base begins above the platform: nothing carries that plane."""
+    if (
+        inputs.cell is None
+        or inputs.cell.platform_diameter <= 0.0
+        or not support.on_planes(bases_of(inputs))
+    ):
         return []
-    return support.above(made, _stands(made, of, of.cell), made.surroundings)
+    return support.above(toolpath, _stands(toolpath, inputs, inputs.cell), toolpath.surroundings)
 
 
-def _stands(made: CoreToolpath, of: Given, cell: CellParameters) -> Array:
-    return mounted(cell, made.frame, made.family) if of.stands is None else of.stands
+def _stands(toolpath: CoreToolpath, inputs: Given, cell: CellParameters) -> Array:
+    return (
+        mounted(cell, toolpath.frame, toolpath.family) if inputs.stands is None else inputs.stands
+    )
 
 
-def layers_of(of: Given) -> CoreToolpath:
-    """Layers and beads of a feature; the nozzle is kept clear of the feature alone, and of that only where directions are
-    settled with the layers. InputError, those of the family."""
-    process = of.process
+def layers_of(inputs: Given) -> CoreToolpath:
+    """Layers and beads of a feature; the nozzle is kept clear only of the feature itself, and only
+    if directions are settled with the layers. InputErrors of the family.
+    """
+    process = inputs.process
     if process.bead_model == "none" and process.wire.feed_mode != "constant" and not process.ramped:
         raise InputError(
             "NOT_FOR_FAMILY",
@@ -135,201 +151,239 @@ def layers_of(of: Given) -> CoreToolpath:
             "the wire has nothing to follow; use constant, a process.bead_model, or process.start.ramp or process.end.ramp",
         )
     classes.refuse_speeds(process)
-    family = family_of(of.strategy)
-    layers, model = _PLANNERS[family.kind].layers(of), of.model
+    family = family_of(inputs.strategy)
+    layers, model = _PLANNERS[family.kind].layers(inputs), inputs.model
     if model is not None and not family.filled:
         layers = held_width.hold_widths(layers, process, model)
-    made = classes.set_bead_ends(layers, process)
+    toolpath = classes.set_bead_ends(layers, process)
     if not family.filled:
-        made = enforce_layer_time(
-            made, getattr(of.strategy, "min_layer_time", 0.0), process.rapid_speed
+        toolpath = enforce_layer_time(
+            toolpath, getattr(inputs.strategy, "min_layer_time", 0.0), process.rapid_speed
         )
-    twice = made.twice if family.filled else deposited_twice(made)
+    twice = toolpath.twice if family.filled else deposited_twice(toolpath)
     return dataclasses.replace(
-        made, max_from_vertical=of.build.max_from_vertical, twice=twice, retreat=process.retreat
+        toolpath,
+        max_from_vertical=inputs.build.max_from_vertical,
+        twice=twice,
+        retreat=process.retreat,
     )
 
 
 def kept_clear(
-    toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None = None
+    toolpath: CoreToolpath, inputs: Given, bodies: Sequence[Body], feature: int | None = None
 ) -> CoreToolpath:
-    """The toolpath with tools tilted clear of bodies, the platform one of them, and of deposit. feature: of several, the one
-    that `of` is and that is kept clear."""
-    return _PLANNERS[family_of(of.strategy).kind].cleared(toolpath, of, bodies, feature)
+    """The toolpath with tools tilted clear of bodies (including the platform) and deposit. feature:
+    the number of the feature of `inputs` among several, which is kept clear.
+    """
+    return _PLANNERS[family_of(inputs.strategy).kind].cleared(toolpath, inputs, bodies, feature)
 
 
-def with_wire(toolpath: CoreToolpath, of: Given) -> CoreToolpath:
-    """The toolpath with the speed of its wire, and whether its beads are laid as their material is."""
-    return check_speeds(set_wire_feed(toolpath, of.process, of.model), of.process)
+def add_wire_speed(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:
+    """The toolpath with the speed of its wire, and issues about speeds outside the material's
+    range.
+    """
+    return check_speeds(set_wire_feed(toolpath, inputs.process, inputs.model), inputs.process)
 
 
-def bases_of(of: Given) -> list[Any]:
-    """The surfaces that solids stand on; none of walls and faces."""
-    return [group.base for group in getattr(of.wall, "groups", ())]
+def bases_of(inputs: Given) -> list[Any]:
+    """The bases of solids; empty for walls and faces."""
+    return [group.base for group in getattr(inputs.wall, "groups", ())]
 
 
 def _share(fraction: float, text: str) -> None:
     progress.report(STRATEGY * fraction, text)
 
 
-def _of_revolution(of: Given) -> CoreToolpath:
+def _plan_revolution(inputs: Given) -> CoreToolpath:
     from ...core.strategies.revolution import plan as revolution
 
-    stands = of.stands
-    if stands is None and of.cell is not None and of.cell.mount == "part":
+    stands = inputs.stands
+    if stands is None and inputs.cell is not None and inputs.cell.mount == "part":
         stands = np.eye(4)
-    made = revolution.plan(
-        of.wall,
-        of.strategy,
-        of.build,
-        of.process,
-        of.nozzle,
-        0.0 if of.cell is None else of.cell.platform_diameter,
+    toolpath = revolution.plan(
+        inputs.wall,
+        inputs.strategy,
+        inputs.build,
+        inputs.process,
+        inputs.nozzle,
+        0.0 if inputs.cell is None else inputs.cell.platform_diameter,
         stands,
         _share,
     )
-    return dataclasses.replace(made, surroundings=of.wall.surroundings)
+    return dataclasses.replace(toolpath, surroundings=inputs.wall.surroundings)
 
 
-def _of_wall(of: Given) -> CoreToolpath:
+def _plan_wall(inputs: Given) -> CoreToolpath:
     from ...core.geometry.walls.patch_wall import PatchWall
 
-    if isinstance(of.wall, PatchWall):
+    if isinstance(inputs.wall, PatchWall):
         from ...core.strategies.walls import fronts as family
     else:
         from ...core.strategies.walls import plan as family
-    on_another = getattr(of.wall, "ground", None) is None or of.stands is not None
+    on_another = getattr(inputs.wall, "ground", None) is None or inputs.stands is not None
     remedy = platform.MOVE if on_another else platform.MOUNT
     if (
-        isinstance(of.wall, PatchWall)
-        and of.cell is not None
-        and (of.stands is not None or of.cell.mount != "feature")
+        isinstance(inputs.wall, PatchWall)
+        and inputs.cell is not None
+        and (inputs.stands is not None or inputs.cell.mount != "feature")
     ):
         # the first layer is where the wall begins: before the others are looked for, which may take minutes
-        begins = np.vstack([first.curve().points for first in of.wall.first])
-        stands = np.eye(4) if of.stands is None else of.stands
-        platform.refuse_below(of.wall.label, begins, stands, of.cell.platform_diameter, remedy)
-    made = family.plan(of.wall, of.strategy, of.build, of.process, _share)
-    if of.cell is not None:
-        points = np.vstack([bead.points for _, _, bead in made])
-        stands = mounted(of.cell, made.frame, made.family) if of.stands is None else of.stands
-        platform.refuse_below(of.wall.label, points, stands, of.cell.platform_diameter, remedy)
-    return dataclasses.replace(made, surroundings=of.wall.surroundings)
+        begins = np.vstack([start_curve.curve().points for start_curve in inputs.wall.first])
+        stands = np.eye(4) if inputs.stands is None else inputs.stands
+        platform.refuse_below(
+            inputs.wall.label, begins, stands, inputs.cell.platform_diameter, remedy
+        )
+    toolpath = family.plan(inputs.wall, inputs.strategy, inputs.build, inputs.process, _share)
+    if inputs.cell is not None:
+        points = np.vstack([bead.points for _, _, bead in toolpath])
+        stands = (
+            mounted(inputs.cell, toolpath.frame, toolpath.family)
+            if inputs.stands is None
+            else inputs.stands
+        )
+        platform.refuse_below(
+            inputs.wall.label, points, stands, inputs.cell.platform_diameter, remedy
+        )
+    return dataclasses.replace(toolpath, surroundings=inputs.wall.surroundings)
 
 
-def _of_solids(of: Given) -> CoreToolpath:
+def _plan_solids(inputs: Given) -> CoreToolpath:
     from ...core.strategies.solids import plan as solids_plan
 
-    if of.stands is not None and of.cell is not None:
-        platform.refuse_solids_below(of.wall, of.stands, of.cell.platform_diameter)
+    if inputs.stands is not None and inputs.cell is not None:
+        platform.refuse_solids_below(inputs.wall, inputs.stands, inputs.cell.platform_diameter)
     elif (
-        of.cell is not None and of.cell.mount != "feature"
+        inputs.cell is not None and inputs.cell.mount != "feature"
     ):  # the feature's own frame is at its lowest end
-        platform.refuse_solids_below(of.wall, np.eye(4), of.cell.platform_diameter)
-    return solids_plan.plan(of.wall, of.strategy, of.build, of.process, of.model, _share)
+        platform.refuse_solids_below(inputs.wall, np.eye(4), inputs.cell.platform_diameter)
+    return solids_plan.plan(
+        inputs.wall, inputs.strategy, inputs.build, inputs.process, inputs.model, _share
+    )
 
 
-def _of_curves(of: Given) -> CoreToolpath:
+def _plan_curves(inputs: Given) -> CoreToolpath:
     from ...core.strategies import curves
 
-    made = curves.plan(of.wall, of.strategy, of.build, of.process, _share)
-    if of.cell is not None:
-        points = np.vstack([bead.points for _, _, bead in made])
-        stands = mounted(of.cell, made.frame, made.family) if of.stands is None else of.stands
-        platform.refuse_below(of.wall.label, points, stands, of.cell.platform_diameter)
-    return made
+    toolpath = curves.plan(inputs.wall, inputs.strategy, inputs.build, inputs.process, _share)
+    if inputs.cell is not None:
+        points = np.vstack([bead.points for _, _, bead in toolpath])
+        stands = (
+            mounted(inputs.cell, toolpath.frame, toolpath.family)
+            if inputs.stands is None
+            else inputs.stands
+        )
+        platform.refuse_below(inputs.wall.label, points, stands, inputs.cell.platform_diameter)
+    return toolpath
 
 
-def _of_cladding(of: Given) -> CoreToolpath:
+def _plan_cladding(inputs: Given) -> CoreToolpath:
     from ...core.strategies import cladding
 
-    made = cladding.plan(of.wall, of.strategy, of.build, of.process, of.model, _share)
-    if of.cell is not None:
-        points = np.vstack([bead.points for _, _, bead in made])
-        stands = mounted(of.cell, made.frame, made.family) if of.stands is None else of.stands
-        platform.refuse_below(of.wall.label, points, stands, of.cell.platform_diameter)
-    return made
+    toolpath = cladding.plan(
+        inputs.wall, inputs.strategy, inputs.build, inputs.process, inputs.model, _share
+    )
+    if inputs.cell is not None:
+        points = np.vstack([bead.points for _, _, bead in toolpath])
+        stands = (
+            mounted(inputs.cell, toolpath.frame, toolpath.family)
+            if inputs.stands is None
+            else inputs.stands
+        )
+        platform.refuse_below(inputs.wall.label, points, stands, inputs.cell.platform_diameter)
+    return toolpath
 
 
 def _cladding_cleared(
-    toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None
+    toolpath: CoreToolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
 ) -> CoreToolpath:
     """The machine turns the part so that its faces look up: no vertical bounds the tool axes."""
-    free = dataclasses.replace(of.build, max_tilt=np.pi)
-    return _tilted_clear(toolpath, of, bodies, feature, free)
+    free = dataclasses.replace(inputs.build, max_tilt=np.pi)
+    return _tilted_clear(toolpath, inputs, bodies, feature, free)
 
 
 def _tilted_clear(
     toolpath: CoreToolpath,
-    of: Given,
+    inputs: Given,
     bodies: Sequence[Body],
     feature: int | None,
     build: BuildDirectionParameters | None = None,
     plane: Array | None = None,
 ) -> CoreToolpath:
-    """As `tilt_back.kept_clear`; how far it is is told, and once that it takes long. build: in place of the feature's."""
+    """As `tilt_back.kept_clear`; reports its progress, and once that it takes long. build: in place
+    of the feature's.
+    """
     from ...core.strategies import size
     from ...core.strategies.clearance import tilt_back
     from ...core.strategies.progress import Watch
 
     issues: list[Issue] = []
 
-    def tell(points: int, times: int) -> None:
+    def report_points(points: int, times: int) -> None:
         for issue in () if issues else size.of_tilting(points, times):
             issues.append(issue)
-            progress.tell(issue)
+            progress.report_issue(issue)
 
-    def share(done: float) -> None:
-        progress.report(STRATEGY + done * (CHECKED - STRATEGY), CLEARING)
+    def share(fraction: float) -> None:
+        progress.report(STRATEGY + fraction * (CHECKED - STRATEGY), CLEARING)
 
     return tilt_back.kept_clear(
-        toolpath, bodies, of.nozzle, build or of.build, plane, feature, Watch(tell, share)
+        toolpath,
+        bodies,
+        inputs.nozzle,
+        build or inputs.build,
+        plane,
+        feature,
+        Watch(report_points, share),
     )
 
 
 def _curves_cleared(
-    toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None
+    toolpath: CoreToolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
 ) -> CoreToolpath:
-    return _tilted_clear(toolpath, of, bodies, feature)
+    return _tilted_clear(toolpath, inputs, bodies, feature)
 
 
 def _revolution_cleared(
-    toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None
+    toolpath: CoreToolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
 ) -> CoreToolpath:
-    """It is looked at what stands around; the rest was settled with the layers, but for what is deposited of others."""
+    """Check clearance to the surroundings; the rest was settled with the layers, except deposit of
+    other features.
+    """
     if feature is None:
-        found = clearance_look.touched_at(toolpath, of.wall.surroundings, of.nozzle)
-        return dataclasses.replace(toolpath, issues=(*toolpath.issues, *found))
-    own = toolpath.parts[feature][0]
-    count = own.point_count
-    alone = clearance_look.looked_at(own, bodies, of.nozzle, count)
-    among = clearance_look.looked_at(toolpath, bodies, of.nozzle, count, feature)
+        touch_issues = clearance_look.touched_at(toolpath, inputs.wall.surroundings, inputs.nozzle)
+        return dataclasses.replace(toolpath, issues=(*toolpath.issues, *touch_issues))
+    feature_part = toolpath.parts[feature][0]
+    count = feature_part.point_count
+    alone = clearance_look.looked_at(feature_part, bodies, inputs.nozzle, count)
+    among = clearance_look.looked_at(toolpath, bodies, inputs.nozzle, count, feature)
     if among.touched <= alone.touched:
         return toolpath
-    return _tilted_clear(toolpath, of, bodies, feature)
+    return _tilted_clear(toolpath, inputs, bodies, feature)
 
 
 def _wall_cleared(
-    toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None
+    toolpath: CoreToolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
 ) -> CoreToolpath:
     from ...core.strategies.walls.directions import symmetry_plane
 
-    return _tilted_clear(toolpath, of, bodies, feature, plane=symmetry_plane(of.wall, of.build))
+    return _tilted_clear(
+        toolpath, inputs, bodies, feature, plane=symmetry_plane(inputs.wall, inputs.build)
+    )
 
 
 def _solids_cleared(
-    toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None
+    toolpath: CoreToolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
 ) -> CoreToolpath:
     """On a hub the machine turns them, so that no vertical bounds the tool axes."""
     from ...core.strategies.solids import plan as solids_plan
 
-    if not of.wall.has_plane_layers():
+    if not inputs.wall.has_plane_layers():
         return _tilted_clear(
-            toolpath, of, bodies, feature, solids_plan.without_axis_limits(of.build)
+            toolpath, inputs, bodies, feature, solids_plan.without_axis_limits(inputs.build)
         )
-    if feature is None and solids_plan.clear_by_itself(toolpath, of.wall):
+    if feature is None and solids_plan.clear_by_itself(toolpath, inputs.wall):
         return toolpath
-    return _tilted_clear(toolpath, of, bodies, feature)
+    return _tilted_clear(toolpath, inputs, bodies, feature)
 
 
 @dataclass(frozen=True)
@@ -338,12 +392,12 @@ class _Planner:
     cleared: Callable[[CoreToolpath, Given, Sequence[Body], int | None], CoreToolpath]
 
 
-_SOLIDS = _Planner(_of_solids, _solids_cleared)
+_SOLIDS = _Planner(_plan_solids, _solids_cleared)
 _PLANNERS = {
-    "revolution": _Planner(_of_revolution, _revolution_cleared),
-    "surface": _Planner(_of_wall, _wall_cleared),
+    "revolution": _Planner(_plan_revolution, _revolution_cleared),
+    "surface": _Planner(_plan_wall, _wall_cleared),
     "developable": _SOLIDS,
     "solid": _SOLIDS,
-    "curves": _Planner(_of_curves, _curves_cleared),
-    "cladding": _Planner(_of_cladding, _cladding_cleared),
+    "curves": _Planner(_plan_curves, _curves_cleared),
+    "cladding": _Planner(_plan_cladding, _cladding_cleared),
 }

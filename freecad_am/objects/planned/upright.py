@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What clears the nozzle where no tilt does, tried: of a wall that leans one build direction for all of it, of a solid in
-curved layers plane ones."""
+"""Remedies for a nozzle that no tilt clears: one build direction for a whole leaning wall, plane
+layers for a solid in curved ones.
+"""
 
 from __future__ import annotations
 
@@ -19,21 +20,21 @@ if TYPE_CHECKING:
     from ...core.planning.tried import Fixed
 
 
-def in_planes(given: Given, fit: Callable[[Toolpath], Toolpath] | None) -> Fixed | None:
-    """A solid in curved layers that start where it stands, planned in plane ones; None for others."""
-    if getattr(given.strategy, "layers", "") not in (GEODESIC, OFFSET) or any(
-        group.start is not None for group in given.wall.groups
+def in_planes(inputs: Given, fit: Callable[[Toolpath], Toolpath] | None) -> Fixed | None:
+    """A solid in curved layers that start at its base, planned in plane ones; None for others."""
+    if getattr(inputs.strategy, "layers", "") not in (GEODESIC, OFFSET) or any(
+        group.start is not None for group in inputs.wall.groups
     ):
         return None
     from ...core.planning.tried import Fixed
 
-    flat = dataclasses.replace(given, strategy=dataclasses.replace(given.strategy, layers=PLANES))
+    flat = dataclasses.replace(inputs, strategy=dataclasses.replace(inputs.strategy, layers=PLANES))
     return Fixed(
         "`strategy.layers: planes`", lambda: planned(flat) if fit is None else planned(flat, fit)
     )
 
 
-def with_remedy(toolpath: Toolpath, fixed: Fixed | None) -> Toolpath:
+def try_remedy(toolpath: Toolpath, fixed: Fixed | None) -> Toolpath:
     """A toolpath on which the nozzle touches something, and nothing else is wrong, with a note on whether it does with fixed
     build directions, or plane layers, planned so; others as they are."""
     errors = {issue.code for issue in toolpath.issues if issue.level == ERROR}

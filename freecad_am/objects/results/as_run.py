@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The motion of a joint path as it is run: all of it, or the rows of a program."""
+"""The motion of a joint path as it is run: complete, or the rows of a program."""
 
 from __future__ import annotations
 
@@ -37,8 +37,9 @@ def as_run(
     settings: ProgramParameters | None,
     issues: tuple[Issue, ...],
 ) -> AsRun:
-    """All of a joint path without `settings`; of a program with the points that moves in a line get, without those too
-    soon after others for its controller, and only from where it starts."""
+    """A complete joint path without `settings`. For a program: with the points added to linear
+    moves, without points too close for its controller, and only from its start.
+    """
     motion = planned.motion
     condition, threshold = (
         spread_to_deposit_rows(motion.deposit, column)
@@ -54,25 +55,25 @@ def as_run(
         motion = moving_tool.refined_to_chord_error(motion, cell, chord_error, beads)
         condition, threshold = condition[origin], threshold[origin]
         issues = tuple(_renumbered(issue, planned.motion, motion, origin) for issue in issues)
-    whole = motion
-    motion, kept = steps.programmed(motion, controller, chord_error, settings.blend)
-    if len(motion) < len(whole):
-        condition, threshold = condition[kept], threshold[kept]
-        issues = tuple(_renumbered(issue, whole, motion, kept) for issue in issues)
+    full_motion = motion
+    motion, kept_rows = steps.programmed(motion, controller, chord_error, settings.blend)
+    if len(motion) < len(full_motion):
+        condition, threshold = condition[kept_rows], threshold[kept_rows]
+        issues = tuple(_renumbered(issue, full_motion, motion, kept_rows) for issue in issues)
     rows = programs.rows_from(motion, settings.start_at)
     motion = Motion(**{field.name: getattr(motion, field.name)[rows] for field in fields(motion)})
     return AsRun(motion, condition[rows], threshold[rows], issues)
 
 
-def _renumbered(issue: Issue, before: Motion, after: Motion, origin: Integers) -> Issue:
-    """A finding by the number that its point has among added ones, or of the last one before it where it is left out."""
-    here = (
-        before.deposit
-        & (before.layer == issue.layer)
-        & (before.bead == issue.bead)
-        & (before.point == issue.point)
+def _renumbered(issue: Issue, old_motion: Motion, new_motion: Motion, origin: Integers) -> Issue:
+    """An issue renumbered to its point among added ones, or to the last remaining point before it."""
+    is_row = (
+        old_motion.deposit
+        & (old_motion.layer == issue.layer)
+        & (old_motion.bead == issue.bead)
+        & (old_motion.point == issue.point)
     )
-    if issue.point is None or not here.any():
+    if issue.point is None or not is_row.any():
         return issue
-    row = int(np.searchsorted(origin, int(np.argmax(here)), side="right")) - 1
-    return replace(issue, point=int(after.point[row]))
+    row = int(np.searchsorted(origin, int(np.argmax(is_row)), side="right")) - 1
+    return replace(issue, point=int(new_motion.point[row]))

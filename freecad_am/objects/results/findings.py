@@ -12,16 +12,16 @@ from ...core.issues import ERROR, WARNING, Issue, Text
 
 def issues_of(obj: Any) -> tuple[Issue, ...]:
     """The findings stored with the object."""
-    known = _texts(obj)
+    texts = _texts(obj)
     entries = json.loads(obj.Issues or "[]")
     return tuple(
-        Issue(**{**entry, "message": known.get(entry["message"], entry["message"])})
+        Issue(**{**entry, "message": texts.get(entry["message"], entry["message"])})
         for entry in entries
     )
 
 
 def message_of(obj: Any) -> str:
-    """What the object says, with how it was made: the window tells it in its language."""
+    """The object's message with its template and values, so that the window can translate it."""
     return _texts(obj).get(obj.Message, str(obj.Message))
 
 
@@ -64,22 +64,32 @@ def say(obj: Any, status: str, message: str) -> None:
         obj.Status = status
 
 
-def _remember(obj: Any, messages: Sequence[str], said: set[str]) -> None:
-    """Keep how these messages were made, beside what they say in English, of all that the object says now. One from a
-    document that had no such property is shown in English until its stage is computed again."""
-    known = {
+def _remember(obj: Any, messages: Sequence[str], current: set[str]) -> None:
+    """Keep templates and values of the object's current messages next to their English texts. A
+    message from a document without this property is shown in English until its stage is computed
+    again.
+    """
+    texts = {
         **_texts(obj),
-        **{str(one): one for one in messages if isinstance(one, Text) and one.values},
+        **{
+            str(message): message
+            for message in messages
+            if isinstance(message, Text) and message.values
+        },
     }
-    kept = json.dumps([parts_of(text) for sentence, text in known.items() if sentence in said])
-    if kept != (obj.Texts or "[]"):
-        obj.Texts = kept
+    serialized = json.dumps(
+        [parts_of(text) for sentence, text in texts.items() if sentence in current]
+    )
+    if serialized != (obj.Texts or "[]"):
+        obj.Texts = serialized
 
 
 def _texts(obj: Any) -> dict[str, Text]:
-    """Texts that the object tells, by what they say. One of an older document gets the property once it is restored."""
-    found = [text_of(parts) for parts in json.loads(getattr(obj, "Texts", "") or "[]")]
-    return {str(text): text for text in found}
+    """The object's translatable texts by their English wording. An object of an older document gets
+    the property on restore.
+    """
+    texts = [text_of(text_parts) for text_parts in json.loads(getattr(obj, "Texts", "") or "[]")]
+    return {str(text): text for text in texts}
 
 
 def parts_of(text: str) -> Any:
@@ -91,6 +101,10 @@ def parts_of(text: str) -> Any:
     )
 
 
-def text_of(parts: Any) -> Any:
-    """The text that `parts_of` was given."""
-    return Text(parts[0], *map(text_of, parts[1:])) if isinstance(parts, list) else parts
+def text_of(text_parts: Any) -> Any:
+    """The inverse of `parts_of`."""
+    return (
+        Text(text_parts[0], *map(text_of, text_parts[1:]))
+        if isinstance(text_parts, list)
+        else text_parts
+    )

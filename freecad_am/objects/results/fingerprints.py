@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Shapes and meshes as texts that change with them, but not with the last digits that saving drops.
 
-A stage asks for those of its inputs at each recompute, whatever was touched. So the last ones are kept: those of shapes as
-long as the kernel's own object behind them, and those of their faces, are the same ones: a macro may put further shapes
-into a compound in place, but no face is changed so; those of meshes, which are, by their bytes.
+A stage needs the fingerprints of its inputs at each recompute. So the last ones are cached: for
+shapes as long as the kernel's objects of the shape and of its faces are identical (a macro may put
+further shapes into a compound in place, but cannot change a face so); for meshes, which can change
+in place, by their bytes.
 """
 
 from __future__ import annotations
@@ -23,36 +24,40 @@ MOST_KEPT = 64  # shapes, and meshes
 
 _shapes: list[
     tuple[Any, tuple[Any, ...], str]
-] = []  # of an object, what else decides, text; the last asked for first
+] = []  # shape, further criteria, text; most recent first
 _meshes: dict[str, str] = {}
 
 
 def fingerprint(source: Any) -> str:
-    """The text of an object's solid or mesh, where it stands in the document. InputError NO_SHAPE, NO_FACES."""
+    """The text of an object's solid or mesh, at its position in the document. InputError NO_SHAPE,
+    NO_FACES.
+    """
     return _mesh_fingerprint(source) if is_mesh(source) else shape_fingerprint(source)
 
 
 def shape_fingerprint(source: Any) -> str:
-    """The text of an object's shape, where it stands in the document. InputError NO_SHAPE."""
+    """The text of an object's shape, at its position in the document. InputError NO_SHAPE."""
     shape = shape_of(source)
-    parts = tuple(part.hashCode() for part in shape.Faces or shape.Edges or shape.Vertexes)
-    rest = (
-        parts,
+    element_codes = tuple(
+        element.hashCode() for element in shape.Faces or shape.Edges or shape.Vertexes
+    )
+    criteria = (
+        element_codes,
         shape.Orientation,
         shape.Placement.toMatrix().A,
         outer_matrix(source).tobytes(),
     )
-    for k, (kept, decided, text) in enumerate(_shapes):
-        if kept.isPartner(shape) and decided == rest:
+    for k, (cached, decided, text) in enumerate(_shapes):
+        if cached.isPartner(shape) and decided == criteria:
             _shapes.insert(0, _shapes.pop(k))
             return text
-    text = _of_shape(global_shape(source))
-    _shapes.insert(0, (shape, rest, text))
+    text = _shape_text(global_shape(source))
+    _shapes.insert(0, (shape, criteria, text))
     del _shapes[MOST_KEPT:]
     return text
 
 
-def _of_shape(shape: Any) -> str:
+def _shape_text(shape: Any) -> str:
     lines = [f"{shape.ShapeType} {len(shape.Faces)} {len(shape.Edges)} {len(shape.Vertexes)}"]
     for face in shape.Faces:
         inertia = face.MatrixOfInertia
@@ -67,18 +72,20 @@ def _of_shape(shape: Any) -> str:
 
 def _mesh_fingerprint(source: Any) -> str:
     mesh, frame = mesh_of(source)
-    asked = f"{_digest(mesh)} {frame.tobytes()}"
-    if asked not in _meshes:
+    cache_key = f"{_digest(mesh)} {frame.tobytes()}"
+    if cache_key not in _meshes:
         body = body_of(source)
         rounded = np.round(body.vertices, 4) + 0.0
-        _meshes[asked] = hashlib.sha256(rounded.tobytes() + body.triangles.tobytes()).hexdigest()
+        _meshes[cache_key] = hashlib.sha256(
+            rounded.tobytes() + body.triangles.tobytes()
+        ).hexdigest()
         for oldest in list(_meshes)[:-MOST_KEPT]:
             del _meshes[oldest]
-    return _meshes[asked]
+    return _meshes[cache_key]
 
 
 def _digest(mesh: Any) -> str:
-    """Of all bytes of a mesh and its own placement."""
+    """The digest of all bytes of a mesh and its own placement."""
     handle, path = tempfile.mkstemp(suffix=".bms")
     os.close(handle)
     try:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Names and versions by which documents know the dataclasses of results; classes and modules may be renamed freely.
 
-A class that is renamed or moved changes its entry here and nothing else. A field that is renamed, added without a default or
-removed raises the version of the entry, and a function in UPGRADES turns the fields of the version before into those of now.
+A class that is renamed or moved changes its entry here and nothing else. A field that is renamed,
+added without a default or removed raises the version of the entry, and a function in UPGRADES turns
+the fields of the previous version into the current ones.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ Fields = dict[str, Any]
 class Schema(NamedTuple):
     """Where a stored class is, below the package, as `module:class`, and the version of its fields."""
 
-    place: str
+    location: str
     version: int = 1
 
 
@@ -73,7 +74,7 @@ SCHEMAS: dict[str, Schema] = {
     "wall_rim": Schema("core.geometry.walls.patch_wall:Rim"),
 }
 
-# by name and version: turns the fields of that version into those of the next
+# by name and version: turns the fields of that version into the next version's
 UPGRADES: dict[tuple[str, int], Callable[[Fields], Fields]] = {}
 
 _PACKAGE = __name__.split(".", maxsplit=1)[0]
@@ -82,14 +83,14 @@ _PACKAGE = __name__.split(".", maxsplit=1)[0]
 @functools.cache
 def _names() -> Mapping[str, str]:
     """Return the schema names by the places of their classes."""
-    return {schema.place: name for name, schema in SCHEMAS.items()}
+    return {schema.location: name for name, schema in SCHEMAS.items()}
 
 
 @functools.cache
-def of_class(kind: type[Any]) -> tuple[str, Schema]:
+def schema_of_class(kind: type[Any]) -> tuple[str, Schema]:
     """Return the name and schema of a dataclass. Raises TypeError if it has none."""
-    place = f"{kind.__module__.removeprefix(f'{_PACKAGE}.')}:{kind.__qualname__}"
-    name = _names().get(place)
+    location = f"{kind.__module__.removeprefix(f'{_PACKAGE}.')}:{kind.__qualname__}"
+    name = _names().get(location)
     if name is None:
         raise TypeError(f"{kind.__name__} cannot be stored: it has no schema")
     return name, SCHEMAS[name]
@@ -103,7 +104,7 @@ def class_of(name: str) -> type[Any]:
     """
     if name not in SCHEMAS:
         raise ValueError(f"{name!r} is not a result that this version knows")
-    module, _, qualified = SCHEMAS[name].place.partition(":")
+    module, _, qualified = SCHEMAS[name].location.partition(":")
     kind: type[Any] = getattr(importlib.import_module(f"{_PACKAGE}.{module}"), qualified)
     return kind
 

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Store results of the core in a document: one list of floats and one text.
 
-Dataclasses, tuples, dicts, arrays, bytes and plain values go in; the same come out. The text is JSON: the value as a tree, in
-which a dataclass is named by its schema (`schemas`) and an array by rows of a table. The tables and all bytes are the members
-of an npz archive, compressed by zlib. The archive goes into a FloatList, seven bytes a float, because FreeCAD keeps such a
-property as a binary file, and it follows undo and copies of the object by value; an included file does neither.
+Dataclasses, tuples, dicts, arrays, bytes and plain values go in; the same come out. The text is
+JSON: the value as a tree, in which a dataclass is named by its schema (`schemas`) and an array by
+rows of a table. Tables and bytes are the members of an npz archive, compressed by zlib. The archive
+goes into a FloatList, seven bytes a float, because FreeCAD keeps such a property as a binary file,
+and it follows undo and copies of the object by value; an included file does neither.
 
-Arrays at the same place of alike values, such as the points of all beads, share a table, so that an archive of thousands of
-beads has few members.
+Arrays at the same path of similar values, such as the points of beads, share a table, so that an
+archive of thousands of beads has few members.
 """
 
 from __future__ import annotations
@@ -79,18 +80,18 @@ def unpack(floats: Sequence[float] | Array, text: str, key: str, where: str) -> 
         'BAD_RESULT' at `where` if it is damaged, of another key, or of a later version. While a step is undone, floats, text
         and key come back one after the other and do not belong together for a moment.
     """
-    return picked(floats, text, key, where, ())[0]
+    return unpack_parts(floats, text, key, where, ())[0]
 
 
-def picked(
-    floats: Sequence[float] | Array, text: str, key: str, where: str, *places: Place
+def unpack_parts(
+    floats: Sequence[float] | Array, text: str, key: str, where: str, *paths: Place
 ) -> tuple[Any, ...]:
     """Return parts of the value that was given to `pack`, and read no other arrays.
 
     Parameters
     ----------
     places
-        For each part the field names and indices that lead to it; () is all of the value.
+        For each part the field names and indices that lead to it; () is the complete value.
 
     Raises
     ------
@@ -104,12 +105,12 @@ def picked(
         if not (isinstance(header, dict) and header.get("format")):
             from . import legacy
 
-            return legacy.picked(header, numbers, places)
+            return legacy.pick_parts(header, numbers, paths)
         if header["format"] != FORMAT:
             raise ValueError(f"format {header['format']} is of a later version")
         with zipfile.ZipFile(io.BytesIO(_bytes_of(numbers[1:], header["bytes"]))) as archive:
             reader = _Reader(archive, header["schemas"])
-            return tuple(reader.value(_within(header["value"], place)) for place in places)
+            return tuple(reader.value(_subtree(header["value"], path)) for path in paths)
     except (
         KeyError,
         ValueError,
@@ -128,9 +129,9 @@ def picked(
         ) from None
 
 
-def _within(tree: Any, place: Place) -> Any:
-    """Return the part of a tree at a place."""
-    for step in place:
+def _subtree(tree: Any, path: Place) -> Any:
+    """Return the node of a tree at a path."""
+    for step in path:
         tree = tree["tuple"][step] if isinstance(step, int) else tree["fields"][step]
     return tree
 
@@ -167,51 +168,51 @@ class _Packer:
         self.data: list[bytes | bytearray] = []
         self.versions: dict[str, int] = {}  # of the schemas that occur
 
-    def tree(self, value: Any, place: Place) -> Any:
-        """Return what stands for a value in the text; `place` tells alike arrays from others."""
+    def tree(self, value: Any, path: Place) -> Any:
+        """Return the node of a value in the text; arrays with equal `path` share a table."""
         if value is None or isinstance(value, (bool, int, float, str)):
             return value
         if isinstance(value, np.generic):
             return value.item()
         if isinstance(value, np.ndarray):
-            return {"array": self.put(value, place)}
+            return {"array": self.put(value, path)}
         if isinstance(value, (bytes, bytearray)):
             self.data.append(value)
             return {"bytes": len(self.data) - 1}
         if isinstance(value, (tuple, list)):
-            return {"tuple": [self.tree(entry, (*place, "")) for entry in value]}
+            return {"tuple": [self.tree(entry, (*path, "")) for entry in value]}
         if isinstance(value, dict):
-            entries = [[key, self.tree(entry, (*place, ""))] for key, entry in value.items()]
+            entries = [[key, self.tree(entry, (*path, ""))] for key, entry in value.items()]
             return {"dict": entries}
         if dataclasses.is_dataclass(value) and not isinstance(value, type):
-            return self.record(value, place)
+            return self.record(value, path)
         raise TypeError(f"{type(value).__name__} cannot be stored")
 
-    def record(self, value: Any, place: Place) -> dict[str, Any]:
-        """Return what stands for a dataclass."""
-        name, schema = schemas.of_class(type(value))
+    def record(self, value: Any, path: Place) -> dict[str, Any]:
+        """Return the node of a dataclass."""
+        name, schema = schemas.schema_of_class(type(value))
         self.versions[name] = schema.version
         names = [field.name for field in dataclasses.fields(value) if field.init]
-        fields = {name: self.tree(getattr(value, name), (*place, name)) for name in names}
+        fields = {name: self.tree(getattr(value, name), (*path, name)) for name in names}
         return {"schema": name, "fields": fields}
 
-    def put(self, value: NDArray[Any], place: Place) -> list[int]:
+    def put(self, value: NDArray[Any], path: Place) -> list[int]:
         """Add an array to a table; return the table's number, the first row and the count of rows."""
         if not value.ndim or value.dtype not in DTYPES:
             message = f"an array of {value.dtype} with {value.ndim} dimensions cannot be stored"
             raise TypeError(message)
-        kind = (place, value.dtype.str, value.shape[1:])
+        kind = (path, value.dtype.str, value.shape[1:])
         number = self.numbers.setdefault(kind, len(self.tables))
         if number == len(self.tables):
             self.tables.append([])
             self.rows.append(0)
-        first = self.rows[number]
+        first_row = self.rows[number]
         self.tables[number].append(value)
         self.rows[number] += len(value)
-        return [number, first, len(value)]
+        return [number, first_row, len(value)]
 
     def archive(self) -> bytes:
-        """Return the npz archive of all tables and bytes."""
+        """Return the npz archive of the tables and bytes."""
         buffer = io.BytesIO()
         with zipfile.ZipFile(
             buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=COMPRESSION_LEVEL
@@ -238,12 +239,12 @@ class _Reader:
         self.tables: dict[str, NDArray[Any]] = {}
 
     def value(self, tree: Any) -> Any:
-        """Return what a part of the tree stands for."""
+        """Return the value of a node of the tree."""
         if not isinstance(tree, dict):
             return tree
         if "array" in tree:
-            number, first, rows = tree["array"]
-            return self.rows(str(number), first, rows)
+            number, first_row, rows = tree["array"]
+            return self.rows(str(number), first_row, rows)
         if "bytes" in tree:
             return self.table(f"{BYTES_PREFIX}{tree['bytes']}").tobytes()
         if "tuple" in tree:
@@ -254,12 +255,12 @@ class _Reader:
         fields = {field: self.value(entry) for field, entry in tree["fields"].items()}
         return schemas.record(name, self.versions[name], fields)
 
-    def rows(self, name: str, first: int, count: int) -> NDArray[Any]:
+    def rows(self, name: str, first_row: int, count: int) -> NDArray[Any]:
         """Return rows of a table, which share its memory."""
         table = self.table(name)
-        if first < 0 or count < 0 or first + count > len(table):
+        if first_row < 0 or count < 0 or first_row + count > len(table):
             raise ValueError("it is cut short")
-        return table[first : first + count]
+        return table[first_row : first_row + count]
 
     def table(self, name: str) -> NDArray[Any]:
         """Return a member of the archive, read once."""

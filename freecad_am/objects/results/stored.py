@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The result of a stage, read back from its document object when it is first asked for; all of it, or parts alone."""
+"""The result of a stage, read back from its document object on first use, completely or in parts."""
 
 from __future__ import annotations
 
@@ -12,38 +12,41 @@ from . import store
 
 
 class Stored:
-    """What has a result in its object. It is kept once all of it was read, with the key of the inputs it is of."""
+    """Base of stages with a result in their object. A complete result is cached with the key of its
+    inputs.
+    """
 
     _kept: tuple[str, Any] | None = None
 
     def value(self, obj: Any) -> Any:
-        """The stored result, read when first asked for. InputError 'NO_RESULT' when there is none."""
+        """The stored result, read on first use. InputError 'NO_RESULT' without one."""
         return self.reader(obj)()
 
-    def picked(self, obj: Any, *places: store.Place) -> tuple[Any, ...]:
-        """Values within the stored result, by the field names and indices that lead to them, when not all of it is needed.
-        Errors as `value`."""
-        return tuple(self.reader(obj)(*places))
+    def parts(self, obj: Any, *paths: store.Place) -> tuple[Any, ...]:
+        """Parts of the stored result, by the field names and indices that lead to them. Errors as
+        `value`.
+        """
+        return tuple(self.reader(obj)(*paths))
 
     def reader(self, obj: Any) -> Callable[..., Any]:
-        """What gives the stored result of now, or given places these alone, as `value` and `picked` do, without the
-        document: for other threads, and for when more of it may be needed. Errors as `value`, those of what is damaged when
-        it reads.
+        """A function that gives the current stored result, or only the given paths, as `value` and
+        `parts` do, without the document: for other threads, and for later use. Errors as `value`;
+        errors about damage when it reads.
         """
         _check_made(obj)
-        kept, key = self._kept, obj.Key
-        if kept is not None and kept[0] == key:
-            whole = kept[1]
-            return lambda *places: _at(places, whole)
+        cached, key = self._kept, obj.Key
+        if cached is not None and cached[0] == key:
+            result = cached[1]
+            return lambda *paths: _values_at(paths, result)
         stored = store.numbers_of(obj.ResultData), obj.ResultLayout, key, obj.Label
 
-        def read(*places: store.Place) -> Any:
-            kept = self._kept  # which another thread may have put there
-            if kept is None or kept[0] != key:
-                if places:
-                    return store.picked(*stored, *places)
-                self._kept = kept = key, store.unpack(*stored)
-            return _at(places, kept[1])
+        def read(*paths: store.Place) -> Any:
+            cached = self._kept  # another thread may have set it
+            if cached is None or cached[0] != key:
+                if paths:
+                    return store.unpack_parts(*stored, *paths)
+                self._kept = cached = key, store.unpack(*stored)
+            return _values_at(paths, cached[1])
 
         return read
 
@@ -53,9 +56,9 @@ def _check_made(obj: Any) -> None:
         raise InputError("NO_RESULT", obj.Label, "there is no result yet; recompute it")
 
 
-def _at(places: Sequence[store.Place], value: Any) -> Any:
-    """What is at places of a result, all of it without any."""
-    return tuple(functools.reduce(_step, place, value) for place in places) if places else value
+def _values_at(paths: Sequence[store.Place], value: Any) -> Any:
+    """The values at paths of a result; the complete result without paths."""
+    return tuple(functools.reduce(_step, path, value) for path in paths) if paths else value
 
 
 def _step(value: Any, step: str | int) -> Any:

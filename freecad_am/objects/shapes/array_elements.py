@@ -12,9 +12,9 @@ from .places import elements_of, link_property
 
 
 class ArrayElement:
-    """An element of a link array, with what readers of shapes ask an object for.
+    """An element of a link array, with the attributes that readers of shapes need.
 
-    Links of a document can only hold objects: `object_of` makes one of it.
+    Links of a document can only hold objects: `object_of` makes one.
     """
 
     TypeId = "App::LinkElement"
@@ -69,10 +69,10 @@ class ArrayElement:
     def isDerivedFrom(self, kind: str) -> bool:
         return kind == self.TypeId
 
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, ArrayElement):
+    def __eq__(self, value: object) -> bool:
+        if not isinstance(value, ArrayElement):
             return False
-        return bool(self.array == other.array and self.index == other.index)
+        return bool(self.array == value.array and self.index == value.index)
 
     def __hash__(self) -> int:
         return hash((self.array, self.index))
@@ -89,10 +89,11 @@ def is_hidden_array(obj: Any) -> bool:
 
 
 def object_of(array: Any, index: int) -> Any:
-    """The object that stands for an element of a link array, made where there is none.
+    """The object that represents an element of a link array, created if missing.
 
-    It is the element itself where FreeCAD shows elements as objects, else a hidden link to it, beside the array.
-    InputError BAD_INPUT for what is no link array, and for an element that it does not have.
+    It is the element itself where FreeCAD shows elements as objects, else a hidden link to it, next
+    to the array. InputError BAD_INPUT for another object than a link array, and for an element that
+    it does not have.
     """
     count = max(element_count(array), len(elements_of(array)))
     if not count:
@@ -114,7 +115,7 @@ def object_of(array: Any, index: int) -> Any:
     link = array.Document.addObject("App::Link", f"{array.Name}_{index}")
     link.Label = f"{array.Label}.{index}"
     link.setLink(array, path)
-    link.LinkTransform = True  # the element stands where the array puts it
+    link.LinkTransform = True  # the element is placed by the array
     link.Visibility = False  # the array shows it already
     group = array.getParentGeoFeatureGroup() or array.getParentGroup()
     if group is not None:

@@ -46,13 +46,14 @@ def global_shape(source: Any, path: str = "") -> Any:
     source : App.DocumentObject
         An object with a shape: a part, body, link, link array, container.
     path : str
-        What of the object is meant: `""` for all of it, `"Face3"`, `"Box.Edge1"` of what a container or link shows, `"1."`
-        for the second element of a link array.
+        The element: `""` for the complete object, `"Face3"`, `"Box.Edge1"` of an object that a
+        container or link shows, `"1."` for the second element of a link array.
 
     Raises
     ------
     InputError
-        NO_SHAPE for what has no shape, SEVERAL_PLACES for an object that several link groups show.
+        NO_SHAPE for an object without a shape, SEVERAL_PLACES for an object that several link
+        groups show.
     """
     shape, outer = shape_of(source, path), outer_matrix(source)
     if is_rigid(outer):
@@ -63,13 +64,13 @@ def global_shape(source: Any, path: str = "") -> Any:
         return shape
     top, whole_path = path_from_top(source, path)
     if path or shape.ShapeType != "Compound":
-        seen = Part.getShape(top, whole_path, needSubElement=_is_element(path))
+        document_shape = Part.getShape(top, whole_path, needSubElement=_is_element(path))
     else:
         leaves = [Part.getShape(top, whole_path + leaf) for leaf in shown_paths(source)]
-        seen = Part.makeCompound([leaf for leaf in leaves if not leaf.isNull()])
-    if seen.isNull():
+        document_shape = Part.makeCompound([leaf for leaf in leaves if not leaf.isNull()])
+    if document_shape.isNull():
         raise _no_shape(source)
-    return _once(seen) if _shows_group(source) else seen
+    return _once(document_shape) if _shows_group(source) else document_shape
 
 
 def shape_of(source: Any, path: str = "") -> Any:
@@ -87,19 +88,20 @@ def shape_of(source: Any, path: str = "") -> Any:
     shape = getattr(source, "Shape", None)
     if shape is None or shape.isNull():
         raise _no_shape(source)
-    shape = _with_scales(source, shape)
+    shape = _apply_scales(source, shape)
     return _once(shape) if _shows_group(source) else shape
 
 
-def _with_scales(source: Any, shape: Any) -> Any:
-    """The shape of an object; of a container or link array with scaled links in it, put together from what it shows.
+def _apply_scales(source: Any, shape: Any) -> Any:
+    """The shape of an object; for a container or link array with scaled links in it, assembled from
+    its visible children.
 
     FreeCAD 0.20 scales such elements of a compound by the cube root of the volume's factor in all directions, and no
     version applies the scale that an element object of a link array has. The shape of a single path is right in all.
     """
     if shape.ShapeType != "Compound" or "Shape" in source.PropertiesList:
         return shape
-    if not any(is_scaled(one) for one in dependencies_of(source).objects):
+    if not any(is_scaled(dependency) for dependency in dependencies_of(source).objects):
         return shape
     leaves = [Part.getShape(source, path) for path in shown_paths(source)]
     return Part.makeCompound([leaf for leaf in leaves if not leaf.isNull()])
@@ -118,54 +120,62 @@ def renumbers(source: Any) -> bool:
     """Whether faces and edges of a part or group have other numbers in its `shape_of` than FreeCAD gives them: something is
     there twice, and others follow."""
     shape = getattr(source, "Shape", None) if _shows_group(source) else None
-    kept = [] if shape is None or shape.isNull() else _kept(_leaves(shape))
-    return kept != list(range(len(kept)))
+    distinct = [] if shape is None or shape.isNull() else _distinct_numbers(_leaves(shape))
+    return distinct != list(range(len(distinct)))
 
 
 def _shows_group(source: Any) -> bool:
     """Whether an object is a part or group, or a link, link array or link group that shows one."""
-    shown = source.getLinkedObject(True) or source
-    if any(shown.isDerivedFrom(kind) for kind in GROUPS):
+    linked_object = source.getLinkedObject(True) or source
+    if any(linked_object.isDerivedFrom(kind) for kind in GROUPS):
         return True
-    base = link_property(shown, "LinkedObject")
+    base = link_property(linked_object, "LinkedObject")
     base = base[0] if isinstance(base, tuple) else base
-    bases = elements_of(shown) if base is None else [base]
-    return any(_shows_group(one) for one in bases if one != shown)
+    bases = elements_of(linked_object) if base is None else [base]
+    return any(_shows_group(entry) for entry in bases if entry != linked_object)
 
 
 def _once(shape: Any) -> Any:
-    """The shape of a part or group, with each body once: FreeCAD has what is in a group of a part a second time."""
+    """The shape of a part or group, with each body once: FreeCAD lists the members of a group in a
+    part a second time.
+    """
     leaves = _leaves(shape)
-    kept = _kept(leaves)
-    return shape if len(kept) == len(leaves) else Part.makeCompound([leaves[k] for k in kept])
+    distinct = _distinct_numbers(leaves)
+    return (
+        shape if len(distinct) == len(leaves) else Part.makeCompound([leaves[k] for k in distinct])
+    )
 
 
 def _leaves(shape: Any) -> list[Any]:
     """What a compound is made of, in the order in which FreeCAD numbers its faces and edges."""
     if shape.ShapeType != "Compound":
         return [shape]
-    return [leaf for one in shape.childShapes() for leaf in _leaves(one)]
+    return [leaf for child in shape.childShapes() for leaf in _leaves(child)]
 
 
-def _kept(leaves: list[Any]) -> list[int]:
+def _distinct_numbers(leaves: list[Any]) -> list[int]:
     """The numbers of shapes that no earlier one is the same as."""
     return [
-        k for k, one in enumerate(leaves) if not any(_is_same(one, other) for other in leaves[:k])
+        k
+        for k, leaf in enumerate(leaves)
+        if not any(_is_same(leaf, earlier_leaf) for earlier_leaf in leaves[:k])
     ]
 
 
-def _is_same(one: Any, other: Any) -> bool:
+def _is_same(shape: Any, other_shape: Any) -> bool:
     """Whether two shapes are one in the same place, however they came there."""
-    if not one.isPartner(other):  # of most pairs, whose placements would take twenty times as long
+    if not shape.isPartner(
+        other_shape
+    ):  # true for most pairs, whose placements would take twenty times as long
         return False
     return np.allclose(
-        one.Placement.toMatrix().A, other.Placement.toMatrix().A, rtol=0.0, atol=1e-9
+        shape.Placement.toMatrix().A, other_shape.Placement.toMatrix().A, rtol=0.0, atol=1e-9
     )
 
 
 def body_of(source: Any) -> Body:
     """The triangles of an object, solid or mesh, in the coordinates of the document. InputError NO_SHAPE, NO_FACES."""
-    return taken(source).body()
+    return snapshot_of(source).body()
 
 
 @dataclass(frozen=True)
@@ -183,14 +193,14 @@ class Taken:
         if self.mesh is None:
             # of a copy: the window draws the triangles of the original, maybe at this very moment
             return tessellate.body(self.shape.copy(False), self.label)
-        found = tessellate.body(self.mesh, self.label)
+        triangles = tessellate.body(self.mesh, self.label)
         return dataclasses.replace(
-            found, vertices=found.vertices @ self.frame[:3, :3].T + self.frame[:3, 3]
+            triangles, vertices=triangles.vertices @ self.frame[:3, :3].T + self.frame[:3, 3]
         )
 
 
-def taken(source: Any) -> Taken:
-    """What an object is now; costs little, as shapes are shared. InputError 'NO_SHAPE'."""
+def snapshot_of(source: Any) -> Taken:
+    """The current state of an object; cheap, as shapes are shared. InputError 'NO_SHAPE'."""
     if is_mesh(source):
         return Taken(source.Label, None, *mesh_of(source))
     shape = global_shape(source)
@@ -200,7 +210,7 @@ def taken(source: Any) -> Taken:
 
 def fixtures_of(obj: Any) -> tuple[Taken, ...]:
     """The fixtures of a feature."""
-    return tuple(taken(fixture) for fixture in obj.Fixtures)
+    return tuple(snapshot_of(fixture) for fixture in obj.Fixtures)
 
 
 def bodies(fixtures: Sequence[Taken]) -> tuple[Body, ...]:

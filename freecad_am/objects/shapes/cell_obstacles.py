@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What stands in a cell besides part and machine, `cell.obstacles`, and the torch, `cell.nozzle.shape`, as bodies."""
+"""The obstacles of a cell (`cell.obstacles`) and the torch (`cell.nozzle.shape`) as bodies."""
 
 from __future__ import annotations
 
@@ -32,12 +32,14 @@ from .link_meshes import readable_mesh
 
 CODE = "OBSTACLE"
 MOST_TORCHES = 4  # kept
-_torches: list[tuple[Body, NozzleParameters, torch.Torch]] = []  # with what they were made of
+_torches: list[tuple[Body, NozzleParameters, torch.Torch]] = []  # with their inputs
 
 
 def resolved(settings: CellParameters, toolpath: Toolpath, folders: Sequence[str]) -> Cell:
-    """The cell of a toolpath, with what stands in it. Raises InputError as `cells.resolve` does, NO_FILE and the like of
-    files of obstacles, and OBSTACLE where one is at the first point of the job already."""
+    """The cell of a toolpath, with its obstacles. Raises InputError as `cells.resolve` does,
+    NO_FILE and the like of files of obstacles, and OBSTACLE where one is at the first point of the
+    job already.
+    """
     cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
     bodies = bodies_of(settings)
     if not cell.arrangement.links_known:
@@ -55,11 +57,11 @@ def resolved(settings: CellParameters, toolpath: Toolpath, folders: Sequence[str
 
 def bodies_of(settings: CellParameters) -> tuple[Body, ...]:
     """The obstacles of a cell in the world, mm. Raises InputError naming the obstacle and its file."""
-    return tuple(_body(one) for one in obstacles(settings.obstacles))
+    return tuple(_body(obstacle) for obstacle in obstacles(settings.obstacles))
 
 
 def torch_of(settings: CellParameters) -> torch.Torch | None:
-    """The torch of a cell; None without one. Raises InputError TORCH and those of its file."""
+    """The torch of a cell; None without one. Raises InputError TORCH and the errors of its file."""
     shape = settings.nozzle.shape.strip()
     if shape == NO_SHAPE:
         return None
@@ -70,22 +72,27 @@ def torch_of(settings: CellParameters) -> torch.Torch | None:
 
 
 def hashes_of(text: str, shape: str) -> list[str]:
-    """Of the files that a text of obstacles, and the shape of a torch, name, those that are there. InputError of one that is
-    too large."""
-    files = [(Path(one.file), f"{WHERE} {one.name}") for one in obstacles(text) if one.file]
+    """Hashes of the existing files that a text of obstacles and the shape of a torch name.
+    InputError for a file that is too large.
+    """
+    files = [
+        (Path(obstacle.file), f"{WHERE} {obstacle.name}")
+        for obstacle in obstacles(text)
+        if obstacle.file
+    ]
     files += [(Path(shape.strip()), torch.WHERE)] if shape.strip() != NO_SHAPE else []
     return [digest(file, MAX_FILE_MB, "BAD_FILE", where) for file, where in files if is_there(file)]
 
 
-def _body(one: Obstacle) -> Body:
-    pose = frames.bryant(one.pose)
-    if one.size is not None:
-        return box(one.size, pose, one.name)
+def _body(obstacle: Obstacle) -> Body:
+    pose = frames.bryant(obstacle.pose)
+    if obstacle.size is not None:
+        return box(obstacle.size, pose, obstacle.name)
     try:
-        found = _read(locate(one.file))
+        body = _read(locate(obstacle.file))
     except InputError as error:
-        raise InputError(error.code, f"{WHERE} {one.name}", error.message) from None
-    return dataclasses.replace(found, name=one.name).move(pose)
+        raise InputError(error.code, f"{WHERE} {obstacle.name}", error.message) from None
+    return dataclasses.replace(body, name=obstacle.name).move(pose)
 
 
 def _read(file: Path) -> Body:
@@ -93,19 +100,19 @@ def _read(file: Path) -> Body:
     try:
         now = file.stat()
     except OSError:
-        return _triangles(file)  # which tells what is wrong
+        return _triangles(file)  # raises the reason
     return _known(file, now.st_mtime_ns, now.st_size)
 
 
 def _torch(body: Body, nozzle: NozzleParameters) -> torch.Torch:
     """The torch of a body, which is the same one as long as its file is."""
-    for known, of, found in _torches:
-        if known is body and of == nozzle:
-            return found
-    found = torch.torch(body, nozzle)
-    _torches.append((body, nozzle, found))
+    for cached_body, cached_nozzle, cached_torch in _torches:
+        if cached_body is body and cached_nozzle == nozzle:
+            return cached_torch
+    cached_torch = torch.torch(body, nozzle)
+    _torches.append((body, nozzle, cached_torch))
     del _torches[:-MOST_TORCHES]
-    return found
+    return cached_torch
 
 
 @lru_cache(maxsize=16)
@@ -119,7 +126,7 @@ def _triangles(file: Path) -> Body:
 
 
 def _refuse_at_start(cell: Cell, toolpath: Toolpath) -> None:
-    """Raises InputError OBSTACLE where one is about the nozzle as it lays the first point, whatever carries it."""
+    """Raises InputError OBSTACLE where one touches the nozzle at the first point, on any machine."""
     bead = next(bead for _, _, bead in toolpath)
     point, axis = bead.points[:1], bead.tool[:1]
     if cell.torch_stands:
@@ -130,11 +137,11 @@ def _refuse_at_start(cell: Cell, toolpath: Toolpath) -> None:
     nozzle = depositing(
         0.5 * cell.nozzle.diameter, float(np.tan(cell.nozzle.half_angle)), cell.nozzle.length, 0.0
     )
-    for one in bodies:
-        if scene((one,), point, nozzle.reach).touched(nozzle, point, axis).any():
+    for obstacle in bodies:
+        if scene((obstacle,), point, nozzle.reach).touched(nozzle, point, axis).any():
             raise InputError(
                 CODE,
-                f"{WHERE} {one.name}",
+                f"{WHERE} {obstacle.name}",
                 "it touches the nozzle at the first point of the job already, "
                 "however the arm stands; its pose is that in the maker's base frame, and files are in mm: "
                 "move it, or the deposition point",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The chord error of features that name none, by the size of what they deposit."""
+"""The default chord error of features, by the size of their deposit."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ def suited(obj: Any) -> float:
 
 
 def extent(obj: Any) -> float:
-    """The largest extent, mm, of what a feature deposits along a coordinate axis; 0 where that is not known."""
+    """The largest extent, mm, of a feature's deposit along a coordinate axis; 0 if unknown."""
     sizes = [0.0]
-    # the feature tells of names that its source does not have, as which FreeCAD raises ValueError
+    # the feature reports names that its source lacks, for which FreeCAD raises ValueError
     with contextlib.suppress(AmError, ValueError, *kernel.FAULTS):
         for box in _boxes(obj):
             sizes += [box.XLength, box.YLength, box.ZLength] if box.isValid() else []
@@ -51,7 +51,9 @@ def extent(obj: Any) -> float:
 
 
 def notes(obj: Any) -> tuple[Issue, ...]:
-    """A note where the chord error of a feature is that of its size, not the one of small parts."""
+    """A note if the chord error of a feature follows from its size and is not the one of small
+    parts.
+    """
     chord_error = float(getattr(obj, PROPERTY, LEAST))
     if chord_error <= LEAST or chord_error != suited(obj):
         return ()
@@ -65,30 +67,41 @@ def notes(obj: Any) -> tuple[Issue, ...]:
 
 
 def _is_given(parameters: Sequence[Any], values: Mapping[str, Any]) -> bool:
-    whole = [getattr(entry, KEY) for entry in parameters if hasattr(entry, KEY)]
-    return KEY in values or any(not isinstance(value, DefaultLength) for value in whole)
+    chord_errors = [getattr(entry, KEY) for entry in parameters if hasattr(entry, KEY)]
+    return KEY in values or any(not isinstance(value, DefaultLength) for value in chord_errors)
 
 
 def _boxes(obj: Any) -> Iterator[Any]:
     """The boxes around the objects, or the faces, that a feature deposits."""
     source, names = (obj.Source[0], obj.Source[1]) if obj.Source else (None, ())
-    for part in (source, *getattr(obj, "Further", ())):
-        if part is None:
+    for deposit_source in (source, *getattr(obj, "Further", ())):
+        if deposit_source is None:
             continue
-        if is_mesh(part):
-            yield part.Mesh.BoundBox if "Mesh" in part.PropertiesList else mesh_of(part)[0].BoundBox
+        if is_mesh(deposit_source):
+            yield (
+                deposit_source.Mesh.BoundBox
+                if "Mesh" in deposit_source.PropertiesList
+                else mesh_of(deposit_source)[0].BoundBox
+            )
             continue
-        shape = global_shape(part)
-        chosen = []
-        with contextlib.suppress(IndexError, ValueError, Part.OCCError):  # told once it is planned
-            chosen = [shape.getElement(name) for name in names if name] if part is source else []
-        for piece in chosen or [shape]:
-            yield _box(piece)
+        shape = global_shape(deposit_source)
+        elements = []
+        with contextlib.suppress(
+            IndexError, ValueError, Part.OCCError
+        ):  # reported when it is planned
+            elements = (
+                [shape.getElement(name) for name in names if name]
+                if deposit_source is source
+                else []
+            )
+        for element in elements or [shape]:
+            yield _box(element)
 
 
 def _box(shape: Any) -> Any:
-    """The box around a shape. A quick box is never too small but depends on triangles that the shape may have, so it
-    decides about small shapes alone."""
+    """The box around a shape. A quick box is never too small but depends on triangles that the
+    shape may have, so it only decides about small shapes.
+    """
     box = shape.BoundBox
     if box.isValid() and max(box.XLength, box.YLength, box.ZLength) > SMALL:
         return shape.copy(True, False).optimalBoundingBox()  # without its triangles

@@ -8,7 +8,7 @@ from typing import Any
 
 
 def members_of(container: Any) -> tuple[Any, ...]:
-    """The objects that stand where a container puts them; () for what is none."""
+    """The objects that a container places; () for other objects."""
     members: list[Any] = []
     for name in ("Group", "ElementList"):
         value = getattr(container, name, None)
@@ -31,9 +31,10 @@ def containers_of(obj: Any) -> list[Any]:
 
 
 def dependents_of(obj: Any) -> tuple[list[Any], list[Any]]:
-    """What follows a change of an object: objects that are made of it, or stand where an expression of it puts their container
-    once that is recomputed; and those that may stand elsewhere by now, as the object contains them. Neighbours in a container
-    that holds the object are not among them."""
+    """The objects affected by a change of an object: first the ones made from it, or placed by a
+    container whose expression refers to it, once that is recomputed; then the ones that it contains
+    and may have moved. Neighbours in a container of the object are not included.
+    """
     made_of: dict[Any, None] = {}
     waiting = [(obj, False)]
     while waiting:
@@ -44,17 +45,21 @@ def dependents_of(obj: Any) -> tuple[list[Any], list[Any]]:
             if outer not in made_of:
                 made_of[outer] = None
                 waiting.append((outer, inner not in members_of(outer)))
-    return list(made_of), [one for one in _followers_within(obj) if one not in made_of]
+    return list(made_of), [
+        follower for follower in _followers_within(obj) if follower not in made_of
+    ]
 
 
 def _followers_within(container: Any) -> dict[Any, None]:
-    """What a container holds, and all that is made of that."""
-    members = list(_with_members(members_of(container)))
-    return dict.fromkeys(each for member in members for each in (member, *member.InListRecursive))
+    """The members of a container, and everything made from them."""
+    members = list(_walk_members(members_of(container)))
+    return dict.fromkeys(
+        follower for member in members for follower in (member, *member.InListRecursive)
+    )
 
 
-def _with_members(members: tuple[Any, ...]) -> Iterator[Any]:
-    """Members and what they contain."""
+def _walk_members(members: tuple[Any, ...]) -> Iterator[Any]:
+    """Members and their contents."""
     visited: set[str] = set()
     waiting = list(members)
     while waiting:

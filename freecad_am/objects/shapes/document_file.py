@@ -43,8 +43,9 @@ def _try(path: str, where: str) -> None:
 
 
 def refuse(path: str, where: str) -> None:
-    """Refuse what is not a document of FreeCAD, and XML with a document type: its entities can stand for more than there is
-    memory, and FreeCAD takes them at their word. InputError BAD_FILE."""
+    """Reject files that are not FreeCAD documents, and XML with a document type: its entities can
+    expand beyond the memory, and FreeCAD expands them. InputError BAD_FILE.
+    """
     try:
         with zipfile.ZipFile(path) as archive:
             names = archive.namelist()
@@ -76,7 +77,7 @@ class _Begun(Exception):
 def _refuse_doctype(archive: zipfile.ZipFile, name: str, where: str) -> None:
     parser = expat.ParserCreate()
 
-    def begun(*_: object) -> None:
+    def on_doctype(*_: object) -> None:
         raise _Begun
 
     def refused(*_: object) -> None:
@@ -86,14 +87,14 @@ def _refuse_doctype(archive: zipfile.ZipFile, name: str, where: str) -> None:
         )
         raise InputError("BAD_FILE", where, message)
 
-    parser.StartElementHandler, parser.StartDoctypeDeclHandler = begun, refused
+    parser.StartElementHandler, parser.StartDoctypeDeclHandler = on_doctype, refused
     with archive.open(name) as stream:
         try:
             size = 0
             while size <= LONGEST_HEAD and (chunk := stream.read(CHUNK)):
                 parser.Parse(chunk, False)
                 size += len(chunk)
-        except (_Begun, expat.ExpatError):  # what else is wrong with it FreeCAD tells
+        except (_Begun, expat.ExpatError):  # FreeCAD reports other faults
             return
     if size > LONGEST_HEAD:
         raise InputError("BAD_FILE", where, "{} in it does not begin as XML; save it again", name)

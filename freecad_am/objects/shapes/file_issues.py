@@ -14,7 +14,7 @@ PROPERTY = "FileIssues"
 
 
 def keep_file_issues(obj: Any, issues: Sequence[Issue]) -> None:
-    """Store the notes on a file with the object that its shape belongs to; nothing where there are none."""
+    """Store the notes on a file with the object that its shape belongs to; nothing without notes."""
     if not issues:
         return
     if PROPERTY not in obj.PropertiesList:
@@ -26,9 +26,9 @@ def keep_file_issues(obj: Any, issues: Sequence[Issue]) -> None:
 
 
 def file_issues(obj: Any) -> list[Issue]:
-    """The notes on the files of all objects that this one is made from, each once."""
-    found: dict[Issue, None] = {}
+    """The notes on the files of an object's sources, each once."""
+    issues: dict[Issue, None] = {}
     for source in obj.OutListRecursive:
-        for level, code, parts in json.loads(getattr(source, PROPERTY, "") or "[]"):
-            found[Issue(level, code, text_of(parts))] = None
-    return list(found)
+        for level, code, text_parts in json.loads(getattr(source, PROPERTY, "") or "[]"):
+            issues[Issue(level, code, text_of(text_parts))] = None
+    return list(issues)

@@ -16,7 +16,7 @@ def linked_files(path: str) -> dict[str, list[tuple[str, str]]]:
     """The documents that each object of a document file links to, by the name of the object: their absolute paths, and
     when they were last saved before this one was.
 
-    Links in expressions count too. Nothing of a file that cannot be read: opening it tells what is wrong.
+    Links in expressions count too. Empty for an unreadable file: opening it reports the reason.
     """
     files: dict[str, list[tuple[str, str]]] = {}
     folder = os.path.dirname(os.path.abspath(path))

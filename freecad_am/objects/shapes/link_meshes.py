@@ -11,13 +11,14 @@ from ...core.kinematics.machines.machine import Machine
 
 
 def meshes_of(machine: Machine) -> tuple[Mesh | None, ...]:
-    """(axes + 1) points and triangles of each link's file, base first; None where there is none, or none that can be read:
-    that is told when the link is drawn."""
+    """(axes + 1) points and triangles of each link's file, base first; None without a readable
+    file: drawing the link reports the reason.
+    """
     return tuple(None if shape is None else readable_mesh(shape) for shape in machine.shapes)
 
 
 def readable_mesh(shape: LinkShape) -> Mesh | None:
-    """As `mesh_of`, None where the file cannot be read."""
+    """As `mesh_of`, or None if the file cannot be read."""
     try:
         return mesh_of(shape)
     except InputError:

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Other documents that a FreeCAD document links to: those that are missing, and those that changed since it was saved."""
+"""Other documents that a FreeCAD document links to: missing ones, and ones changed since it was
+saved.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,7 @@ from .places import dependencies_of
 
 
 def refuse_missing(source: Any, where: str) -> None:
-    """Reject an object that is made from something in a file that is not there. InputError NO_LINKED_FILE."""
+    """Reject an object that is made from something in a missing file. InputError NO_LINKED_FILE."""
     needs = dependencies_of(source)
     for document in needs.documents:
         missing = missing_files(document)
@@ -26,17 +28,19 @@ def refuse_missing(source: Any, where: str) -> None:
 
 
 def refuse_missing_of(stage: Any, where: str) -> None:
-    """Reject a stage of which an input is made from something in a file that is not there. InputError NO_LINKED_FILE."""
+    """Reject a stage with an input that is made from something in a missing file. InputError
+    NO_LINKED_FILE.
+    """
     inputs = stage.OutListRecursive
-    for document in dict.fromkeys(one.Document for one in inputs):
+    for document in dict.fromkeys(entry.Document for entry in inputs):
         missing = missing_files(document)
-        for one in inputs:
-            if one.Document == document and one.Name in missing:
-                raise no_linked_file(where, one.Label, missing[one.Name])
+        for entry in inputs:
+            if entry.Document == document and entry.Name in missing:
+                raise no_linked_file(where, entry.Label, missing[entry.Name])
 
 
 def no_linked_file(where: str, label: str, file: str) -> InputError:
-    """The error about an object that links to a file that is not there."""
+    """The error about an object that links to a missing file."""
     return InputError(
         "NO_LINKED_FILE",
         where,
@@ -47,41 +51,46 @@ def no_linked_file(where: str, label: str, file: str) -> InputError:
 
 
 def renew_changed(document: Any) -> list[Any]:
-    """Recompute what is made from documents that changed after this one was saved; the objects that link to those.
+    """Recompute objects made from documents that changed after `document` was saved; return the
+    objects that link to them.
 
-    FreeCAD keeps the old shapes: it marks links as touched, and not what has an expression. Linked documents come first.
-    Stages of this workbench are left as they are.
+    FreeCAD keeps the old shapes: it marks links as touched, but not objects with an expression.
+    Linked documents come first. Stages of the workbench stay as they are.
     """
     renewed: dict[Any, None] = {}
     linking = []
-    for one in in_order(document):
-        changed = [obj for obj in one.Objects if _is_outdated(obj, one, renewed)]
-        changed += [obj for obj in _of_changed_files(one) if obj not in changed]
+    for linked_document in in_order(document):
+        changed = [
+            obj for obj in linked_document.Objects if _is_outdated(obj, linked_document, renewed)
+        ]
+        changed += [obj for obj in _links_to_changed_files(linked_document) if obj not in changed]
         for obj in changed:
             obj.touch()
         if changed:
             with deferred():
-                one.recompute()
-            renewed[one] = None
+                linked_document.recompute()
+            renewed[linked_document] = None
             linking += changed
     return linking
 
 
 def _is_outdated(obj: Any, document: Any, renewed: Iterable[Any]) -> bool:
     """Whether FreeCAD has marked what an object links to in another document as changed, or that was just computed."""
-    outside = [other for other in obj.OutList if other is not None and other.Document != document]
+    outside = [
+        linked for linked in obj.OutList if linked is not None and linked.Document != document
+    ]
     is_marked = "Touched" in obj.State and "Invalid" not in obj.State
-    return bool(outside) and (is_marked or any(other.Document in renewed for other in outside))
+    return bool(outside) and (is_marked or any(linked.Document in renewed for linked in outside))
 
 
-def _of_changed_files(document: Any) -> list[Any]:
+def _links_to_changed_files(document: Any) -> list[Any]:
     """The objects that link to a document that was saved again after this one was."""
     if not document.FileName:
         return []
     saved = {
-        os.path.realpath(one.FileName): one.LastModifiedDate
-        for one in App.listDocuments().values()
-        if one.FileName
+        os.path.realpath(open_document.FileName): open_document.LastModifiedDate
+        for open_document in App.listDocuments().values()
+        if open_document.FileName
     }
     changed = []
     for name, files in linked_files(document.FileName).items():
@@ -107,13 +116,20 @@ def _is_saved_later(file: str, stamp: str, document: Any) -> bool:
         return False
 
 
-def in_order(document: Any, known: Iterable[Any] = ()) -> list[Any]:
-    """A document and those that it links to, each after all that it links to."""
+def in_order(document: Any, visited: Iterable[Any] = ()) -> list[Any]:
+    """A document and its linked documents, each after its own linked documents."""
     linked = dict.fromkeys(
-        other.Document for obj in document.Objects for other in obj.OutList if other is not None
+        linked_object.Document
+        for obj in document.Objects
+        for linked_object in obj.OutList
+        if linked_object is not None
     )
     order: list[Any] = []
-    for one in linked:
-        if one != document and one not in known:
-            order += [found for found in in_order(one, (*known, document)) if found not in order]
+    for linked_document in linked:
+        if linked_document != document and linked_document not in visited:
+            order += [
+                entry
+                for entry in in_order(linked_document, (*visited, document))
+                if entry not in order
+            ]
     return [*order, document]

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What faces and edges of a part are known by, whatever their numbers are: FreeCAD gives these anew when a part changes."""
+"""Marks that identify faces and edges of a part independently of their numbers, which FreeCAD
+reassigns when a part changes.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +12,10 @@ import FreeCAD as App
 import numpy as np
 import Part
 
-FACE, EDGE = "Face", "Edge"  # what names of them begin with
-WHOLE = "Shape"  # the name of what is stored of a whole part
+FACE, EDGE = "Face", "Edge"  # prefixes of their names
+WHOLE_PART = "Shape"  # the name of the mark of a whole part
 PLANE, LINE = "Part::GeomPlane", "Part::GeomLine"
-ABOUT = (
+AXIAL_SURFACES = (
     "Part::GeomCylinder",
     "Part::GeomCone",
     "Part::GeomToroid",
@@ -25,13 +27,14 @@ TOLERANCE = 1e-6  # of the part's size, squared of an area: by how much one may 
 
 
 class Mark(NamedTuple):
-    """What a face, an edge or a whole part is known by where the part places itself: its surface or curve, of a whole the
-    number of its faces, edges or both; the way that a plane faces, a line runs or the axis of another one runs (0 for
-    others); area (mm2) or length (mm), and middle (mm)."""
+    """The mark of a face, an edge or a whole part in the part's own coordinates: its surface or
+    curve (for a whole part the number of its faces, edges or both); the direction of a plane's
+    normal, a line or an axis (0 for others); area (mm2) or length (mm), and middle (mm).
+    """
 
     name: str
     form: str
-    way: tuple[float, float, float]
+    direction: tuple[float, float, float]
     extent: float
     middle: tuple[float, float, float]
 
@@ -41,58 +44,72 @@ class Mark(NamedTuple):
             (
                 self.name,
                 self.form,
-                *(repr(value) for value in (*self.way, self.extent, *self.middle)),
+                *(repr(value) for value in (*self.direction, self.extent, *self.middle)),
             )
         )
 
-    def is_same(self, other: Mark, size: float, flat: bool = True) -> bool:
+    def is_same(self, other_mark: Mark, size: float, flat: bool = True) -> bool:
         """Whether nothing changed, of a part of a size (mm). flat: the extents are areas."""
-        near = float(np.abs(np.subtract(self.middle, other.middle)).max()) <= TOLERANCE * size
+        is_near = (
+            float(np.abs(np.subtract(self.middle, other_mark.middle)).max()) <= TOLERANCE * size
+        )
         return (
-            self.is_alike(other)
-            and near
-            and abs(self.extent - other.extent) <= TOLERANCE * size ** (2 if flat else 1)
+            self.is_alike(other_mark)
+            and is_near
+            and abs(self.extent - other_mark.extent) <= TOLERANCE * size ** (2 if flat else 1)
         )
 
-    def is_alike(self, other: Mark) -> bool:
-        """Whether it is of the same kind of surface or curve and lies the same way, as a part that grows leaves it."""
-        along = float(np.dot(self.way, other.way))
-        lies = not any(self.way) or (along if self.form == PLANE else abs(along)) > np.cos(LEANS)
-        return self.form == other.form and lies
+    def is_alike(self, other_mark: Mark) -> bool:
+        """Whether it has the same kind of surface or curve and the same direction, which a growing
+        part keeps.
+        """
+        along = float(np.dot(self.direction, other_mark.direction))
+        lies = not any(self.direction) or (along if self.form == PLANE else abs(along)) > np.cos(
+            LEANS
+        )
+        return self.form == other_mark.form and lies
 
-    def is_along(self, other: Mark, size: float) -> bool:
-        """Of straight edges, whether they lie on one line and share some of it; of plane faces, whether they lie in one
-        plane, with middles so near that they do; of a part of a size (mm)."""
-        if self.form not in (LINE, PLANE) or not self.is_alike(other):
+    def is_along(self, other_mark: Mark, size: float) -> bool:
+        """Whether two straight edges are collinear and overlap, or two plane faces are coplanar
+        with near middles. size: of the part, mm.
+        """
+        if self.form not in (LINE, PLANE) or not self.is_alike(other_mark):
             return False
-        apart, extents = np.subtract(other.middle, self.middle), (self.extent, other.extent)
+        offset, extents = (
+            np.subtract(other_mark.middle, self.middle),
+            (self.extent, other_mark.extent),
+        )
         along, across = (
-            float(abs(apart @ self.way)),
-            float(np.linalg.norm(np.cross(apart, self.way))),
+            float(abs(offset @ self.direction)),
+            float(np.linalg.norm(np.cross(offset, self.direction))),
         )
         if self.form == LINE:
             return across <= TOLERANCE * size and along < 0.5 * sum(extents)
         return along <= TOLERANCE * size and across < 0.5 * max(extents) ** 0.5
 
-    def is_turned_about(self, other: Mark, size: float) -> bool:
-        """Of straight edges, whether they share an end or the middle, as one does that is drawn by an end of it."""
-        if self.form != LINE or other.form != LINE:
+    def is_turned_about(self, other_mark: Mark, size: float) -> bool:
+        """Whether two straight edges share an end or the middle, as after dragging an end."""
+        if self.form != LINE or other_mark.form != LINE:
             return False
-        mine, others = self._places(), other._places()
-        found = [
-            np.abs(mine[1] - others[1]),
-            *(np.abs(one - another) for one in mine[::2] for another in others[::2]),
+        own_points, other_points = self._places(), other_mark._places()
+        distances = [
+            np.abs(own_points[1] - other_points[1]),
+            *(
+                np.abs(own_point - other_point)
+                for own_point in own_points[::2]
+                for other_point in other_points[::2]
+            ),
         ]
-        return bool(min(map(np.max, found)) <= TOLERANCE * size)
+        return bool(min(map(np.max, distances)) <= TOLERANCE * size)
 
     def _places(self) -> tuple[Any, Any, Any]:
         """Start, middle and end of a straight edge."""
-        middle, half = np.array(self.middle), 0.5 * self.extent * np.array(self.way)
+        middle, half = np.array(self.middle), 0.5 * self.extent * np.array(self.direction)
         return middle - half, middle, middle + half
 
 
 def read(text: str) -> Mark | None:
-    """What was stored; None of what is damaged."""
+    """The stored mark, or None if damaged."""
     try:
         name, form, *values = text.split(" ")
         i, j, k, extent, x, y, z = map(float, values)
@@ -102,20 +119,22 @@ def read(text: str) -> Mark | None:
 
 
 def marks_of(shape: Any, kind: str, names: Collection[str] = ()) -> list[Mark]:
-    """Of the faces or the edges of a shape; of those of these names, where there are some."""
-    place = shape.Placement.inverse()
+    """The marks of the faces or edges of a shape, or only of the named ones."""
+    inverse_placement = shape.Placement.inverse()
     all_ = enumerate(shape.Faces if kind == FACE else shape.Edges, start=1)
     return [
-        _mark(f"{kind}{k}", one, place) for k, one in all_ if not names or f"{kind}{k}" in names
+        _mark(f"{kind}{k}", element, inverse_placement)
+        for k, element in all_
+        if not names or f"{kind}{k}" in names
     ]
 
 
 def whole_of(shape: Any, kinds: Collection[str]) -> Mark:
-    """Of all of a shape, by its faces, its edges or both."""
+    """The mark of a whole shape, by its faces, its edges or both."""
     count = (len(shape.Faces) if FACE in kinds else 0) + (len(shape.Edges) if EDGE in kinds else 0)
     middle = shape.Placement.inverse().multVec(shape.BoundBox.Center)
     return Mark(
-        WHOLE,
+        WHOLE_PART,
         str(count),
         (0.0, 0.0, 0.0),
         shape.Area if FACE in kinds else shape.Length,
@@ -123,28 +142,28 @@ def whole_of(shape: Any, kinds: Collection[str]) -> Mark:
     )
 
 
-def _mark(name: str, one: Any, place: Any) -> Mark:
-    face = one.ShapeType == FACE
+def _mark(name: str, element: Any, inverse_placement: Any) -> Mark:
+    face = element.ShapeType == FACE
     try:
-        found = one.Surface if face else one.Curve
-        form, way = found.TypeId, App.Vector()
+        geometry = element.Surface if face else element.Curve
+        form, direction = geometry.TypeId, App.Vector()
         if form == PLANE:
-            way = place.Rotation.multVec(one.normalAt(0.0, 0.0))
+            direction = inverse_placement.Rotation.multVec(element.normalAt(0.0, 0.0))
         elif form == LINE:
-            way = place.Rotation.multVec(found.Direction)
-        elif form in ABOUT:
-            way = place.Rotation.multVec(found.Axis)
+            direction = inverse_placement.Rotation.multVec(geometry.Direction)
+        elif form in AXIAL_SURFACES:
+            direction = inverse_placement.Rotation.multVec(geometry.Axis)
     except (
         AttributeError,
         TypeError,
         RuntimeError,
         Part.OCCError,
-    ):  # one that FreeCAD has no name for, or of no length
-        form, way = "other", App.Vector()
+    ):  # a kind that FreeCAD has no name for, or without length
+        form, direction = "other", App.Vector()
     return Mark(
         name,
         form,
-        tuple(way),
-        one.Area if face else one.Length,
-        tuple(place.multVec(one.CenterOfMass)),
+        tuple(direction),
+        element.Area if face else element.Length,
+        tuple(inverse_placement.multVec(element.CenterOfMass)),
     )

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Meshes of a document: objects that are meshes, and links, link arrays and containers that show them.
 
-A link passes `Mesh` of its object on, at the place of that object and not of the link. So places are computed here.
+A link passes on `Mesh` of its object at the object's position, not the link's. So positions are
+computed here.
 """
 
 from __future__ import annotations
@@ -27,26 +28,28 @@ def is_mesh(source: Any) -> bool:
 
 
 def mesh_of(source: Any) -> tuple[Any, np.ndarray]:
-    """The mesh of an object, and the matrix (4, 4) from its coordinates to those of the document.
+    """The mesh of an object, and the matrix (4, 4) from its coordinates to the document's.
 
     The meshes that a link, link array or container shows are one mesh, in document coordinates. InputError NO_SHAPE.
     """
     if "Mesh" in source.PropertiesList:
-        return source.Mesh.copy(), outer_matrix(source)  # it stands where its placement puts it
-    whole = None
+        return source.Mesh.copy(), outer_matrix(source)  # its own placement is already applied
+    combined = None
     for mesh, matrix in _shown_meshes(source):
         placed = _transformed(mesh, matrix)
-        if whole is None:
-            whole = placed
+        if combined is None:
+            combined = placed
         else:
-            whole.addMesh(placed)
-    if whole is None:
+            combined.addMesh(placed)
+    if combined is None:
         raise InputError("NO_SHAPE", source.Label, "it has no shape; choose an object with a shape")
-    return whole, np.eye(4)
+    return combined, np.eye(4)
 
 
 def refuse_mixed(source: Any) -> None:
-    """Reject a container that shows shapes and meshes: one of them would be left out. InputError MIXED."""
+    """Reject a container that shows shapes and meshes: one kind would be left out. InputError
+    MIXED.
+    """
     if "Shape" in source.PropertiesList or "Mesh" in source.PropertiesList:
         return
     if next(_shown_meshes(source), None) is not None:
@@ -59,30 +62,32 @@ def refuse_mixed(source: Any) -> None:
 
 def _shown_meshes(source: Any) -> Iterator[tuple[Any, np.ndarray]]:
     """Each mesh that an object shows, and the matrix from the mesh, without its own placement, to the document."""
-    return _within(source, outer_matrix(source))
+    return _meshes_of(source, outer_matrix(source))
 
 
-def _within(obj: Any, outer: np.ndarray) -> Iterator[tuple[Any, np.ndarray]]:
+def _meshes_of(obj: Any, outer: np.ndarray) -> Iterator[tuple[Any, np.ndarray]]:
     """outer: from where `obj` places itself to the document."""
-    shown, matrix = obj.getLinkedObject(True, App.Matrix(), True)
-    yield from _inside(shown, outer @ _array(matrix))
+    target, matrix = obj.getLinkedObject(True, App.Matrix(), True)
+    yield from _inside(target, outer @ _array(matrix))
 
 
-def _inside(shown: Any, inside: np.ndarray) -> Iterator[tuple[Any, np.ndarray]]:
-    """inside: from within `shown`, its placement applied, to the document."""
-    if "Mesh" in shown.PropertiesList:
-        if shown.Mesh.CountFacets:
-            yield shown.Mesh, inside
+def _inside(container: Any, inside: np.ndarray) -> Iterator[tuple[Any, np.ndarray]]:
+    """inside: from within `container`, its placement applied, to the document."""
+    if "Mesh" in container.PropertiesList:
+        if container.Mesh.CountFacets:
+            yield container.Mesh, inside
         return
-    if "Shape" in shown.PropertiesList:
+    if "Shape" in container.PropertiesList:
         return
-    for path, held in children_of(shown):
-        if held.Name == path.rstrip(".") or held.TypeId == "App::LinkElement":
-            yield from _within(held, inside)
+    for path, child in children_of(container):
+        if child.Name == path.rstrip(".") or child.TypeId == "App::LinkElement":
+            yield from _meshes_of(child, inside)
         else:  # an element of a link array that is no object of its own
             # this matrix begins outside of the array, and without `transform` it would still have the array's scale
-            step = np.linalg.inv(own_matrix(shown)) @ _array(shown.getSubObject(path, retType=4))
-            target, matrix = held.getLinkedObject(True, App.Matrix(), False)
+            step = np.linalg.inv(own_matrix(container)) @ _array(
+                container.getSubObject(path, retType=4)
+            )
+            target, matrix = child.getLinkedObject(True, App.Matrix(), False)
             yield from _inside(target, inside @ step @ _array(matrix))
 
 

@@ -23,12 +23,13 @@ TOLERANCE_MM = 1e-6  # of two faces or edges that are the same
 
 
 def owner_of(top: Any, path: str) -> tuple[Any, str]:
-    """The object that an element at the end of a path belongs to for its user, and the name of the face or edge on it: ''
-    for all of it, and for one that it does not have.
+    """The object that an element at the end of a path belongs to for its user, and the name of the
+    face or edge on it: '' for the complete object, and for an element that it does not have.
 
-    A click within an assembly selects 'Body.Pad.Face3' of its outermost group: that is Face3 of the body, or of the
-    feature where it is not the body's tip. What a link shows belongs to the link. What a link group or link array shows
-    belongs to the object in it, and to the array where its elements are no objects.
+    A click within an assembly selects 'Body.Pad.Face3' of its outermost group: that is Face3 of the
+    body, or of the feature where it is not the body's tip. An element shown by a link belongs to
+    the link. An element shown by a link group or link array belongs to the object in it, and to the
+    array where its elements are no objects.
     """
     return _owner(top, path, element=False)
 
@@ -43,12 +44,12 @@ def _owner(top: Any, path: str, element: bool) -> tuple[Any, str]:
     steps = [
         step for step in steps if step[:1] not in (";", "?")
     ]  # names of FreeCAD 1.0 that outlive changes
-    obj, own = top, not steps
+    obj, is_own = top, not steps
     while steps:
-        held = _held(obj, steps[0])
-        if held is None:
+        child = _child_named(obj, steps[0])
+        if child is None:
             break
-        obj = held
+        obj = child
         steps.pop(0)
     if steps and any(obj.isDerivedFrom(kind) for kind in GROUPS):
         return top, ""
@@ -61,12 +62,13 @@ def _owner(top: Any, path: str, element: bool) -> tuple[Any, str]:
         obj = clicked_element if _has_shape(clicked_element) else obj
     if not name.startswith((FACE, EDGE)) or is_mesh(obj):
         return obj, ""
-    return obj, name if own else _own_name(obj, _seen(top, path), name)
+    return obj, name if is_own else _own_name(obj, _element_shape(top, path), name)
 
 
-def _held(container: Any, name: str) -> Any:
-    """The object that a container, link group or link array has by a name of a path; None for what belongs to `container`
-    itself, and for an object that several link groups show."""
+def _child_named(container: Any, name: str) -> Any:
+    """The object that a container, link group or link array has by a name of a path; None for
+    elements of `container` itself, and for an object that several link groups show.
+    """
     if any(container.isDerivedFrom(kind) for kind in GROUPS):
         return container.getSubObject(f"{name}.", retType=1)
     for k, obj in enumerate(elements_of(container)):
@@ -77,8 +79,9 @@ def _held(container: Any, name: str) -> Any:
 
 
 def line_of(top: Any, path: str) -> tuple[Any, str]:
-    """What of a path something may turn about: an object and its edge or axis of a sketch, or a line of an origin, deep
-    within its part; else the whole object."""
+    """The possible rotation axis of a path: an object and its edge or axis of a sketch, or a line
+    of an origin, deep within its part; else the whole object.
+    """
     obj, name = owner_of(top, path)
     element = path.rsplit(".", maxsplit=1)[-1]
     if name.startswith(EDGE):
@@ -90,31 +93,33 @@ def line_of(top: Any, path: str) -> tuple[Any, str]:
 
 
 def resolved(obj: Any, names: Sequence[str], where: str) -> tuple[Any, list[str]]:
-    """A link to some faces or edges, without the paths that lead to them: the object that they belong to, and their names
-    on it. InputError BAD_FACES, BAD_EDGES, BAD_AXIS for a path that leads to no such, and for those of several objects."""
+    """A link to some faces or edges, without the paths that lead to them: the object that they
+    belong to, and their names on it. InputError BAD_FACES, BAD_EDGES, BAD_AXIS for a path without
+    such an element, and for elements of several objects.
+    """
     if not any("." in name for name in names):
         return obj, list(names)
-    found = [_found(obj, name, where) for name in names]
-    others = [one.Label for one, _ in found if one != found[0][0]]
-    if others:
+    owners = [_resolve(obj, name, where) for name in names]
+    other_labels = [owner.Label for owner, _ in owners if owner != owners[0][0]]
+    if other_labels:
         raise InputError(
             _code(names[0]),
             where,
             "{} names faces or edges of several objects ({}, {}); choose those of one",
             ", ".join(names),
-            found[0][0].Label,
-            others[0],
+            owners[0][0].Label,
+            other_labels[0],
         )
-    return found[0][0], [name for _, name in found]
+    return owners[0][0], [name for _, name in owners]
 
 
 def refuse_paths(obj: Any, names: Sequence[str], where: str) -> None:
     """Refuse paths to faces and edges of other objects than the one that is linked: the same names are others on it. And
     names of a part that has something twice. InputError as `resolved`."""
-    there = [
+    element_paths = [
         name for name in names if not name.rsplit(".", maxsplit=1)[-1].startswith("?")
     ]  # FreeCAD knows the others lost
-    plain = [name for name in there if "." not in name]
+    plain = [name for name in element_paths if "." not in name]
     if plain and renumbers(obj):
         raise InputError(
             _code(plain[0]),
@@ -124,35 +129,35 @@ def refuse_paths(obj: Any, names: Sequence[str], where: str) -> None:
             plain[0],
             obj.Label,
         )
-    for name in there:
+    for name in element_paths:
         if name in plain:
             continue
         element = name.rsplit(".", maxsplit=1)[-1]
-        owner, own = _found(obj, name, where)
-        if owner != obj or own != element:
+        owner, own_name = _resolve(obj, name, where)
+        if owner != obj or own_name != element:
             raise InputError(
                 _code(name),
                 where,
                 "{} of {} is {} of {}; choose it of that object",
                 name,
                 obj.Label,
-                own or element,
+                own_name or element,
                 owner.Label,
             )
 
 
-def _found(obj: Any, name: str, where: str) -> tuple[Any, str]:
-    """As `line_of`. InputError for what is not there."""
+def _resolve(obj: Any, name: str, where: str) -> tuple[Any, str]:
+    """As `line_of`. InputError for a missing element."""
     if "." not in name:
         return obj, name
     if not name.endswith(".") and obj.getSubObject(f"{name}.", retType=1) is not None:
         name = f"{name}."  # an object, which FreeCAD would have the path end with a dot for
     element = name.rsplit(".", maxsplit=1)[-1]
-    owner, own = (owner_of if element.startswith(FACE) else line_of)(obj, name)
-    if not element and isinstance(shown := clicked(obj, name)[0], ArrayElement):
-        return object_of(shown.array, shown.index), ""
+    owner, own_name = (owner_of if element.startswith(FACE) else line_of)(obj, name)
+    if not element and isinstance(array_element := clicked(obj, name)[0], ArrayElement):
+        return object_of(array_element.array, array_element.index), ""
     gapped = "" in name.split(".")[:-1]  # which FreeCAD 1.0 takes for a path without the gap
-    if gapped or obj.getSubObject(name, retType=1) is None or (element and not own):
+    if gapped or obj.getSubObject(name, retType=1) is None or (element and not own_name):
         raise InputError(
             _code(name),
             where,
@@ -160,7 +165,7 @@ def _found(obj: Any, name: str, where: str) -> tuple[Any, str]:
             name,
             obj.Label,
         )
-    return owner, own
+    return owner, own_name
 
 
 def _code(name: str) -> str:
@@ -173,38 +178,47 @@ def _has_shape(obj: Any) -> bool:
     return shape is not None and not shape.isNull()
 
 
-def _seen(top: Any, path: str) -> Any:
-    """The face or edge at the end of a path, in the coordinates of the document; None where there is none."""
+def _element_shape(top: Any, path: str) -> Any:
+    """The face or edge at the end of a path, in the coordinates of the document, or None."""
     try:
         return global_shape(top, path)
     except (InputError, Part.OCCError, ValueError, RuntimeError):
         return None
 
 
-def _own_name(obj: Any, seen: Any, element: str) -> str:
-    """The name that an object itself has for a face or edge in document coordinates, the one that it is called already
-    before others; '' when it has no such."""
+def _own_name(obj: Any, document_shape: Any, element: str) -> str:
+    """The name on an object itself of a face or edge in document coordinates, preferably its
+    present name; '' if it has none.
+    """
     kind = FACE if element.startswith(FACE) else EDGE
     try:
         shape = global_shape(obj)
     except InputError:
         return ""
-    if seen is None or seen.isNull():
+    if document_shape is None or document_shape.isNull():
         return ""
     elements = {
-        f"{kind}{k}": one
-        for k, one in enumerate(shape.Faces if kind == FACE else shape.Edges, start=1)
+        f"{kind}{k}": element_shape
+        for k, element_shape in enumerate(shape.Faces if kind == FACE else shape.Edges, start=1)
     }
-    same = [name for name, one in elements.items() if _is_same(one, seen)]
+    same = [
+        name for name, element_shape in elements.items() if _is_same(element_shape, document_shape)
+    ]
     return element if element in same else next(iter(same), "")
 
 
-def _is_same(one: Any, other: Any) -> bool:
-    near = (one.CenterOfMass - other.CenterOfMass).Length < TOLERANCE_MM
-    if not near or abs(one.Length - other.Length) >= TOLERANCE_MM * max(1.0, one.Length):
+def _is_same(shape: Any, other_shape: Any) -> bool:
+    is_near = (shape.CenterOfMass - other_shape.CenterOfMass).Length < TOLERANCE_MM
+    if not is_near or abs(shape.Length - other_shape.Length) >= TOLERANCE_MM * max(
+        1.0, shape.Length
+    ):
         return False
-    if one.ShapeType != FACE or one.Surface.TypeId != PLANE or other.Surface.TypeId != PLANE:
+    if (
+        shape.ShapeType != FACE
+        or shape.Surface.TypeId != PLANE
+        or other_shape.Surface.TypeId != PLANE
+    ):
         return True
     return bool(
-        one.normalAt(0.0, 0.0).dot(other.normalAt(0.0, 0.0)) > 0.0
-    )  # of two that touch, the one that was meant
+        shape.normalAt(0.0, 0.0).dot(other_shape.normalAt(0.0, 0.0)) > 0.0
+    )  # of two touching faces, the intended one

@@ -39,9 +39,9 @@ def part_shape(path: str, object_name: str = "", scale: float = 1.0) -> tuple[An
 def part_content(
     path: str, object_name: str = "", scale: float = 1.0
 ) -> tuple[Any, str, tuple[Issue, ...]]:
-    """The shape of a part file, the mesh of an STL, OBJ or 3MF file or of an object, a label for it, and notes on what of
-    the file was left out. `object_name`: Name or Label of an object of an FCStd file. scale: mm of one unit of an STL or
-    OBJ file.
+    """The shape of a part file, the mesh of an STL, OBJ or 3MF file or of an object, a label for
+    it, and notes on omitted content. `object_name`: Name or Label of an object of an FCStd file.
+    scale: mm of one unit of an STL or OBJ file.
 
     Raises the InputErrors of `brep.read`, NO_OBJECT, and BAD_VALUE for a scale of another file or none above 0.
     """
@@ -54,7 +54,7 @@ def part_content(
         _refuse_other(path, extension)
         shape, issues = hooks.carry_out(lambda: shape_content(path), stem, READING)
         return shape, stem, issues
-    return _of_document(path, object_name, stem)
+    return _document_content(path, object_name, stem)
 
 
 def _refuse_other(path: str, extension: str) -> None:
@@ -69,7 +69,7 @@ def _refuse_other(path: str, extension: str) -> None:
         )
 
 
-def _of_document(path: str, object_name: str, stem: str) -> tuple[Any, str, tuple[Issue, ...]]:
+def _document_content(path: str, object_name: str, stem: str) -> tuple[Any, str, tuple[Issue, ...]]:
     if not is_there(path):
         raise InputError("NO_FILE", path, "there is no such file; check the path")
     for document in App.listDocuments().values():
@@ -93,21 +93,21 @@ def changed_part(
     about the change name. patience: how many times as long as reading a file this may take. The file stays as it is.
     InputError NO_ADD_ON besides.
     """
-    place = str(locate(path))
+    resolved_path = str(locate(path))
     return _decoded(
-        read_apart(_shape_of_file, place, object_name, change, where, patience=patience)
+        read_apart(_shape_of_file, resolved_path, object_name, change, where, patience=patience)
     )
 
 
 def add_part(document: Any, shape: Any, label: str, issues: tuple[Issue, ...] = ()) -> Any:
     """An object of a document with a shape or a mesh, and notes on its file."""
     is_triangles = hasattr(shape, "Topology")
-    part = document.addObject("Mesh::Feature" if is_triangles else "Part::Feature", "Part")
-    part.Label = label
-    setattr(part, "Mesh" if is_triangles else "Shape", shape)
-    keep_file_issues(part, issues)
-    part.purgeTouched()
-    return part
+    added = document.addObject("Mesh::Feature" if is_triangles else "Part::Feature", "Part")
+    added.Label = label
+    setattr(added, "Mesh" if is_triangles else "Shape", shape)
+    keep_file_issues(added, issues)
+    added.purgeTouched()
+    return added
 
 
 def _shape_of_file(
@@ -116,7 +116,7 @@ def _shape_of_file(
     change: Callable[[Any], list[Any]] | None = None,
     where: str = "",
 ) -> tuple[Any, str, tuple[Issue, ...]]:
-    active, before = App.ActiveDocument, set(App.listDocuments())
+    active, open_before = App.ActiveDocument, set(App.listDocuments())
     document = document_file.open_here(path, path)
     try:
         renewed = linked_files.renew_changed(document)
@@ -132,8 +132,8 @@ def _shape_of_file(
             content = content.exportBrepToString()
         return content, label, _notes(source, needs, renewed, changed)
     finally:
-        # those that it links to were opened with it
-        for name in set(App.listDocuments()) - before:
+        # linked documents were opened with it
+        for name in set(App.listDocuments()) - open_before:
             App.closeDocument(name)
         if active is not None:
             App.setActiveDocument(active.Name)
@@ -149,7 +149,9 @@ def _decoded(content: tuple[Any, str, tuple[Issue, ...]]) -> tuple[Any, str, tup
 
 
 def _refuse_without_add_on(changed: Any, needs: Dependencies, where: str) -> None:
-    """Reject a change of what an add-on computes that is missing here: the shape would stay as it was saved."""
+    """Reject a change of an object computed by a missing add-on: the shape would stay as it was
+    saved.
+    """
     for obj in (changed, *changed.InListRecursive):
         is_scripted = obj.TypeId.endswith("Python") and "Proxy" in obj.PropertiesList
         if is_scripted and obj.Proxy is None and obj in needs.objects:
@@ -190,7 +192,7 @@ def _shape_in(document: Any, path: str, object_name: str) -> tuple[Any, str, tup
 
 
 def _object_in(document: Any, path: str, object_name: str) -> Any:
-    """The object asked for, or of the only one; of a document of meshes alone, or by its name, a mesh."""
+    """The named object or the only one; a mesh in a document of only meshes, or by its name."""
     placed = [obj for obj in document.Objects if obj.TypeId not in ORIGIN]
     shapes = [
         obj for obj in placed if getattr(obj, "Shape", None) is not None and not obj.Shape.isNull()
@@ -198,40 +200,40 @@ def _object_in(document: Any, path: str, object_name: str) -> Any:
     meshes = [obj for obj in placed if obj not in shapes and is_mesh(obj)]
     if not object_name:  # a container of one mesh is called as the mesh is
         meshes = [obj for obj in meshes if not any(obj.isDerivedFrom(kind) for kind in GROUPS)]
-    known = [*shapes, *meshes]
+    available = [*shapes, *meshes]
     if object_name:
-        known += [*_elements(document, object_name)]
-        found = [obj for obj in known if object_name in (obj.Name, obj.Label)]
+        available += [*_elements(document, object_name)]
+        candidates = [obj for obj in available if object_name in (obj.Name, obj.Label)]
     else:
-        found = [
+        candidates = [
             obj
             for obj in shapes or meshes
-            if not any(other in known for other in obj.InListRecursive)
+            if not any(child_of in available for child_of in obj.InListRecursive)
         ]
-    if not found and (missing := missing_files(document)):
+    if not candidates and (missing := missing_files(document)):
         name, file = next(iter(missing.items()))
         raise linked_files.no_linked_file(path, document.getObject(name).Label, file)
-    if len(found) != 1:
-        raise _no_single_object(path, object_name, known, found)
-    return found[0]
+    if len(candidates) != 1:
+        raise _no_single_object(path, object_name, available, candidates)
+    return candidates[0]
 
 
 def _no_single_object(
-    path: str, object_name: str, known: list[Any], found: list[Any]
+    path: str, object_name: str, available: list[Any], candidates: list[Any]
 ) -> InputError:
     """Return the error of a document in which no single object is meant."""
-    if not known:
+    if not available:
         message = (
             "no object in it has a shape; recompute and save it in FreeCAD, or use another file"
         )
         return InputError("NO_OBJECT", path, message)
-    names = ", ".join(obj.Label for obj in found or known)
+    names = ", ".join(obj.Label for obj in candidates or available)
     if not object_name:
         message = "{} objects have a shape of their own ({}); name the part with part.object"
-        return InputError("NO_OBJECT", path, message, len(found), names)
-    if found:
+        return InputError("NO_OBJECT", path, message, len(candidates), names)
+    if candidates:
         message = "{} objects are called {!r}; give one of them another label"
-        return InputError("NO_OBJECT", path, message, len(found), object_name)
+        return InputError("NO_OBJECT", path, message, len(candidates), object_name)
     message = "no object with a shape is called {!r}; name one of {}"
     return InputError("NO_OBJECT", path, message, object_name, names)
 

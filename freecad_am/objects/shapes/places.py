@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where an object stands in its document, and what decides that: containers, links and linked objects.
+"""The position of an object in its document, determined by containers, links and linked objects.
 
 FreeCAD stores a placement relative to the container. `getGlobalPlacement` gives the place in the document, but objects of
 type App::Link and App::LinkElement do not have it, and it ignores link groups and link arrays. So we walk up the containers.
@@ -22,16 +22,16 @@ RIGID = 1e-9  # by which rows of a rotation may differ from unit vectors at righ
 
 @dataclass(frozen=True)
 class Dependencies:
-    """What determines the shape and the place of an object.
+    """Everything that determines the shape and the position of an object.
 
     Attributes
     ----------
     objects : tuple
-        The object itself, what it is made from, and what its links show, in whatever document that is.
+        The object itself, its sources, and the objects shown by its links, in any document.
     containers : tuple
         The containers that place the object, from the innermost to the outermost.
     documents : tuple
-        The documents of all these, that of the object first.
+        The documents of these objects, the object's own first.
     """
 
     objects: tuple[Any, ...]
@@ -58,13 +58,15 @@ def _container_of(obj: Any) -> Any:
     group = obj.getParentGeoFeatureGroup()
     if group is not None:
         return group
-    linking = [one for one in dict.fromkeys(obj.InList) if obj in elements_of(one)]
+    linking = [
+        candidate for candidate in dict.fromkeys(obj.InList) if obj in elements_of(candidate)
+    ]
     if len(linking) > 1:
         raise InputError(
             "SEVERAL_PLACES",
             obj.Label,
             "it is shown by several link groups ({}), each at a place of its own; choose one of these, or make a link to it",
-            ", ".join(one.Label for one in linking),
+            ", ".join(candidate.Label for candidate in linking),
         )
     return linking[0] if linking else obj.getParentGroup()
 
@@ -99,7 +101,7 @@ def outer_placement(source: Any) -> Any:
     chain = containers_of(source)
     if _asks_freecad(source, chain):
         return source.getGlobalPlacement().multiply(source.Placement.inverse())
-    scaling = [one for one in chain if not is_rigid(own_matrix(one))]
+    scaling = [outer for outer in chain if not is_rigid(own_matrix(outer))]
     if not scaling:
         placement = App.Placement()
         for container in chain:
@@ -120,12 +122,12 @@ def outer_placement(source: Any) -> Any:
 
 def global_placement(source: Any) -> Any:
     """The placement of an object in the coordinates of its document. InputError as `outer_placement`."""
-    own = getattr(source, "Placement", None)
+    own_placement = getattr(source, "Placement", None)
     chain = containers_of(source)
     if _asks_freecad(source, chain):
         return source.getGlobalPlacement()
     outer = outer_placement(source)
-    return outer if own is None else outer.multiply(own)
+    return outer if own_placement is None else outer.multiply(own_placement)
 
 
 def is_rigid(matrix: np.ndarray) -> bool:
@@ -145,14 +147,18 @@ def path_from_top(source: Any, path: str = "") -> tuple[Any, str]:
 
 
 def _asks_freecad(source: Any, chain: tuple[Any, ...]) -> bool:
-    """Whether FreeCAD itself knows the place: of a feature that no link group or link array holds."""
+    """Whether FreeCAD itself knows the position: true for a feature outside link groups and link
+    arrays.
+    """
     if not hasattr(source, "getGlobalPlacement") or not hasattr(source, "Placement"):
         return False
-    return all(link_property(one, "ElementList") is None for one in chain)
+    return all(link_property(container, "ElementList") is None for container in chain)
 
 
 def own_matrix(container: Any) -> np.ndarray:
-    """What a container does to what it holds, as a matrix (4, 4): its placement, and the scale of a link array."""
+    """The transform of a container on its members, as a matrix (4, 4): its placement, and the scale
+    of a link array.
+    """
     placement = getattr(container, "Placement", None)
     matrix = np.eye(4) if placement is None else _array(placement.toMatrix())
     scale = link_property(container, "ScaleVector")
@@ -162,18 +168,24 @@ def own_matrix(container: Any) -> np.ndarray:
 
 
 def is_scaled(obj: Any) -> bool:
-    """Whether an object is a link that scales or mirrors what it shows, or one of its elements."""
+    """Whether an object is a link that scales or mirrors its target, or an element of such a link."""
     scales = [link_property(obj, "ScaleVector"), *(link_property(obj, "ScaleList") or ())]
     return any(scale is not None and tuple(scale) != (1.0, 1.0, 1.0) for scale in scales)
 
 
 def shown_paths(source: Any) -> list[str]:
-    """The paths to the objects that a container, link group or link array shows, in FreeCAD's order; `[""]` for an object
-    with a shape of its own. What is hidden in it is left out, as FreeCAD does."""
-    shown = source.getLinkedObject(True) or source
-    if "Shape" in shown.PropertiesList or "Mesh" in shown.PropertiesList:
+    """The paths to the objects that a container, link group or link array shows, in FreeCAD's
+    order; `[""]` for an object with a shape of its own. Hidden objects are left out, as FreeCAD
+    does.
+    """
+    linked_object = source.getLinkedObject(True) or source
+    if "Shape" in linked_object.PropertiesList or "Mesh" in linked_object.PropertiesList:
         return [""]
-    return [path + rest for path, held in children_of(source) for rest in shown_paths(held)]
+    return [
+        path + child_path
+        for path, child in children_of(source)
+        for child_path in shown_paths(child)
+    ]
 
 
 def children_of(container: Any) -> list[tuple[str, Any]]:
@@ -182,16 +194,16 @@ def children_of(container: Any) -> list[tuple[str, Any]]:
     elements = elements_of(container)
     children = []
     for k, path in enumerate(container.getSubObjects()):
-        held = elements[k] if k < len(elements) else container.getSubObject(path, retType=1)
-        if held is not None and _is_visible(container, path.rstrip("."), held):
-            children.append((path, held))
+        child = elements[k] if k < len(elements) else container.getSubObject(path, retType=1)
+        if child is not None and _is_visible(container, path.rstrip("."), child):
+            children.append((path, child))
     return children
 
 
-def _is_visible(container: Any, name: str, held: Any) -> bool:
-    """FreeCAD has no visibility of its own (-1) for what is in a group: that of the object counts."""
+def _is_visible(container: Any, name: str, child: Any) -> bool:
+    """FreeCAD has no separate visibility (-1) for members of a group: the object's own counts."""
     visible = container.isElementVisible(name)
-    return bool(held.Visibility if visible < 0 else visible)
+    return bool(child.Visibility if visible < 0 else visible)
 
 
 def _array(matrix: Any) -> np.ndarray:
@@ -201,32 +213,37 @@ def _array(matrix: Any) -> np.ndarray:
 def dependencies_of(source: Any) -> Dependencies:
     """Everything that determines the shape of an object and its place in the document.
 
-    A change of any property of these objects may change the shape, or move it. Stages of this workbench are left out.
+    A change of any property of these objects may change or move the shape. Stages of the workbench
+    are left out.
     """
     chain = containers_of(source)
-    found = _made_from([source])
+    sources = _made_from([source])
     placed_by: list[Any] = []
     for container in chain:
-        placed_by += [one for one in container.OutList if not _is_held(one, container)]
-    found = _made_from([*found, *placed_by], (*chain, *found))
-    documents = dict.fromkeys(one.Document for one in (source, *found, *chain))
-    return Dependencies(tuple(found), chain, tuple(documents))
+        placed_by += [entry for entry in container.OutList if not _is_held(entry, container)]
+    sources = _made_from([*sources, *placed_by], (*chain, *sources))
+    documents = dict.fromkeys(entry.Document for entry in (source, *sources, *chain))
+    return Dependencies(tuple(sources), chain, tuple(documents))
 
 
-def _made_from(start: list[Any], known: tuple[Any, ...] = ()) -> list[Any]:
-    """Objects with all that they are made from, each once. known: objects whose inputs are not looked at."""
-    found = dict.fromkeys(start)
-    waiting = [one for one in start if one not in known]
+def _made_from(start: list[Any], excluded: tuple[Any, ...] = ()) -> list[Any]:
+    """Objects with all their sources, each once. excluded: objects whose inputs are not followed."""
+    sources = dict.fromkeys(start)
+    waiting = [entry for entry in start if entry not in excluded]
     while waiting:
-        for one in _inputs_of(waiting.pop()):
-            if one not in found and one not in known and not hasattr(one, "ResultLayout"):
-                found[one] = None
-                waiting.append(one)
-    return list(found)
+        for entry in _inputs_of(waiting.pop()):
+            if (
+                entry not in sources
+                and entry not in excluded
+                and not hasattr(entry, "ResultLayout")
+            ):
+                sources[entry] = None
+                waiting.append(entry)
+    return list(sources)
 
 
 def _inputs_of(obj: Any) -> Iterator[Any]:
-    yield from (one for one in obj.OutList if one is not None)
+    yield from (entry for entry in obj.OutList if entry is not None)
     linked = obj.getLinkedObject(False)
     if linked is not None and linked != obj:
         yield linked
@@ -234,5 +251,5 @@ def _inputs_of(obj: Any) -> Iterator[Any]:
 
 def _is_held(obj: Any, container: Any) -> bool:
     """Whether an object is in a container, and so does not place it."""
-    held = (*getattr(container, "Group", ()), *elements_of(container))
-    return obj in held or obj == getattr(container, "Origin", None)
+    members = (*getattr(container, "Group", ()), *elements_of(container))
+    return obj in members or obj == getattr(container, "Origin", None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a computer gives up on while a stage is computed, told as errors that say what to do."""
+"""Failures of the computer while a stage is computed, as errors with a remedy."""
 
 from __future__ import annotations
 

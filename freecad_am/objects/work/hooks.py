@@ -20,21 +20,25 @@ _carrying = False
 
 
 def register(module: str) -> None:
-    """Name the module with the functions `attach(obj)`, which gives an object its view provider and draws what is
-    stored, and `carry_out(work, title, doing)`, which does long work while the window stays alive."""
+    """Name the module with the functions `attach(obj)`, which gives an object its view provider and
+    draws the stored result, and `carry_out(work, title, doing)`, which does long work while the
+    window stays alive.
+    """
     global _module
     _module = module
 
 
 def attach(obj: Any) -> None:
-    """Show the object where there is a window: when it is made, and when a document (also a headless one) opens."""
+    """Show the object in a window: when it is made, and when a document (also a headless one)
+    opens.
+    """
     if App.GuiUp and _module and getattr(obj, "ViewObject", None) is not None:
         importlib.import_module(_module).attach(obj)
 
 
 def carry_out(work: Callable[[], T], title: str, doing: str = "") -> T:
-    """What `work` returns or raises. It must touch no document: in the window it is done in another thread. doing: what is
-    told of it there as long as it tells nothing itself.
+    """What `work` returns or raises. It must touch no document: in the window it runs in another
+    thread. doing: the text shown there until `work` reports progress.
 
     Raises Cancelled when the user cancels it.
     """
@@ -43,8 +47,8 @@ def carry_out(work: Callable[[], T], title: str, doing: str = "") -> T:
         return work()
     _carrying = True
     try:
-        found: T = importlib.import_module(_module).carry_out(work, title, doing)
-        return found
+        result: T = importlib.import_module(_module).carry_out(work, title, doing)
+        return result
     finally:
         _carrying = False
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Who is told how far a long computation is, and what is found on the way: nobody, a terminal, or a progress bar; and how it
-ends when cancelled."""
+"""Progress and findings of a long computation, for a terminal, a progress bar or no listener; and
+its cancellation.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +20,7 @@ class Cancelled(BaseException):
 
 
 class _Listeners(threading.local):
-    """Each thread has its own: works in two threads do not tell each other's listeners."""
+    """Each thread has its own: work in one thread does not reach another thread's listeners."""
 
     def __init__(self) -> None:
         self.stack: list[tuple[Listener, Findings | None]] = []
@@ -29,13 +30,13 @@ _listeners = _Listeners()
 
 
 def report(fraction: float, text: str) -> None:
-    """Tell the innermost listener of this thread; it may raise to cancel."""
+    """Report to the innermost listener of the current thread; it may raise to cancel."""
     if _listeners.stack:
         _listeners.stack[-1][0](fraction, text)
 
 
-def tell(issue: Issue) -> None:
-    """Tell the innermost listener of this thread of something that is better known before the work is done."""
+def report_issue(issue: Issue) -> None:
+    """Report an issue to the innermost listener of the current thread before the work is done."""
     findings = _listeners.stack[-1][1] if _listeners.stack else None
     if findings is not None:
         findings(issue)
@@ -43,8 +44,9 @@ def tell(issue: Issue) -> None:
 
 @contextlib.contextmanager
 def told_to(listener: Listener, findings: Findings | None = None) -> Iterator[None]:
-    """Within it `listener(fraction, text)` is told of what this thread computes, and `findings(issue)` of what is found on
-    the way. InputError BAD_INPUT for what cannot be called."""
+    """Within the context `listener(fraction, text)` receives the progress of the current thread,
+    and `findings(issue)` its findings. InputError BAD_INPUT for an object that cannot be called.
+    """
     for called, where in ((listener, "listener"), (findings, "findings")):
         if not callable(called) and (called is not None or where == "listener"):
             raise InputError(
@@ -59,8 +61,9 @@ def told_to(listener: Listener, findings: Findings | None = None) -> Iterator[No
 
 @contextlib.contextmanager
 def one_of(number: int, count: int, begin: float, end: float) -> Iterator[None]:
-    """Within it works alike, each of which tells of itself from `begin` to `end`, are told as one: this is that of a number,
-    from 0 on, of so many."""
+    """Within the context `count` equal tasks, each reporting from `begin` to `end`, report as one;
+    `number` counts from 0.
+    """
     if not _listeners.stack:
         yield
         return

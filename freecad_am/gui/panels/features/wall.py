@@ -11,7 +11,7 @@ import numpy as np
 from ....core.issues import Issue
 from ....objects.checks import deposit
 from ....objects.fields.shown_units import in_user_units
-from ....objects.shapes.bodies import taken
+from ....objects.shapes.bodies import snapshot_of
 from ....objects.stage_parts import Outcome
 from ....objects.surface_feature import SurfaceFeature
 from ...nodes.wall import WallNodes, drawn, first_curves
@@ -99,7 +99,7 @@ class WallPanel(PickPanel):
         return {field.link.name: field.value() for field in self.picks}
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Any]]:
-        work, part = draft.prepare(), taken(draft.obj.Source[0])
+        work, part = draft.prepare(), snapshot_of(draft.obj.Source[0])
 
         def both() -> tuple[Outcome, Any]:
             made = work()
