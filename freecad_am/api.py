@@ -128,7 +128,7 @@ def make_cell(
     A robot other than the default one gets the deposition point and the branch that suit it, as a new job does, unless they
     are given. external="urdf" takes track and positioner of the URDF that is the machine, and the robot of it.
     """
-    if values.get("external") == urdf_machine.WHOLE:
+    if values.get("external") == urdf_machine.WHOLE_CELL:
         values["machine"], values["external"] = urdf_cell.texts_of_machine(values.get("machine"))
     with one_step(doc, f"Make {checked_text(label, 'label')}"):
         cell = make_stage(doc, Cell, "Cell", label, {}, [parameters], values)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..core.geometry.file_content import digest
 from ..core.kinematics import cell as cells
-from ..core.kinematics.urdf.elements import LARGEST
+from ..core.kinematics.urdf.elements import MAX_FILE_MB
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.external import externals
 from . import user_machines
@@ -42,7 +42,7 @@ class Cell(Stage):
             *(axis.machine for axis in externals(self.parameters(obj, CellParameters).external)),
         ]
         files = [
-            digest(path, LARGEST, "BAD_MACHINE", f"{obj.Label}.Machine")
+            digest(path, MAX_FILE_MB, "BAD_MACHINE", f"{obj.Label}.Machine")
             for name in named
             for path in user_machines.files_of(name)
         ]

@@ -69,7 +69,7 @@ def by_table(cell: Cell, text: ReadMoves, path: Path) -> Array:
         if np.isnan(turned).any():
             solutions, free = solver.inverse(points[rows], tools[rows], cell.station)
             turned = _nearest(np.moveaxis(solutions[..., turning], 0, 1), free, previous)
-        serial[rows] = solver.placed(turned, points[rows], cell.station)
+        serial[rows] = solver.place_points(turned, points[rows], cell.station)
     return serial
 
 

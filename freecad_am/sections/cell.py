@@ -48,7 +48,7 @@ def _of_section(section: Any) -> CellParameters:
     if section.get("machine") is not None:
         section["machine"] = _machine(section["machine"])
     external_axes = section.pop("external", None)
-    if external_axes == urdf_machine.WHOLE:
+    if external_axes == urdf_machine.WHOLE_CELL:
         section["machine"], section["external"] = urdf_cell.texts_of_machine(section.get("machine"))
     elif external_axes not in (None, []):
         section["external"] = _external(external_axes)

@@ -25,7 +25,7 @@ def test_95_of_100_six_axis_arms_are_read_with_the_tip_proposed(tmp_path):
         six = is_six_axis_arm(axes)
         arms[maker] += six
         try:
-            found, arm = machine.described(Reference(str(path), None, None))
+            found, arm = machine.describe(Reference(str(path), None, None))
         except InputError as error:
             assert is_so(text, axes, error.message), f"{path.name}: {error.message}"
             rest.append((six, path.name, error.message))

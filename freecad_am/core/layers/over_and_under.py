@@ -72,7 +72,11 @@ def _overhanging_regions(
         for regions in (layer.regions, () if below is None else below.regions)
     )
     carried = grow_regions(under, reach, max(ARC * reach, chord_error))
-    return [part for part in subtract_regions(own_regions, carried) if part.area > min_area]
+    return [
+        remainder
+        for remainder in subtract_regions(own_regions, carried)
+        if remainder.area > min_area
+    ]
 
 
 def common_regions(neighbours: Sequence[Sequence[Region]]) -> tuple[Region, ...]:

@@ -66,7 +66,7 @@ def at_rest(cell: Cell, point: ArrayLike) -> Array:
     if not cell.machine.free:
         on_flange, _ = cell.on_flange(target[None], cell.mount[None, :3, 2])
         return np.asarray(
-            FiveAxis(chain).placed(np.zeros((1, TURNING)), on_flange, cell.station)[0]
+            FiveAxis(chain).place_points(np.zeros((1, TURNING)), on_flange, cell.station)[0]
         )
     arm = cell.robot.arm
     assert arm is not None  # a cell has no other robots

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ...core.kinematics.urdf.cell import texts_of_machine
-from ...core.kinematics.urdf.machine import WHOLE
+from ...core.kinematics.urdf.machine import WHOLE_CELL
 
 
 def whole_cell(machine: object, external: object) -> tuple[str, str] | None:
@@ -12,6 +12,6 @@ def whole_cell(machine: object, external: object) -> tuple[str, str] | None:
 
     Raises InputError BAD_URDF where robot, track and positioner cannot be told apart, BAD_VALUE for what is no URDF.
     """
-    if not isinstance(external, str) or external.strip() != WHOLE:
+    if not isinstance(external, str) or external.strip() != WHOLE_CELL:
         return None
     return texts_of_machine(machine)

@@ -72,7 +72,7 @@ def test_a_locked_axis_leaves_the_residual_it_says(name, axis):
     locked = five.locked(axis, 0.3, tools, np.array([0.0, 0.0, 1.0]))
     turned = np.full((len(points), 2), 0.3)
     turned[:, 1 - axis] = locked.angle
-    axes = five.placed(turned, points, np.eye(4))
+    axes = five.place_points(turned, points, np.eye(4))
     flange = model.chain.forward(axes)
     np.testing.assert_allclose(
         np.einsum("nij,nj->ni", flange[:, :3, :3], points) + flange[:, :3, 3], 0.0, atol=1e-9
@@ -83,7 +83,7 @@ def test_a_locked_axis_leaves_the_residual_it_says(name, axis):
     for step in (-0.01, 0.01):
         other = turned.copy()
         other[:, 1 - axis] += step
-        moved = model.chain.forward(five.placed(other, points, np.eye(4)))
+        moved = model.chain.forward(five.place_points(other, points, np.eye(4)))
         assert (np.einsum("nij,nj->ni", moved[:, :3, :3], tools)[:, 2] <= held[:, 2] + 1e-12).all()
 
 

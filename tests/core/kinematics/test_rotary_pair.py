@@ -34,17 +34,17 @@ def turned(axis, angle, vectors):
 @pytest.mark.parametrize("first, second", PAIRS)
 def test_both_branches_take_source_to_target(first, second):
     source, target = directions(1), directions(2)
-    found = rotary_pair.between(first, second, source, target)
-    real = np.isfinite(found.first[0])
+    found = rotary_pair.solve_turns(first, second, source, target)
+    real = np.isfinite(found.first_turn[0])
     for branch in range(2):
         met = turned(
             first,
-            found.first[branch][real],
-            turned(second, found.second[branch][real], source[real]),
+            found.first_turn[branch][real],
+            turned(second, found.second_turn[branch][real], source[real]),
         )
         np.testing.assert_allclose(met, target[real], atol=1e-12)
-    apart = np.abs(np.exp(1j * found.first[0]) - np.exp(1j * found.first[1])) + np.abs(
-        np.exp(1j * found.second[0]) - np.exp(1j * found.second[1])
+    apart = np.abs(np.exp(1j * found.first_turn[0]) - np.exp(1j * found.first_turn[1])) + np.abs(
+        np.exp(1j * found.second_turn[0]) - np.exp(1j * found.second_turn[1])
     )
     assert (apart[real] > 1e-6).all()
     # where none is given there is none: a fine search over the second axis never brings the source near enough
@@ -59,7 +59,7 @@ def test_one_of_the_three_pairs_always_has_a_solution():
     # the paper's proof; X with Y alone, or any other pair alone, does not do for all
     source, target = directions(3), directions(4)
     real = [
-        np.isfinite(rotary_pair.between(a, b, source, target).first[0])
+        np.isfinite(rotary_pair.solve_turns(a, b, source, target).first_turn[0])
         for a, b in ((X, Z), (Y, Z), (X, Y))
     ]
     assert np.any(real, axis=0).all()
@@ -68,11 +68,11 @@ def test_one_of_the_three_pairs_always_has_a_solution():
 
 def test_solution_2_agrees_with_solution_1_where_the_target_is_vertical():
     source = directions(5)
-    first = rotary_pair.between(X, Z, source, Z)
+    first = rotary_pair.solve_turns(X, Z, source, Z)
     second = rotary_pair.by_vertical(source, Z)
     np.testing.assert_allclose(np.abs(second.alpha_back), 0.0, atol=1e-15)
-    gap = np.abs(np.exp(1j * first.first) - np.exp(1j * second.alpha)) + np.abs(
-        np.exp(1j * first.second) - np.exp(1j * second.gamma)
+    gap = np.abs(np.exp(1j * first.first_turn) - np.exp(1j * second.alpha)) + np.abs(
+        np.exp(1j * first.second_turn) - np.exp(1j * second.gamma)
     )
     np.testing.assert_allclose(
         gap.min(axis=0), 0.0, atol=1e-9
@@ -91,13 +91,13 @@ def test_solution_2_goes_from_any_direction_to_any_other():
 
 def test_poles_are_told():
     source = np.array([Z, -Z, X, [0.6, 0.0, 0.8]])
-    found = rotary_pair.between(X, Z, source, Z)
+    found = rotary_pair.solve_turns(X, Z, source, Z)
     assert found.second_free.tolist() == [True, True, False, False]
-    assert (found.second[:, found.second_free] == 0.0).all()
+    assert (found.second_turn[:, found.second_free] == 0.0).all()
     for branch in range(2):
-        met = turned(X, found.first[branch], turned(Z, found.second[branch], source))
+        met = turned(X, found.first_turn[branch], turned(Z, found.second_turn[branch], source))
         np.testing.assert_allclose(met, np.tile(Z, (4, 1)), atol=1e-12)
-    assert rotary_pair.between(Z, X, source[3:], Z).first_free.tolist() == [True]
+    assert rotary_pair.solve_turns(Z, X, source[3:], Z).first_free.tolist() == [True]
 
 
 def test_a_hub_on_the_turning_axis_needs_one_tilt():
@@ -108,9 +108,9 @@ def test_a_hub_on_the_turning_axis_needs_one_tilt():
         [math.cos(a) * np.cos(theta), math.cos(a) * np.sin(theta), np.full(50, math.sin(a))], axis=1
     )
     assert math.degrees(math.pi / 2 - a) == pytest.approx(73.3, abs=0.01)
-    locked = rotary_pair.with_first_locked(X, Z, math.pi / 2 - a, normal, Z)
+    locked = rotary_pair.lock_first(X, Z, math.pi / 2 - a, normal, Z)
     np.testing.assert_allclose(locked.residual, 0.0, atol=1e-7)
-    off = rotary_pair.with_first_locked(X, Z, math.radians(60.0), normal, Z)
+    off = rotary_pair.lock_first(X, Z, math.radians(60.0), normal, Z)
     np.testing.assert_allclose(np.degrees(off.residual), 73.3 - 60.0, atol=0.01)
     np.testing.assert_allclose(off.angle, locked.angle, atol=1e-9)
 
@@ -121,11 +121,11 @@ def test_no_other_angle_of_the_axis_left_comes_nearer(first, second):
     for k in range(len(source)):
         for locks, forward in (
             (
-                rotary_pair.with_first_locked,
+                rotary_pair.lock_first,
                 lambda a, s: turned(first, [0.4], turned(second, [a], s)),
             ),
             (
-                rotary_pair.with_second_locked,
+                rotary_pair.lock_second,
                 lambda a, s: turned(first, [a], turned(second, [0.4], s)),
             ),
         ):
@@ -148,7 +148,7 @@ def test_no_other_angle_of_the_axis_left_comes_nearer(first, second):
 @pytest.mark.parametrize("low, high", [(-math.pi, math.pi), (-0.7, 0.4)])
 def test_no_place_of_the_locked_axis_leaves_less(locked, low, high):
     rng = np.random.default_rng(11)
-    lock = (rotary_pair.with_first_locked, rotary_pair.with_second_locked)[locked]
+    lock = (rotary_pair.lock_first, rotary_pair.lock_second)[locked]
     for _ in range(12):
         first, second, target = (v / np.linalg.norm(v) for v in rng.normal(size=(3, 3)))
         source = rng.normal(size=(30, 3)) * [1.0, 1.0, 0.3] + 2.0 * rng.normal(size=3)
@@ -160,7 +160,7 @@ def test_no_place_of_the_locked_axis_leaves_less(locked, low, high):
             found = lock(first, second, places, np.tile(source, (len(angles), 1)), target)  # noqa: B023
             return found.residual.reshape(len(angles), -1).max(axis=1)
 
-        at = rotary_pair.least_residual(first, second, locked, source, target, low, high)
+        at = rotary_pair.minimise_residual(first, second, locked, source, target, low, high)
         assert low <= at <= high
         every = worst(*np.linspace(low, high, 1441)).min()
         assert worst(at)[0] <= every + 1e-9

@@ -31,7 +31,7 @@ def test_each_zero_is_in_a_step_of_its_own(degree):
         assert (~found.close).sum() > 150
         for number in np.flatnonzero(~found.close):
             low, high, near = (
-                column[found.number == number] for column in (found.low, found.high, found.near)
+                column[found.number == number] for column in (found.low, found.high, found.guess)
             )
             assert len(low) == real and (low <= near).all() and (near <= high).all()
             # rounding of the coefficients moves zeros of near pairs

@@ -154,7 +154,7 @@ def test_a_robot_is_read_however_it_is_described(style, robot, tmp_path):
     there = placed(text, collections.defaultdict(float))
     # of links that are at one and the same place any may be proposed
     assert np.abs(there[read.tips(read.bases()[0])[0]] - there[tip]).max() < 1e-4
-    found, arm = urdf_machine.described(Reference(str(path), None, None))
+    found, arm = urdf_machine.describe(Reference(str(path), None, None))
     assert_pose(text, read, found, arm)
     assert len(found.notes) == (
         0 if style in ("bare", "gripped") else 7
@@ -186,7 +186,7 @@ def test_what_cannot_be_read_is_refused_for_what_it_is(what, tmp_path):
     path = tmp_path / "robot.urdf"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(InputError) as refused:
-        urdf_machine.described(Reference(str(path), None, None))
+        urdf_machine.describe(Reference(str(path), None, None))
     assert is_so(text, moving(text), refused.value.message), refused.value.message
 
 
@@ -221,7 +221,7 @@ def test_rounded_right_angles_are_right_angles(robot, written, noted, tmp_path):
     machine_of = machine.load(robot)
     path = tmp_path / "robot.urdf"
     path.write_text(with_right_angles(urdf_text.text(machine_of), written), encoding="utf-8")
-    described, arm = urdf_machine.described(Reference(str(path), None, None))
+    described, arm = urdf_machine.describe(Reference(str(path), None, None))
     q = np.random.default_rng(5).uniform(-2.5, 2.5, (20, 6))
     np.testing.assert_allclose(described.chain.forward(q), machine_of.chain.forward(q), atol=1e-9)
     assert type(arm) is type(machine_of.arm)
@@ -241,7 +241,7 @@ def test_arms_that_are_nearly_square_are_solved_as_they_are(robot, off_deg, tmp_
 
     path = tmp_path / "robot.urdf"
     path.write_text(re.sub(r'(\brpy=")([^"]+)"', lean, text), encoding="utf-8")
-    described, arm = urdf_machine.described(Reference(str(path), None, None))
+    described, arm = urdf_machine.describe(Reference(str(path), None, None))
     assert any("deg off right angles" in note for note in described.notes)
     q = np.random.default_rng(5).uniform(-2.5, 2.5, (200, 6))
     poses = described.chain.forward(q)
@@ -270,7 +270,7 @@ def test_angles_in_reasons_have_digits_that_differ(tmp_path):
         text.replace('<axis xyz="0.0 1.0 0.0"/>', '<axis xyz="0 1 0.02"/>', 1), encoding="utf-8"
     )
     with pytest.raises(InputError) as refused:
-        urdf_machine.described(Reference(str(path), None, None))
+        urdf_machine.describe(Reference(str(path), None, None))
     assert "not 90 deg" in refused.value.message and "90 deg apart" not in refused.value.message
 
 
@@ -296,7 +296,7 @@ def test_what_may_change_where_links_are_is_refused_with_its_line(pattern, by, w
     path = tmp_path / "robot.urdf"
     path.write_text(changed, encoding="utf-8")
     with pytest.raises(InputError) as refused:
-        urdf_machine.described(Reference(str(path), None, None))
+        urdf_machine.describe(Reference(str(path), None, None))
     assert refused.value.code == "BAD_URDF" and words in refused.value.message, refused.value
     assert re.search(r"line \d+$", refused.value.where)
 
@@ -309,7 +309,7 @@ def test_limits_that_are_left_out_or_soft_are_noted(tmp_path):
     )
     path = tmp_path / "robot.urdf"
     path.write_text(text, encoding="utf-8")
-    described, _ = urdf_machine.described(Reference(str(path), None, None))
+    described, _ = urdf_machine.describe(Reference(str(path), None, None))
     notes = " / ".join(described.notes)
     assert (
         described.upper[0] == 0.0

@@ -24,66 +24,75 @@ START_SHIFT_MM = 5.0  # mm
 TINY = 1e-9
 LENGTH = 500.0  # mm that count as one rad
 CONVERGED = 1e-11  # of the error as an angle, 5e-9 mm; one more step is not worth its time
-SINGULAR = 2e-10  # left by rounding beside a singularity
+SINGULAR = 2e-10  # rounding error near a singularity
 DAMPING = 1e-14
 
 
 @dataclass(frozen=True, eq=False)
 class CalibratedArm:
-    """`chain` is the arm as it is, `near` the closed form of what it should be. Configurations are those of the closed form
-    for the same angles; within some millimetres of the stretched arm and some tenths of a degree of the wrist's singularity
-    solutions that only one of the two has are left out."""
+    """The inverse of an arm off its nominal geometry.
 
-    near: SerialArm
+    `chain` is the real arm, `nominal` the closed form of its nominal geometry. Configurations
+    are those of the closed form for the same angles. Within some millimetres of the stretched
+    arm and some tenths of a degree of the wrist's singularity, solutions that only one of the
+    two has are left out.
+    """
+
+    nominal: SerialArm
     chain: Chain
 
     @property
     def followed(self) -> bool:
         """Whether several solutions may bear the same words; as of the closed form."""
-        return self.near.followed
+        return self.nominal.followed
 
     @property
     def shoulder(self) -> tuple[float, float]:
-        """How far axis 2 lies ahead of axis 1 and above base_link, mm; that of the closed form."""
-        return self.near.shoulder
+        """Distances of axis 2 ahead of axis 1 and above base_link, mm, from the closed form."""
+        return self.nominal.shoulder
 
     @property
     def reach(self) -> float:
-        """From axis 2 to the wrist of the stretched arm, mm; that of the closed form."""
-        return self.near.reach
+        """Distance from axis 2 to the wrist of the stretched arm, mm, from the closed form."""
+        return self.nominal.reach
 
     def inverse(self, poses: ArrayLike) -> Array:
-        """Joint angles (8, n, 6) of all configurations for flange poses (n, 4, 4), in [-pi, pi]; NaN where not reached. Of
-        arms that are `followed` as many as the closed form has."""
+        """Return joint angles (8, n, 6) in all configurations for flange poses (n, 4, 4), in [-pi,
+        pi]; NaN if out of reach.
+
+        Arms with ambiguous words have as many solutions as the closed form.
+        """
         return self.solutions(poses)[0]
 
     def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
         """Joint angles (n, 6) of one configuration; else as `inverse`."""
         targets = np.ascontiguousarray(poses, float)
-        return self._brought(targets, branch)
+        return self._solve_words(targets, branch)
 
     def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
         """All of `inverse`, and the configuration (8, n) of each, -1 where it does not reach."""
         targets = np.ascontiguousarray(poses, float)
-        if not self.near.followed:
-            solved = np.stack([self._brought(targets, words) for words in range(WORDS)])
+        if not self.nominal.followed:
+            solved = np.stack([self._solve_words(targets, words) for words in range(WORDS)])
             return solved, np.where(np.isnan(solved[..., 0]), -1, np.arange(WORDS)[:, None])
-        starts, words = self.near.solutions(targets)
+        starts, words = self.nominal.solutions(targets)
         solved = np.stack([self._from(start, targets, word) for start, word in zip(starts, words)])
         return solved, np.where(np.isnan(solved[..., 0]), -1, words)
 
     def branch_of(self, q: ArrayLike) -> Index:
         """The configuration (...) that joint angles `q` (..., 6) are in."""
-        return self.near.branch_of(q)
+        return self.nominal.branch_of(q)
 
     def bend(self, q: ArrayLike) -> Array:
         """(...) how far angles `q` (..., 6) are from where wrist or elbow is stretched: 0 there, 1 square to it."""
-        return self.near.bend(q)
+        return self.nominal.bend(q)
 
-    def _brought(self, poses: Array, words: int) -> Array:
-        """Angles (n, 6) of those words that give the poses (n, 4, 4), NaN where there are none."""
-        result = self._from(self.near.inverse_branch(poses, words), poses, words)
-        # where the closed form just does not reach: by what it finds a little nearer to the shoulder, or farther from axis 1
+    def _solve_words(self, poses: Array, words: int) -> Array:
+        """Return the angles (n, 6) with these words for the poses (n, 4, 4); NaN where there is no
+        solution.
+        """
+        result = self._from(self.nominal.inverse_branch(poses, words), poses, words)
+        # where the closed form just fails to reach: start from its solution slightly nearer to the shoulder, or farther from axis 1
         for inwards, outwards in ((START_SHIFT_MM, 0.0), (0.0, START_SHIFT_MM)):
             unsolved = np.flatnonzero(np.isnan(result[:, 0]))
             if not len(unsolved):
@@ -95,19 +104,21 @@ class CalibratedArm:
             towards = position - (0.0, 0.0, self.shoulder[1])
             position -= inwards * towards / np.linalg.norm(towards + TINY, axis=1, keepdims=True)
             result[unsolved] = self._from(
-                self.near.inverse_branch(moved, words), poses[unsolved], words
+                self.nominal.inverse_branch(moved, words), poses[unsolved], words
             )
         return result
 
     def _from(self, start: Array, poses: Array, words: int | Index) -> Array:
-        """Angles (n, 6) near `start` (n, 6) that give the poses, NaN where there are none of those words, or words (n,)."""
+        """Return the angles (n, 6) near `start` (n, 6) for the poses, NaN where none has these
+        words, or words (n,).
+        """
         result = np.full(start.shape, np.nan)
         reached = np.flatnonzero(np.isfinite(start[:, 0]))
         for begin in range(0, len(reached), CHUNK):
             rows = reached[begin : begin + CHUNK]
             result[rows] = self._newton(start[rows].copy(), poses[rows])
         result = shortest(result)
-        result[self.near.branch_of(np.nan_to_num(result)) != words] = np.nan
+        result[self.nominal.branch_of(np.nan_to_num(result)) != words] = np.nan
         return result
 
     def _newton(self, q: Array, poses: Array) -> Array:
@@ -138,8 +149,9 @@ class CalibratedArm:
         return q
 
     def _inverse_rates(self, q: Array, points: Array) -> Array:
-        """(n, 6, 6) what takes an error of the flange, at (n, 3), to angles; hardly damped, so that it stays finite beside a
-        singularity."""
+        """Return matrices (n, 6, 6) from an error of the flange, at (n, 3), to angles, slightly
+        damped to stay finite near singularities.
+        """
         rates = np.array(jacobian(self.chain, q, points))
         rates[:, :3] /= LENGTH
         across = np.swapaxes(rates, 1, 2)

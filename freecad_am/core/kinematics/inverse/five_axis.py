@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Inverse kinematics of machines with three axes that slide and two that turn, wherever these are (Dai 2020, section 3).
+"""Inverse kinematics of machines with three prismatic and two revolute axes, in any order
+(Dai 2020, section 3).
 
-The chain runs from the torch to the table (see the machine files), so that tables, heads and one of each are one case: the
-two turning axes bring the tool's direction in the part to that of the torch, whatever slides between them; then the
-sliding axes bring the point to the torch's tip.
+The chain runs from the torch to the table (see the machine files), so tables, heads and
+mixed machines are one case. The two revolute axes bring the tool's direction in the part
+to the direction of the torch, whatever prismatic axes are between them; then the
+prismatic axes bring the point to the torch's tip.
 """
 
 from __future__ import annotations
@@ -21,14 +23,19 @@ SLIDING, TURNING = 3, 2  # axes
 
 
 def is_five_axis(sliding: Mask) -> bool:
-    """Whether axes, of which `sliding` (n,) slide, are those of such a machine, in whatever order."""
+    """Return whether axes, prismatic where `sliding` (n,) is True, are those of a five-axis
+    machine, in any order.
+    """
     return (int(sliding.sum()), len(sliding)) == (SLIDING, SLIDING + TURNING)
 
 
 class Solutions(NamedTuple):
-    """Axis values (2, n, 5), one row per branch, rad in (-pi, pi] and mm; NaN where no turn reaches the direction.
-    free (n, 2): whether the first or the second turning axis may stand anywhere, for the direction lies along it; it is
-    then given as 0, and the sliding axes for that."""
+    """Axis values (2, n, 5), one row per branch, rad in (-pi, pi] and mm; NaN where no rotation
+    reaches the direction.
+
+    free (n, 2): whether the first or the second revolute axis may have any value, because the
+    direction is along it. Its value is then 0, and the prismatic axes match that.
+    """
 
     axes: Array
     free: Mask
@@ -58,7 +65,7 @@ class FiveAxis:
     def turns(self, tools: Array, torch: Array) -> rotary_pair.Turns:
         """The turns that bring unit vectors tools (n, 3) on the flange to the unit vector torch (3,) in base_link."""
         first_axis, second_axis, source, target = self._pair(tools, torch)
-        return rotary_pair.between(first_axis, second_axis, source, target)
+        return rotary_pair.solve_turns(first_axis, second_axis, source, target)
 
     def inverse(self, points: Array, tools: Array, station: Array) -> Solutions:
         """Axis values that hold points (n, 3) mm and tool directions (n, 3), given on the flange, at the torch.
@@ -66,25 +73,31 @@ class FiveAxis:
         station: (4, 4) the torch's tip in base_link, its Z pointing into the torch.
         """
         turns = self.turns(tools, station[:3, 2])
-        turned = np.stack([turns.first, turns.second], axis=-1)
-        axes = np.stack([self.placed(branch, points, station) for branch in turned])
+        turned = np.stack([turns.first_turn, turns.second_turn], axis=-1)
+        axes = np.stack([self.place_points(branch, points, station) for branch in turned])
         return Solutions(axes, np.stack([turns.first_free, turns.second_free], axis=1))
 
     def locked(
         self, axis: int, angle: Array | float, tools: Array, torch: Array
     ) -> rotary_pair.Locked:
-        """Four axes: the turning axis `axis` (0 or 1) stands at an angle, the other brings the tools as near as it can."""
+        """Solve with four axes: the revolute axis `axis` (0 or 1) has a given angle, the other
+        brings the tools as near as possible.
+        """
         first_axis, second_axis, source, target = self._pair(tools, torch)
-        lock = rotary_pair.with_first_locked if axis == 0 else rotary_pair.with_second_locked
+        lock = rotary_pair.lock_first if axis == 0 else rotary_pair.lock_second
         return lock(first_axis, second_axis, angle, source, target)
 
     def best_lock(self, axis: int, tools: Array, torch: Array, low: float, high: float) -> float:
         """Where between low and high, rad, the turning axis `axis` (0 or 1) leaves the smallest largest residual."""
         first_axis, second_axis, source, target = self._pair(tools, torch)
-        return rotary_pair.least_residual(first_axis, second_axis, axis, source, target, low, high)
+        return rotary_pair.minimise_residual(
+            first_axis, second_axis, axis, source, target, low, high
+        )
 
-    def placed(self, turned: Array, points: Array, station: Array) -> Array:
-        """Axis values (n, 5) with the turning axes at angles (n, 2) that bring points (n, 3) to the torch's tip."""
+    def place_points(self, turned: Array, points: Array, station: Array) -> Array:
+        """Return axis values (n, 5), with the revolute axes at angles (n, 2), that bring points (n,
+        3) to the torch's tip.
+        """
         axes = np.zeros((len(points), 5))
         axes[:, self.turning] = turned
         reachable = np.isfinite(turned).all(axis=1)

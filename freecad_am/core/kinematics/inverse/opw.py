@@ -36,11 +36,12 @@ def branch_name(index: int) -> tuple[str, str, str]:
 class OpwArm:
     """The seven lengths (mm), `offsets` (rad) and `signs` of an arm: q_opw = q * sign - offset.
 
-    All poses are those of the flange in base_link, mm. Joint angles are the serial ones, rad.
+    All poses are poses of the flange in base_link, mm. Joint angles are the serial ones, rad.
 
-    A branch is front when the wrist centre lies on the side of axis 1 that q1 points to; up when the elbow lies above the
-    line from shoulder to wrist centre, that is on its left, seen in the arm's plane with the wrist centre's side of
-    axis 1 to the right; flip when q5 < 0, counted from where the wrist is stretched.
+    A branch is front if the wrist centre is on the side of axis 1 to which q1 points; up if
+    the elbow is above the line from shoulder to wrist centre, that is on its left, seen in
+    the arm's plane with the wrist centre's side of axis 1 to the right; flip if q5 < 0,
+    counted from the stretched wrist.
     """
 
     a1: float
@@ -53,11 +54,11 @@ class OpwArm:
     offsets: tuple[float, ...]
     signs: tuple[int, ...]
 
-    followed = False  # words tell all solutions apart
+    followed = False  # words distinguish all solutions
 
     @property
     def shoulder(self) -> tuple[float, float]:
-        """How far axis 2 lies ahead of axis 1 and above base_link, mm."""
+        """Distances of axis 2 ahead of axis 1 and above base_link, mm."""
         return self.a1, self.c1
 
     @property
@@ -99,11 +100,13 @@ class OpwArm:
         return result
 
     def inverse(self, poses: ArrayLike) -> Array:
-        """Joint angles (8, n, 6) of all branches for flange poses (n, 4, 4), in [-pi, pi] rad.
+        """Return joint angles (8, n, 6) of all branches for flange poses (n, 4, 4), in [-pi, pi]
+        rad.
 
-        The first index is that of `branch_name`. All six angles of a branch that does not reach a pose are
-        NaN. At the singularity of the wrist (stretched) axis 4 takes the angle of opw zero and axis 6 the rest; where the
-        wrist centre lies on axis 1, axis 1 does. Forward kinematics gives the pose back to about 1e-9 mm.
+        The first index follows `branch_name`. All six angles of a branch that does not reach a
+        pose are NaN. At the singularity of the wrist (stretched) axis 4 takes the angle of opw
+        zero and axis 6 the rest; with the wrist centre on axis 1, axis 1 takes it. Forward
+        kinematics reproduces the pose to about 1e-9 mm.
         """
         return solve(self, poses, tuple(range(8)))
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The inverse of an arm with a spherical wrist, as `opw` has it: the arithmetic.
+"""The inverse of an arm with a spherical wrist, as in `opw`: the arithmetic.
 
-Sines and cosines are carried on as ratios of lengths, so that one arc tangent per joint and branch is all that is
-asked of the transcendental functions. Axis 6 is taken with the axis 4 found, so that a wrist at or near its
-singularity loses no accuracy. An array holds one component of all poses, in pieces that stay in the processor's
-cache.
+Sines and cosines are computed as ratios of lengths, so one arc tangent per joint and
+branch is the only transcendental function. Axis 6 is computed with the axis 4 found, so a
+wrist at or near its singularity loses no accuracy. An array holds one component of all
+poses, in pieces that fit the processor's cache.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def solve(arm: OpwArm, poses: ArrayLike, branches: tuple[int, ...]) -> Array:
     poses = np.asarray(poses, float)
     count = len(poses)
     by_component = np.moveaxis(poses[:, :3, :], 0, -1)
-    # angles by joint in memory, (n, 6) only to look at: whoever works joint by joint finds them together
+    # angles are stored by joint, with (n, 6) as a view: code that works joint by joint finds them contiguous
     result = np.empty((len(branches), 6, count))
     with np.errstate(invalid="ignore", divide="ignore"):
         for start in range(0, count, CHUNK):
@@ -96,7 +96,9 @@ def _solve_piece(arm: OpwArm, rows: Array, branches: tuple[int, ...], out: Array
 
 
 def _distance(arm: OpwArm, centre: Array) -> tuple[Array, Array]:
-    """How far the wrist centre lies from axis 1, squared, and along the arm's plane; NaN within b of it. mm."""
+    """Return the squared distance of the wrist centre from axis 1, and its distance along the
+    arm's plane; NaN within b. mm.
+    """
     centre[0] += HINT
     squared = centre[0] * centre[0]
     squared += centre[1] * centre[1]
@@ -214,7 +216,7 @@ def _wrist(
     """Write axes 4 to 6 with opw's q5 >= 0."""
     sine, cosine = direction
     along, across = flange
-    # the flange's axes along the forearm's X; the forearm's Y is that of the arm's plane
+    # the flange's axes along the forearm's X; the forearm's Y is the Y of the arm's plane
     forearm = along * cosine
     forearm -= height[:3] * sine
     x, y = forearm[2], across[2]
@@ -240,7 +242,7 @@ def _flip(arm: OpwArm, angles: Array, flipped: Array) -> None:
         flipped[:3] = angles[:3]
     np.negative(angles[4], out=flipped[4])
     if arm.offsets[4]:
-        # both lie as far from where the wrist is stretched
+        # both are equally far from the stretched wrist
         flipped[4] += 2.0 * arm.signs[4] * arm.offsets[4]
         flipped[4] -= 2.0 * math.pi * np.rint(flipped[4] * (0.5 / math.pi))
     _half_turn(angles[3], flipped[3])

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The closed form of a chain of joint frames, found from where its axes are, and the chain of a closed form.
+"""The closed form of a chain of joint frames, recognised from its axes, and the chain of a
+closed form.
 
-What `opw` asks for (Brandstoetter, Angerer, Hofbaur 2014): axis 1 normal to axis 2, axes 2 and 3 parallel, axis 4 normal to
-axis 3, axes 4, 5 and 6 through one point, 5 normal to both others. Each is looked at in this order and what does not
-hold is the reason why there is no closed form.
+Conditions of `opw` (Brandstoetter, Angerer, Hofbaur 2014): axis 1 normal to axis 2, axes
+2 and 3 parallel, axis 4 normal to axis 3, axes 4, 5 and 6 through one point, 5 normal to
+both others. They are checked in this order, and the first that fails is the reason for
+having no closed form.
 """
 
 from __future__ import annotations
@@ -19,11 +21,11 @@ from ...types import Array
 from ..chain import Chain, JointFrames
 from .opw import OpwArm
 
-# how far directions (rad) and lines (mm) may be off, and what the closed form may leave: those of machine files
+# tolerances of directions (rad) and lines (mm), and maximum error of the closed form: those of machine files
 PARALLEL_TOLERANCE, NEAR_MM = 1e-8, 1e-5
 POSITION, ROTATION = 1e-6, 1e-9
 ROBOT = 6  # axes of one
-FLANGE = "flange"  # where what is refused about the flange alone is
+FLANGE = "flange"  # location of errors that concern only the flange
 TOOL_FRAME = "take the frame tool0 of a URDF, or move the flange"
 OTHER_GEOMETRY = "correct its geometry, or choose another machine"
 
@@ -51,15 +53,18 @@ def rooted(chain: Chain) -> tuple[Chain, Array]:
 
 
 def track_of(chain: Chain) -> int:
-    """How many axes a track has that a robot with six turning axes stands on; 0 of any other chain."""
+    """Return the number of axes of a track under a robot with six revolute axes; 0 for any other
+    chain.
+    """
     return int(chain.axes == ROBOT + 1 and chain.sliding[0] and not chain.sliding[1:].any())
 
 
 def recognise(chain: Chain) -> OpwArm:
-    """The closed form of a chain, in its own base_link.
+    """Return the closed form of a chain, in its own base_link.
 
-    Signs and offsets are those that give c2, c3 > 0, a1 >= 0 and the smallest turns where that leaves a choice. Raises
-    InputError NO_CLOSED_FORM telling what of the geometry stands in the way, and by how much.
+    Signs and offsets give c2, c3 > 0, a1 >= 0 and, if that leaves a choice, the smallest
+    turns. Raises InputError NO_CLOSED_FORM with the property of the geometry that prevents
+    it, and by how much.
     """
     if chain.axes != 6 or chain.sliding.any():
         slides = int(chain.sliding.sum())
@@ -122,7 +127,9 @@ def chain_of(arm: OpwArm) -> Chain:
 
 
 def _wrist_centre(at_rest: JointFrames) -> Array:
-    """The point (3,) where the axes of the wrist meet, once the directions of all axes are those of such an arm."""
+    """Return the point (3,) where the axes of the wrist meet, after checking the directions of
+    all axes.
+    """
     z, p = at_rest.directions, at_rest.origins
     foot = p[0] - z[0] * float(z[0] @ p[0])
     if np.hypot(z[0, 0], z[0, 1]) > PARALLEL_TOLERANCE or np.linalg.norm(foot) > NEAR_MM:
@@ -147,7 +154,7 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
         raise refused(
             Text("axes 2 and 3 are not parallel, but {:.6g} deg apart", math.degrees(off))
         )
-    # the point of axis 5 next to axis 4, and how far both others pass it by
+    # the point of axis 5 next to axis 4, and the distances of both others from it
     across = p[3] - p[4]
     centre: Array = p[4] + z[4] * float(z[4] @ across)
     for axis in (3, 5):
@@ -166,7 +173,7 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
 
 
 def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
-    """The closed form of axes that are those of such an arm, with this wrist centre."""
+    """Return the closed form for checked axes, with this wrist centre."""
     z, p, flange = at_rest.directions, at_rest.origins, at_rest.flange
     turn1, sign2, shoulder = _shoulder(z, p)
     x, y, up = frames.about_z(turn1).T

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Closed-form kinematics of arms whose axes 2, 3 and 4 are parallel, such as those of Universal Robots.
+"""Closed-form kinematics of arms whose axes 2, 3 and 4 are parallel, such as those of
+Universal Robots.
 
-After Hawkins, "Analytic inverse kinematics for the Universal Robots", 2013, for any lengths and zeros: the point where
-axes 5 and 6 meet keeps its distance from the arm's plane, which gives axis 1; axis 6 against the normal of that plane
-gives axis 5; axes 2 to 4 are a triangle. An array holds one component of all poses.
+After Hawkins, "Analytic inverse kinematics for the Universal Robots", 2013, for any
+lengths and zeros. The point where axes 5 and 6 meet keeps its distance from the arm's
+plane, which gives axis 1; axis 6 relative to the normal of that plane gives axis 5; axes
+2 to 4 are a triangle. An array holds one component of all poses.
 """
 
 from __future__ import annotations
@@ -28,16 +30,19 @@ PARALLEL = 1e-10  # rad: nearer to the normal of the arm's plane, the direction 
 
 @dataclass(frozen=True, eq=False)
 class ParallelAxesArm:
-    """Lengths (mm) of the arm, and `signs` and `zeros` (rad) of its joints: theta = sign * q + zero.
+    """Lengths (mm) of the arm, and `signs` and `zeros` (rad) of its joints: theta = sign * q +
+    zero.
 
-    At all theta 0 the arm's plane is XZ of base_link, upper arm, forearm and axis 5 point up, axis 6 along Y. Axis 2 is
-    `ahead` and `above`, axes 3 and 4 `upper` and `fore` further on, and the point where axes 5 and 6 meet is at `wrist`
-    (x, z) from axis 4 and `beside` the plane of axis 1. `tip` (4, 4) is the flange seen from that point, with X along axis 5
-    and Z along axis 6.
+    At all theta 0 the arm's plane is XZ of base_link, upper arm, forearm and axis 5 point up,
+    axis 6 along Y. Axis 2 is `ahead` and `above`, axes 3 and 4 are `upper` and `fore` further
+    on, and the point where axes 5 and 6 meet is at `wrist` (x, z) from axis 4 and `offset`
+    from the plane of axis 1. `tip` (4, 4) is the flange seen from that point, with X along
+    axis 5 and Z along axis 6.
 
-    A configuration is front when the point where axes 5 and 6 meet lies on the side of axis 1 to which the arm reaches at
-    all q 0; up when the elbow lies above the line from shoulder to axis 4, as of arms with a spherical wrist; flip when
-    q5 < 0, counted from where axis 6 is parallel to axis 4.
+    A configuration is front if the point where axes 5 and 6 meet is on the side of axis 1 to
+    which the arm reaches at all q 0; up if the elbow is above the line from shoulder to axis
+    4, as for arms with a spherical wrist; flip if q5 < 0, counted from where axis 6 is
+    parallel to axis 4.
     """
 
     ahead: float
@@ -54,7 +59,7 @@ class ParallelAxesArm:
 
     @property
     def shoulder(self) -> tuple[float, float]:
-        """How far axis 2 lies ahead of axis 1 and above base_link, mm."""
+        """Distances of axis 2 ahead of axis 1 and above base_link, mm."""
         return self.ahead, self.above
 
     @property
@@ -63,10 +68,12 @@ class ParallelAxesArm:
         return self.upper + self.fore
 
     def inverse(self, poses: ArrayLike) -> Array:
-        """Joint angles (8, n, 6) of all configurations for flange poses (n, 4, 4), in [-pi, pi] rad.
+        """Return joint angles (8, n, 6) in all configurations for flange poses (n, 4, 4), in [-pi,
+        pi] rad.
 
-        All six of one that does not reach are NaN. Where axis 6 is parallel to axis 4, axes 4 and 6 share their turn such
-        that the elbow is square, as near as it can be; where axis 1 is free it takes theta 0.
+        All six are NaN in a configuration that does not reach. Where axis 6 is parallel to axis
+        4, axes 4 and 6 share their turn such that the elbow is square, or as near as possible;
+        where axis 1 is free it takes theta 0.
         """
         return self._solved(poses, tuple(range(8)))
 
@@ -202,8 +209,11 @@ class ParallelAxesArm:
         return np.sin(turn), np.cos(turn)
 
     def _triangle(self, ahead: Array, above: Array) -> tuple[Array, Array, Array]:
-        """Of shoulder, elbow and axis 4: the angle at the elbow for the elbow on the left, and axis 4 from the shoulder
-        along the upper arm and across it; NaN where it does not close."""
+        """Solve the triangle of shoulder, elbow and axis 4.
+
+        Returns the angle at the elbow for the elbow on the left, and axis 4 from the shoulder
+        along the upper arm and across it; NaN where the triangle does not close.
+        """
         upper, fore = self.upper, self.fore
         squared = ahead * ahead + above * above
         scale = 1.0 / (2.0 * upper * fore)

@@ -31,22 +31,24 @@ ROUNDING_MM = (
     0.01,
     0.1,
 )  # of lengths, tried in this order: leaning frames shift what should meet
-LOCKED = 0.02  # cosine of the pitch, below which roll and yaw are not told apart
-MOST_LOST = 0.1  # share of poses beside singularities that an arm and the closed form next to it do not both reach
+LOCKED = 0.02  # cosine of the pitch, below which roll and yaw are not distinguished
+MAX_LOST_SHARE = 0.1  # share of poses near singularities that only one of an arm and its nominal closed form reaches
 
 
 def arm_of(chain: Chain) -> SerialArm:
-    """The inverse of a chain seen from a base_link whose Z is axis 1, as `opw_recognition.rooted` has it.
+    """Return the inverse of a chain seen from a base_link whose Z is axis 1, as
+    `opw_recognition.rooted` returns it.
 
-    Raises InputError NO_CLOSED_FORM telling what of the geometry stands in the way, and by how much.
+    Raises InputError NO_CLOSED_FORM with the property of the geometry that prevents it, and
+    by how much.
     """
     try:
         return _exact(chain)
     except InputError:
-        if squared(chain) is None:
+        if square_up(chain) is None:
             raise
     arm = CalibratedArm(_nearest(chain), chain)
-    if not _agrees(arm, chain, MOST_LOST):
+    if not _agrees(arm, chain, MAX_LOST_SHARE):
         raise opw_recognition.refused(
             Text(
                 "its axes are up to {:.3g} deg off right angles, and its solutions do not give back its poses",
@@ -57,21 +59,26 @@ def arm_of(chain: Chain) -> SerialArm:
 
 
 def off_square(chain: Chain) -> float:
-    """The largest angle (rad) by which a frame or an axis of a chain is off the right angle that it nearly stands at."""
+    """Return the largest angle (rad) of a frame or an axis of a chain from its nearest right
+    angle.
+    """
     rows = [*chain.origins[:, :3, :3], chain.flange[:3, :3]]
-    turns = [_angle(rotation, _squared_rotation(rotation)) for rotation in rows]
+    turns = [_angle(rotation, _square_rotation(rotation)) for rotation in rows]
     axes = [
-        math.asin(min(1.0, float(np.linalg.norm(np.cross(axis, _squared_axis(axis))))))
+        math.asin(min(1.0, float(np.linalg.norm(np.cross(axis, _square_axis(axis))))))
         for axis in chain.directions
     ]
     return max(*turns, *axes)
 
 
 def _nearest(chain: Chain) -> SerialArm:
-    """The closed form next to a chain that is nearly square. InputError NO_CLOSED_FORM of the one with right angles alone."""
+    """Return the closed form of a nearly square chain with rounded lengths.
+
+    Raises InputError NO_CLOSED_FORM of the chain with only its angles squared.
+    """
     reason: InputError | None = None
     for step in ROUNDING_MM:
-        nominal = squared(chain, step)
+        nominal = square_up(chain, step)
         assert nominal is not None  # by the caller
         try:
             return _exact(nominal)
@@ -81,23 +88,28 @@ def _nearest(chain: Chain) -> SerialArm:
     raise reason
 
 
-def squared(chain: Chain, step: float = 0.0) -> Chain | None:
-    """The chain whose frames and axes stand at right angles where those of the given one nearly do, and whose lengths are rounded
-    to a step (mm), seen from a base_link whose Z is axis 1; None where nothing changes."""
+def square_up(chain: Chain, step: float = 0.0) -> Chain | None:
+    """Return the chain with nearly square frames and axes made square and lengths rounded to a
+    step (mm).
+
+    It is seen from a base_link whose Z is axis 1. Returns None if nothing changes.
+    """
     if chain.axes != 6 or chain.sliding.any() or off_square(chain) < EXACT:
         return None
     origins, flange = chain.origins.copy(), chain.flange.copy()
-    origins[:, :3, :3] = [_squared_rotation(rotation) for rotation in origins[:, :3, :3]]
-    flange[:3, :3] = _squared_rotation(flange[:3, :3])
-    axes = np.stack([_squared_axis(axis) for axis in chain.directions])
+    origins[:, :3, :3] = [_square_rotation(rotation) for rotation in origins[:, :3, :3]]
+    flange[:3, :3] = _square_rotation(flange[:3, :3])
+    axes = np.stack([_square_axis(axis) for axis in chain.directions])
     if step:
         for pose in (*origins, flange):
             pose[:3, 3] = np.round(pose[:3, 3] / step) * step
     return opw_recognition.rooted(Chain(origins, axes, flange, chain.sliding))[0]
 
 
-def _squared_rotation(rotation: Array) -> Array:
-    """The rotation (3, 3) of quarter turns that is nearly the given one; of others with their roll, pitch and yaw made so."""
+def _square_rotation(rotation: Array) -> Array:
+    """Return the rotation (3, 3) of quarter turns near the given one; for other rotations,
+    square their roll, pitch and yaw.
+    """
     nearest = np.round(rotation)
     if _is_rotation(nearest) and _angle(rotation, nearest) < NEARLY_SQUARE:
         return np.asarray(nearest)
@@ -110,7 +122,7 @@ def _squared_rotation(rotation: Array) -> Array:
     )[:3, :3]
 
 
-def _squared_axis(axis: Array) -> Array:
+def _square_axis(axis: Array) -> Array:
     nearest = np.round(axis)
     is_square = np.linalg.norm(axis - nearest) < NEARLY_SQUARE and np.abs(nearest).sum() == 1.0
     return np.asarray(nearest if is_square else axis)
@@ -141,8 +153,9 @@ def _other_wrists(chain: Chain) -> SerialArm:
 
 
 def parallel_axes(chain: Chain) -> ParallelAxesArm | None:
-    """The closed form of a chain of six revolute joints whose axes 2, 3 and 4 are parallel; None where they are not, or
-    other axes are not as that asks for."""
+    """Return the closed form of a chain of six revolute joints whose axes 2, 3 and 4 are
+    parallel; None for other chains.
+    """
     at_rest = chain.frames(np.zeros(6))
     z, p = at_rest.directions, at_rest.origins
     if not _upright(z, p) or not (_parallel(z[1], z[2]) and _parallel(z[1], z[3])):
@@ -257,7 +270,11 @@ def _flips(arm: OffsetWristArm) -> tuple[bool, bool, bool, bool]:
 
 
 def _agrees(arm: SerialArm, chain: Chain, lost_share: float = 0.0) -> bool:
-    """Whether the arm gives back joint angles of the chain, but for a share `lost_share`; a slip of signs or zeros shows."""
+    """Return whether the arm reproduces joint angles of the chain, except for a share
+    `lost_share`.
+
+    This catches wrong signs and zeros.
+    """
     q = np.random.default_rng(6).uniform(-math.pi, math.pi, (32, 6))
     poses = chain.forward(q)
     angles = arm.inverse(poses)
@@ -301,7 +318,7 @@ def _square(direction: Array, reference: Array) -> bool:
 
 
 def _meeting(p: Array, z: Array, q: Array, w: Array) -> Array | None:
-    """The point (3,) where two lines that are not parallel meet, None where they pass each other."""
+    """Return the point (3,) where two lines that are not parallel meet, None if they are skew."""
     across = np.cross(z, w)
     size = float(across @ across)
     if size < PARALLEL_TOLERANCE or abs(float((q - p) @ across)) / math.sqrt(size) > NEAR_MM:

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Two rotary axes that bring a direction of the part to another (Dai 2020, section 3).
+"""Two revolute axes that bring a direction of the part to another (Dai 2020, section 3).
 
-Rot(first, q1) Rot(second, q2) source = target, with any two unit axes that are not parallel. Rot(second, q2) source = v
-is known along both axes: v . second = source . second and v . first = target . first; what is left of it lies across
-both, one way or the other: two solutions, one where they meet, none where even the best is too long. This is solution 1
-of the paper for axes of any direction. Solution 2 goes by way of the vertical and turns about X and Z twice, so it exists
-for every pair of directions, but not on two axes.
+Rot(first, q1) Rot(second, q2) source = target, with any two unit axes that are not
+parallel. The components of Rot(second, q2) source = v along both axes are known: v .
+second = source . second and v . first = target . first. The remaining component is across
+both axes, in either sense: two solutions, one where they meet, none where even the best
+is too long. This is solution 1 of the paper for axes of any direction. Solution 2 goes by
+the vertical and turns about X and Z twice, so it exists for every pair of directions, but
+not on two axes.
 """
 
 from __future__ import annotations
@@ -23,35 +25,40 @@ ROUNDING = 1e-12  # a square that is negative by no more than this is zero
 
 
 class Turns(NamedTuple):
-    """Angles about the first and the second axis, (2, n) rad in (-pi, pi], one row per branch; NaN where there is no real
-    solution. first_free, second_free: (n,) where a turn about the axis changes nothing, for target or source lies on it;
-    the angle is then 0."""
+    """Angles about the first and the second axis, (2, n) rad in (-pi, pi], one row per branch;
+    NaN without a real solution.
 
-    first: Array
-    second: Array
+    first_free, second_free: (n,) where a turn about the axis changes nothing, because target
+    or source is along it; the angle is then 0.
+    """
+
+    first_turn: Array
+    second_turn: Array
     first_free: Mask
     second_free: Mask
 
 
-def between(first: Array, second: Array, source: Array, target: Array) -> Turns:
-    """The turns about unit axes (3,) that take unit vectors source (n, 3) to target (n, 3) or (3,): solution 1."""
+def solve_turns(first_axis: Array, second_axis: Array, source: Array, target: Array) -> Turns:
+    """Return the turns about unit axes (3,) that take unit vectors source (n, 3) to target (n,
+    3) or (3,): solution 1.
+    """
     target = np.broadcast_to(target, source.shape)
-    across = np.cross(first, second)
-    square, cosine = float(across @ across), float(first @ second)
-    p, q = target @ first, source @ second
+    across = np.cross(first_axis, second_axis)
+    square, cosine = float(across @ across), float(first_axis @ second_axis)
+    p, q = target @ first_axis, source @ second_axis
     # v = a first + b second + c across
     a, b = (p - cosine * q) / square, (q - cosine * p) / square
     squared = (1.0 - (a * a + b * b + 2.0 * a * b * cosine)) / square
     with np.errstate(invalid="ignore"):
         c = np.sqrt(np.where((squared < 0.0) & (squared > -ROUNDING), 0.0, squared))
-    plane = a[:, None] * first + b[:, None] * second
+    plane = a[:, None] * first_axis + b[:, None] * second_axis
     between_ = np.stack([plane + c[:, None] * across, plane - c[:, None] * across])
-    first_free, second_free = _on(target, first), _on(source, second)
-    first_turn = np.where(first_free, 0.0 * squared, _angle(first, between_, target))
-    second_turn = np.where(second_free, 0.0 * squared, _angle(second, source, between_))
+    first_free, second_free = _on(target, first_axis), _on(source, second_axis)
+    angle_first = np.where(first_free, 0.0 * squared, _angle(first_axis, between_, target))
+    angle_second = np.where(second_free, 0.0 * squared, _angle(second_axis, source, between_))
     unreal = np.isnan(c)
-    first_turn[:, unreal], second_turn[:, unreal] = np.nan, np.nan
-    return Turns(first_turn, second_turn, first_free, second_free)
+    angle_first[:, unreal], angle_second[:, unreal] = np.nan, np.nan
+    return Turns(angle_first, angle_second, first_free, second_free)
 
 
 class ByVertical(NamedTuple):
@@ -79,48 +86,61 @@ class Locked(NamedTuple):
     residual: Array
 
 
-def with_first_locked(
-    first: Array, second: Array, angle: Array | float, source: Array, target: Array
+def lock_first(
+    first_axis: Array, second_axis: Array, angle: Array | float, source: Array, target: Array
 ) -> Locked:
-    """Four axes: the first axis stands at an angle (rad, one or (n,)); the second turns the source as near as it can."""
+    """Solve with four axes: the first axis has a given angle (rad, one or (n,)); the second
+    turns the source as near as possible.
+    """
     target = np.broadcast_to(target, source.shape)
-    turned = frames.rotation_about(first, -np.broadcast_to(angle, len(source)))
-    return nearest(second, source, np.einsum("nij,nj->ni", turned, target))
+    turned = frames.rotation_about(first_axis, -np.broadcast_to(angle, len(source)))
+    return nearest(second_axis, source, np.einsum("nij,nj->ni", turned, target))
 
 
-def with_second_locked(
-    first: Array, second: Array, angle: Array | float, source: Array, target: Array
+def lock_second(
+    first_axis: Array, second_axis: Array, angle: Array | float, source: Array, target: Array
 ) -> Locked:
-    """Four axes: the second axis stands at an angle; the first turns."""
+    """Solve with four axes: the second axis has a given angle; the first turns."""
     target = np.broadcast_to(target, source.shape)
-    turned = frames.rotation_about(second, np.broadcast_to(angle, len(source)))
-    return nearest(first, np.einsum("nij,nj->ni", turned, source), target)
+    turned = frames.rotation_about(second_axis, np.broadcast_to(angle, len(source)))
+    return nearest(first_axis, np.einsum("nij,nj->ni", turned, source), target)
 
 
-def least_residual(
-    first: Array, second: Array, locked: int, source: Array, target: Array, low: float, high: float
+def minimise_residual(
+    first_axis: Array,
+    second_axis: Array,
+    locked: int,
+    source: Array,
+    target: Array,
+    low: float,
+    high: float,
 ) -> float:
-    """Where between low and high, rad, the axis `locked` (0 first, 1 second) leaves the smallest largest residual.
+    """Return the angle between low and high, rad, of the axis `locked` (0 first, 1 second) with
+    the smallest largest residual.
 
-    The other axis meets all of a direction but its angle to itself, so the residual is the difference of these angles:
-    of source and Rot(first, -at) target to the second axis, of Rot(second, at) source and target to the first.
+    The other axis meets all of a direction except its angle to itself, so the residual is the
+    difference of these angles: of source and Rot(first, -angle) target to the second axis, or
+    of Rot(second, angle) source and target to the first.
     """
     target = np.broadcast_to(target, source.shape)
 
     def worst(angles: Array) -> Array:
         if locked == 0:
-            stands = _heights(target, first, second, -angles)
-            turns = source @ second
+            stands = _heights(target, first_axis, second_axis, -angles)
+            turns = source @ second_axis
         else:
-            stands = _heights(source, second, first, angles)
-            turns = target @ first
+            stands = _heights(source, second_axis, first_axis, angles)
+            turns = target @ first_axis
         residuals = (
             np.arccos(np.clip(stands, -1.0, 1.0)) - np.arccos(np.clip(turns, -1.0, 1.0))[:, None]
         )
         largest: Array = np.abs(residuals).max(axis=0)
         return largest
 
-    for steps in (361, *[21] * 8):  # there may be several valleys: look all round, then closer
+    for steps in (
+        361,
+        *[21] * 8,
+    ):  # there may be several local minima: search the whole range, then more finely
         angles = np.linspace(low, high, steps)
         best = float(angles[int(np.argmin(worst(angles) + 1e-9 * np.abs(angles)))])
         width = 2.0 * (high - low) / (steps - 1)
@@ -154,7 +174,9 @@ def _on(vectors: Array, axis: Array) -> Mask:
 
 
 def _angle(axis: Array, start: Array, end: Array) -> Array:
-    """The turn (..., n) about an axis that takes one vector to the other, as far as they lie across the axis."""
+    """Return the turn (..., n) about an axis from one vector to the other, by their components
+    across the axis.
+    """
     sine = np.cross(start, end) @ axis
     cosine = (start * end).sum(axis=-1) - (start @ axis) * (end @ axis)
     angle: Array = np.arctan2(sine, cosine)

@@ -78,7 +78,7 @@ class Draft:
 
 def of_description(described: Description, source: str) -> Draft:
     """The draft of what a URDF describes; limits are those of the file."""
-    found = urdf_machine.grounded(described)
+    found = urdf_machine.ground_description(described)
     draft = _bare(found.chain, found.joints, found.name, source)
     return replace(
         draft,

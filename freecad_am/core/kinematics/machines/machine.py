@@ -221,7 +221,7 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
         return _parse(read(path))
     meant = reference(text)
     if meant is not None:
-        return of_description(f"{meant}", *urdf_machine.described(meant))
+        return of_description(f"{meant}", *urdf_machine.describe(meant))
     path = file_of(text, folders)
     machine = (
         _built_in(path, locate(path).stat().st_mtime_ns)

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A whole cell from one URDF: robot, track and positioner told apart by the tree of its joints.
+"""A whole cell from one URDF: robot, track and positioner, identified by the tree of its
+joints.
 
-The robot is where six axes in a row turn, on nothing or on axes that slide, which are its track; what its tool moves further
-on is left alone. What else moves against the floor carries the part.
+The robot is the chain of six consecutive revolute axes, on the floor or on prismatic
+axes, which are its track. Joints that its tool moves further on are ignored. Everything
+else that moves relative to the floor carries the part.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ from ...issues import InputError, Text
 from ...parameters.external import MORE, PART, ROBOT, WHERE, External, Pose
 from ...types import Array
 from .elements import CODE
-from .machine import WHOLE
+from .machine import WHOLE_CELL
 from .read import FIXED, TIPS, Urdf
 from .read import ROBOT as AXES
 from .reference import Reference, reference
@@ -29,49 +31,64 @@ Way = tuple[str, ...]  # the joints that move a link, from the floor on
 
 
 class UrdfCell:
-    """The mechanisms of a URDF: `robot` and `track`, the joints that move them, and `positioner`, all from the floor on;
-    empty where there is none.
+    """The mechanisms of a URDF: joints of `robot` and `track`, and of `positioner`, all from the
+    floor on; empty if absent.
 
-    Raises InputError BAD_URDF where they cannot be told apart.
+    Raises InputError BAD_URDF if they cannot be identified.
     """
 
     def __init__(self, path: Path | str) -> None:
         self.urdf = Urdf(path)
         self.ways: dict[str, Way] = {link: self._way(link) for link in self.urdf.links}
         self.joints = {joint.text("name"): joint for joint in self.urdf.parent.values()}
-        known = set(self.ways.values()) - {()}
+        moved_chains = set(self.ways.values()) - {()}
         self.farthest = sorted(
-            way for way in known if not any(one[: len(way)] == way and one != way for one in known)
+            joint_names
+            for joint_names in moved_chains
+            if not any(
+                longer[: len(joint_names)] == joint_names and longer != joint_names
+                for longer in moved_chains
+            )
         )
-        robots = sorted({robot for way in self.farthest if (robot := self._robot(way))})
+        robots = sorted(
+            {robot for joint_names in self.farthest if (robot := self._robot(joint_names))}
+        )
         if len(robots) != 1:
             self._refuse(self._several(robots) if robots else self._no_robot())
-        whole = robots[0]
-        self.track, self.robot = whole[:-AXES], whole[-AXES:]
-        self.positioner = self._positioner(whole)
+        robot_chain = robots[0]
+        self.track, self.robot = robot_chain[:-AXES], robot_chain[-AXES:]
+        self.positioner = self._positioner(robot_chain)
 
     def machine(self) -> Reference:
         """The robot."""
         return self._reference(self.robot, self._tip((*self.track, *self.robot)))
 
     def external(self) -> tuple[External, ...]:
-        """Track and positioner, where they stand in the world: the robot's base frame with the track at zero."""
+        """Return track and positioner at their poses in the world: the robot's base frame with the
+        track at zero.
+        """
         robot = self.machine()
         assert robot.base is not None  # named by _reference
-        world, found = frames.inverse(self._stands(robot)), []
+        world, mechanisms = frames.inverse(self._stands(robot)), []
         external = (
             (self.track, robot.base, ROBOT),
             (self.positioner, self._tip(self.positioner), PART),
         )
-        for way, tip, carried in external:
-            if way:
-                meant = self._reference(way, tip)
-                found.append(External(str(meant), _six(world @ self._stands(meant)), carried))
-        return tuple(found)
+        for joint_names, tip, carried in external:
+            if joint_names:
+                mechanism_reference = self._reference(joint_names, tip)
+                mechanisms.append(
+                    External(
+                        str(mechanism_reference),
+                        _six(world @ self._stands(mechanism_reference)),
+                        carried,
+                    )
+                )
+        return tuple(mechanisms)
 
     def _way(self, link: str) -> Way:
         above = [link, *self.urdf.above(link)][:-1]
-        joints = [self.urdf.parent[one] for one in reversed(above)]
+        joints = [self.urdf.parent[below] for below in reversed(above)]
         return tuple(joint.text("name") for joint in joints if joint.text("type") != FIXED)
 
     def _turns(self, joint: str) -> bool:
@@ -81,51 +98,63 @@ class UrdfCell:
     def _slides(self, joint: str) -> bool:
         return self.joints[joint].text("type") == SLIDING
 
-    def _robot(self, way: Way) -> Way:
-        """The joints of a robot and of what it stands on, which a way begins with; none where there is none."""
-        first = next((k for k, joint in enumerate(way) if not self._slides(joint)), len(way))
-        end = first + AXES
-        if len(way) < end or not all(self._turns(joint) for joint in way[first:end]):
+    def _robot(self, joint_names: Way) -> Way:
+        """Return the joints of a robot and of its track at the begin of a chain; empty if it has no
+        robot.
+        """
+        first_revolute = next(
+            (k for k, joint in enumerate(joint_names) if not self._slides(joint)), len(joint_names)
+        )
+        end = first_revolute + AXES
+        if len(joint_names) < end or not all(
+            self._turns(joint) for joint in joint_names[first_revolute:end]
+        ):
             return ()
         further = {
-            one[end] for one in self.ways.values() if one[:end] == way[:end] and len(one) > end
+            chain[end]
+            for chain in self.ways.values()
+            if chain[:end] == joint_names[:end] and len(chain) > end
         }
         seventh = len(further) == 1 and self._turns(
             next(iter(further))
-        )  # an arm; fingers are two, slide, or follow
-        return () if seventh else way[:end]
+        )  # an arm; grippers have two fingers that are prismatic or mimic
+        return () if seventh else joint_names[:end]
 
     def _positioner(self, robot: Way) -> Way:
-        """What carries the part: all that moves apart from the robot."""
-        others = [way for way in self.farthest if way[: len(robot)] != robot]
-        for way in others:
-            if way[0] == robot[0]:
+        """Return the joints of the part carrier: everything that moves apart from the robot."""
+        other_chains = [
+            joint_names for joint_names in self.farthest if joint_names[: len(robot)] != robot
+        ]
+        for joint_names in other_chains:
+            if joint_names[0] == robot[0]:
                 self._refuse(
                     Text(
                         "{!r} is carried by {!r}, as the robot is; let the positioner stand on the floor",
-                        way[-1],
-                        way[0],
+                        joint_names[-1],
+                        joint_names[0],
                     )
                 )
-        if len(others) > 1:
-            names = ", ".join(" - ".join(way) for way in others)
+        if len(other_chains) > 1:
+            names = ", ".join(" - ".join(joint_names) for joint_names in other_chains)
             self._refuse(
                 Text(
                     "{} chains move beside the robot ({}), and one can carry the part; name it in `{}`, with base "
                     "and tip",
-                    len(others),
+                    len(other_chains),
                     names,
                     WHERE,
                 )
             )
-        return others[0] if others else ()
+        return other_chains[0] if other_chains else ()
 
-    def _tip(self, way: Way) -> str:
-        """The link that so many joints move and whose name tells that tools or parts stand on it; else one whose Z points
-        out, farthest out."""
-        if not way:
+    def _tip(self, joint_names: Way) -> str:
+        """Return the link moved by all these joints whose name marks a tool or part mount.
+
+        Otherwise one whose Z points out, farthest out.
+        """
+        if not joint_names:
             return ""
-        links = [link for link, moved in self.ways.items() if moved == way]
+        links = [link for link, moved in self.ways.items() if moved == joint_names]
         depth = {link: len(self.urdf.above(link)) for link in links}
         return min(
             links,
@@ -137,17 +166,23 @@ class UrdfCell:
             ),
         )
 
-    def _reference(self, way: Way, tip: str) -> Reference:
-        return Reference(str(self.urdf.path), self.joints[way[0]].one("parent").text("link"), tip)
+    def _reference(self, joint_names: Way, tip: str) -> Reference:
+        return Reference(
+            str(self.urdf.path), self.joints[joint_names[0]].one("parent").text("link"), tip
+        )
 
-    def _stands(self, meant: Reference) -> Array:
-        """(4, 4) the maker's base frame of a mechanism, seen from the first link of the file, all joints at zero."""
-        assert meant.base is not None and meant.tip is not None
-        found = self.urdf.between(meant.base, meant.tip)
-        at = np.eye(4)
-        for link in reversed([meant.base, *self.urdf.above(meant.base)][:-1]):
-            at = at @ self.urdf.parent[link].pose()
-        return at if found.base is None else np.asarray(at @ found.base)
+    def _stands(self, mechanism_reference: Reference) -> Array:
+        """Return the manufacturer's base frame (4, 4) of a mechanism, seen from the first link of
+        the file, all joints at zero.
+        """
+        assert mechanism_reference.base is not None and mechanism_reference.tip is not None
+        description = self.urdf.between(mechanism_reference.base, mechanism_reference.tip)
+        pose = np.eye(4)
+        for link in reversed(
+            [mechanism_reference.base, *self.urdf.above(mechanism_reference.base)][:-1]
+        ):
+            pose = pose @ self.urdf.parent[link].pose()
+        return pose if description.base is None else np.asarray(pose @ description.base)
 
     def _no_robot(self) -> str:
         longest = max(self.farthest, key=len, default=())
@@ -162,7 +197,7 @@ class UrdfCell:
             "there are {} robots in it, the last axes of which are {}; name one in `cell.machine`, with base and "
             "tip, and what stands beside it in `{}`",
             len(robots),
-            ", ".join(one[-1] for one in robots),
+            ", ".join(robot_joints[-1] for robot_joints in robots),
             WHERE,
         )
 
@@ -170,40 +205,47 @@ class UrdfCell:
         raise InputError(CODE, self.urdf.path.name, message)
 
 
-def texts_of(meant: Reference) -> tuple[str, str]:
-    """What a cell names as its machine and its external axes, of a URDF that has them all.
+def texts_of(cell_reference: Reference) -> tuple[str, str]:
+    """Return the cell's texts for its machine and its external axes, from a URDF that has them
+    all.
 
-    Raises InputError BAD_URDF where they cannot be told apart, BAD_VALUE where links of one of them are named.
+    Raises InputError BAD_URDF if they cannot be identified, BAD_VALUE if links of one of them
+    are named.
     """
-    if meant.base is not None or meant.tip is not None:
+    if cell_reference.base is not None or cell_reference.tip is not None:
         raise InputError(
             "BAD_VALUE",
             WHERE,
             "{} takes all of the file; leave out base and tip of the machine, or name the "
             "mechanisms one by one",
-            WHOLE,
+            WHOLE_CELL,
         )
-    if not is_there(meant.file):
+    if not is_there(cell_reference.file):
         raise InputError(
-            "UNKNOWN_MACHINE", "cell.machine", "there is no URDF {}; check the path", meant.file
+            "UNKNOWN_MACHINE",
+            "cell.machine",
+            "there is no URDF {}; check the path",
+            cell_reference.file,
         )
-    found = UrdfCell(meant.file)
-    external = f"{MORE} ".join(map(str, found.external()))
-    return str(found.machine()), external or "none"
+    urdf_cell = UrdfCell(cell_reference.file)
+    external = f"{MORE} ".join(map(str, urdf_cell.external()))
+    return str(urdf_cell.machine()), external or "none"
 
 
 def texts_of_machine(machine: object) -> tuple[str, str]:
-    """The same of what a cell names as its machine; InputError BAD_VALUE where that is no URDF."""
-    meant = reference(machine) if isinstance(machine, str) else None
-    if meant is None:
+    """Return the same texts from the cell's machine. Raises InputError BAD_VALUE if that is not
+    a URDF.
+    """
+    cell_reference = reference(machine) if isinstance(machine, str) else None
+    if cell_reference is None:
         raise InputError(
             "BAD_VALUE",
             WHERE,
             "{} is for a machine that is the URDF of the whole cell, such as machine: "
             "bay.urdf; or give a list of mechanisms",
-            WHOLE,
+            WHOLE_CELL,
         )
-    return texts_of(meant)
+    return texts_of(cell_reference)
 
 
 def _six(pose: Array) -> Pose:

@@ -20,9 +20,10 @@ NOT_LOOKED_AT = "nothing is kept clear of it"
 
 
 def collision(urdf: Urdf, base: str, tip: str, notes: list[str]) -> tuple[Pieces, ...]:
-    """The bodies (axes + 1) of the links between a base and a tip, base first, mm, each in the frame of the joint that moves
-    it: of all links that are fixed to it. Not of what stands on the tip: what is carried has joints of its own. What cannot
-    be read is noted.
+    """Return the bodies (axes + 1) of the links between a base and a tip, base first, mm.
+
+    Each is in the frame of the joint that moves it and includes all links fixed to it, but
+    not the load on the tip, which has its own joints. Unreadable geometry is noted.
     """
     chain = [tip, *urdf.above(tip)]
     chain = chain[: chain.index(base) + 1][::-1]
@@ -37,40 +38,40 @@ def collision(urdf: Urdf, base: str, tip: str, notes: list[str]) -> tuple[Pieces
         for link, pose in list(group):
             group.extend(_fixed_to(urdf, link, pose, chain))
     return tuple(
-        tuple(piece for link, pose in group for piece in _pieces(urdf, link, pose, notes))
+        tuple(body for link, pose in group for body in _pieces(urdf, link, pose, notes))
         for group in groups
     )
 
 
 def _moves_others(urdf: Urdf, link: str) -> bool:
-    """Whether joints move what stands on a link."""
+    """Return whether joints move anything mounted on a link."""
     return any(
-        urdf.parent[one].text("type") != FIXED or _moves_others(urdf, one)
-        for one in urdf.carried(link)
+        urdf.parent[child].text("type") != FIXED or _moves_others(urdf, child)
+        for child in urdf.children_of(link)
     )
 
 
 def _fixed_to(
     urdf: Urdf, link: str, pose: Array, but: Sequence[str]
 ) -> Iterator[tuple[str, Array]]:
-    """The links that are fixed to a link that stands at a pose, with theirs."""
-    for child in urdf.carried(link):
+    """Yield the links fixed to a link at a pose, with their poses."""
+    for child in urdf.children_of(link):
         joint = urdf.parent[child]
         if child not in but and joint.text("type") == FIXED:
-            at = pose @ joint.pose()
-            yield child, at
-            yield from _fixed_to(urdf, child, at, but)
+            child_pose = pose @ joint.pose()
+            yield child, child_pose
+            yield from _fixed_to(urdf, child, child_pose, but)
 
 
 def _pieces(urdf: Urdf, link: str, pose: Array, notes: list[str]) -> Iterator[LinkShape | Solid]:
     element = urdf.links[link]
     text = list(element.all("collision")) or list(element.all("visual"))
-    for one in text:
-        solid = _solid(one)
+    for geometry in text:
+        solid = _solid(geometry)
         if solid is not None:
-            yield solid.moved(pose @ one.pose())
+            yield solid.moved(pose @ geometry.pose())
             continue
-        shape = urdf.mesh_of(one, f"{link}: {NOT_LOOKED_AT}", notes)
+        shape = urdf.mesh_of(geometry, f"{link}: {NOT_LOOKED_AT}", notes)
         if shape is not None:
             yield LinkShape(shape.path, pose @ shape.pose, shape.scale, shape.colour, shape.where)
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""XML with the lines it came from: typed access to the elements of a URDF, every mistake named by file and line."""
+"""XML with its source lines: typed access to the elements of a URDF, every error with file
+and line.
+"""
 
 from __future__ import annotations
 
@@ -17,9 +19,9 @@ from ...issues import InputError, Text, Word
 from ...types import Array
 
 CODE = "BAD_URDF"
-LARGEST = 64  # MB
+MAX_FILE_MB = 64  # MB
 QUARTER = 0.5 * math.pi
-FINE_DECIMALS = 5  # from so many on the last digit of a right angle may be off by 5
+FINE_DECIMALS = 5  # from this number of digits on the last digit of a right angle may be off by 5
 
 
 @dataclass
@@ -37,30 +39,30 @@ class Element:
         return InputError(CODE, f"{self.path.name}: line {self.line}", message)
 
     def all(self, tag: str) -> Iterator[Element]:
-        """The children of that tag."""
+        """Return the children with this tag."""
         return (child for child in self.children if child.tag == tag)
 
     def first(self, tag: str) -> Element | None:
-        """The first child of that tag, None without one."""
+        """Return the first child with this tag, None without one."""
         return next(self.all(tag), None)
 
     def one(self, tag: str) -> Element:
-        """The first child of that tag, which must be there."""
-        found = self.first(tag)
-        if found is None:
+        """Return the first child with this tag; it must exist."""
+        child = self.first(tag)
+        if child is None:
             name = Text(" {!r}", self.attributes["name"]) if "name" in self.attributes else ""
             raise self.bad(Text("<{}>{} has no <{}>; add it", self.tag, Word(name), tag))
-        return found
+        return child
 
     def text(self, name: str) -> str:
-        """An attribute that must be there and not be empty."""
+        """Return an attribute that must exist and not be empty."""
         value = self.attributes.get(name, "").strip()
         if not value:
             raise self.bad(Text("<{}> has no {}; add it", self.tag, name))
         return value
 
     def words(self, name: str, count: int, default: str) -> list[str]:
-        """So many words of an attribute, or of the default where it is left out."""
+        """Return the `count` words of an attribute, or of the default if it is missing."""
         words = self.attributes.get(name, default).split()
         if len(words) != count:
             raise self.bad(
@@ -81,7 +83,7 @@ class Element:
         )
 
     def numbers(self, name: str, count: int, default: str) -> Array:
-        """So many finite numbers (count,) of an attribute."""
+        """Return the finite numbers (count,) of an attribute."""
         return np.array([self._float(word, name) for word in self.words(name, count, default)])
 
     def angle(self, name: str, default: str | None = None) -> float:
@@ -94,9 +96,11 @@ class Element:
         origin = self.first("origin")
         if origin is None:
             return np.eye(4)
-        place = 1000.0 * origin.numbers("xyz", 3, "0 0 0")
+        translation = 1000.0 * origin.numbers("xyz", 3, "0 0 0")
         origin.numbers("rpy", 3, "0 0 0")
-        return frames.from_rpy(place, [unrounded(word) for word in origin.words("rpy", 3, "0 0 0")])
+        return frames.from_rpy(
+            translation, [unrounded(word) for word in origin.words("rpy", 3, "0 0 0")]
+        )
 
     def _float(self, word: str, name: str) -> float:
         try:
@@ -117,7 +121,9 @@ class Element:
 
 
 def read(path: Path) -> Element:
-    """The top element of a file. Raises InputError 'BAD_URDF', with the line, for what is not XML or has entities."""
+    """Return the top element of a file. Raises InputError 'BAD_URDF', with the line, for invalid
+    XML and for entities.
+    """
     stack = [Element("", {}, path, 1)]
     parser = xml.parsers.expat.ParserCreate()
 
@@ -138,7 +144,7 @@ def read(path: Path) -> Element:
     parser.EndElementHandler = lambda _: stack.pop()
     parser.EntityDeclHandler = refuse
     try:
-        parser.Parse(read_content(path, LARGEST, CODE, str(path)), True)
+        parser.Parse(read_content(path, MAX_FILE_MB, CODE, str(path)), True)
     except OSError as error:
         raise InputError(
             CODE, str(path), "cannot be read: {}; choose a file that can", error.strerror or error
@@ -155,8 +161,11 @@ def read(path: Path) -> Element:
 
 
 def unrounded(word: str) -> float:
-    """The angle that a number stands for, rad: 1.5708 is a right angle, as are other multiples of one that are written
-    with two decimals or more. A number with all its digits is itself."""
+    """Return the angle that a number represents, rad: 1.5708 is a right angle.
+
+    Other multiples of a right angle written with two or more decimals count likewise. A
+    number with all its digits is itself.
+    """
     return nearest(word, QUARTER)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A URDF in the place of a machine: what of it a machine is made of."""
+"""A URDF as a machine."""
 
 from __future__ import annotations
 
@@ -23,29 +23,37 @@ from .read import Description, Urdf
 from .reference import Reference
 
 MECHANISM = 2  # axes of one at most
-WHOLE = "urdf"  # in the place of `cell.external`: what the URDF of the machine has (`urdf_cell`)
+WHOLE_CELL = (
+    "urdf"  # in the place of `cell.external`: what the URDF of the machine has (`urdf_cell`)
+)
 
 
-def described(meant: Reference) -> tuple[Description, SerialArm | None]:
-    """The chain of a machine, grounded, with its inverse; None of one with three sliding and two turning axes.
+def describe(machine_reference: Reference) -> tuple[Description, SerialArm | None]:
+    """Return the chain of a machine, grounded, with its inverse; None for a machine with three
+    prismatic and two revolute axes.
 
-    Raises InputError: UNKNOWN_MACHINE without the file, BAD_URDF naming file and line, NO_CLOSED_FORM with the reason.
+    Raises InputError: UNKNOWN_MACHINE without the file, BAD_URDF with file and line,
+    NO_CLOSED_FORM with the reason.
     """
-    robot, base, tip = _ends(meant, "cell.machine")
-    found = grounded(robot.between(base, tip))
+    robot, base, tip = _ends(machine_reference, "cell.machine")
+    description = ground_description(robot.between(base, tip))
     try:
-        arm = closed_form(found.chain)
-        return (found if arm is None else replace(found, notes=(*found.notes, *_off(arm)))), arm
+        arm = closed_form(description.chain)
+        return (
+            description
+            if arm is None
+            else replace(description, notes=(*description.notes, *_note_deviation(arm)))
+        ), arm
     except InputError as error:
-        track = opw_recognition.track_of(found.chain)
+        track = opw_recognition.track_of(description.chain)
         begin = (
             ""
             if not track
             else Text(
                 "; the robot begins at the link {!r}; or write `external: {}`, which takes track "
                 "and positioner of the file",
-                robot.moved_by(found.joints[track - 1]),
-                WHOLE,
+                robot.moved_by(description.joints[track - 1]),
+                WHOLE_CELL,
             )
         )
         raise InputError(
@@ -60,7 +68,7 @@ def described(meant: Reference) -> tuple[Description, SerialArm | None]:
         ) from None
 
 
-def _off(arm: SerialArm) -> list[str]:
+def _note_deviation(arm: SerialArm) -> list[str]:
     """A note about an arm whose axes are not quite at right angles."""
     if not isinstance(arm, CalibratedArm):
         return []
@@ -72,36 +80,47 @@ def _off(arm: SerialArm) -> list[str]:
     ]
 
 
-def chain_of(meant: Reference) -> Description:
-    """The chain of a mechanism beside a robot. Raises InputError UNKNOWN_MACHINE without the file, BAD_URDF."""
-    return external_chain(*_ends(meant, WHERE))
+def chain_of(mechanism_reference: Reference) -> Description:
+    """Return the chain of a mechanism besides the robot. Raises InputError UNKNOWN_MACHINE
+    without the file, BAD_URDF.
+    """
+    return external_chain(*_ends(mechanism_reference, WHERE))
 
 
 def external_chain(robot: Urdf, base: str, tip: str) -> Description:
-    """The chain from a link to another, with what its links are made of. Raises InputError BAD_URDF."""
-    found = robot.between(base, tip)
+    """Return the chain from one link to another, with the bodies of its links. Raises InputError
+    BAD_URDF.
+    """
+    description = robot.between(base, tip)
     notes: list[str] = []
     bodies = collision(robot, base, tip, notes)
-    return replace(found, bodies=bodies, notes=(*found.notes, *notes))
+    return replace(description, bodies=bodies, notes=(*description.notes, *notes))
 
 
-def _ends(meant: Reference, where: str) -> tuple[Urdf, str, str]:
-    """A file, and the links that a chain begins and ends with: those that are meant, or that the file proposes."""
-    path = Path(meant.file).expanduser()
+def _ends(chain_reference: Reference, where: str) -> tuple[Urdf, str, str]:
+    """Return a file, and the links at which a chain begins and ends: the named ones, or those
+    that the file proposes.
+    """
+    path = Path(chain_reference.file).expanduser()
     if not is_there(path):
         raise InputError(
-            "UNKNOWN_MACHINE", where, "there is no URDF {}; check the path", meant.file
+            "UNKNOWN_MACHINE", where, "there is no URDF {}; check the path", chain_reference.file
         )
     robot = Urdf(path)
-    base = meant.base or robot.bases()[0]
+    base = chain_reference.base or robot.bases()[0]
     tips = robot.tips(base) if base in robot.links else []
-    for link in (base, meant.tip):
+    for link in (base, chain_reference.tip):
         if link is not None and link not in robot.links:
-            known = ", ".join(robot.links)
+            link_names = ", ".join(robot.links)
             raise InputError(
-                "BAD_URDF", where, "{} has no link {!r}; name one of {}", path.name, link, known
+                "BAD_URDF",
+                where,
+                "{} has no link {!r}; name one of {}",
+                path.name,
+                link,
+                link_names,
             )
-    if meant.tip is None and not tips:
+    if chain_reference.tip is None and not tips:
         raise InputError(
             "BAD_URDF",
             where,
@@ -109,7 +128,7 @@ def _ends(meant: Reference, where: str) -> tuple[Urdf, str, str]:
             path.name,
             base,
         )
-    return robot, base, meant.tip or tips[0]
+    return robot, base, chain_reference.tip or tips[0]
 
 
 def closed_form(chain: Chain) -> SerialArm | None:
@@ -118,21 +137,29 @@ def closed_form(chain: Chain) -> SerialArm | None:
     return None if is_five_axis(chain.sliding) else recognition.arm_of(chain)
 
 
-def grounded(found: Description) -> Description:
-    """The description with its chain, base and meshes seen from the base_link of `grounded_chain`; `base` is there."""
-    chain, moved = grounded_chain(found.chain)
+def ground_description(description: Description) -> Description:
+    """Return the description with its chain, base and meshes seen from the base_link of
+    `grounded_chain`, which `base` refers to.
+    """
+    chain, moved = grounded_chain(description.chain)
     shapes = tuple(
         shape if index or shape is None else replace(shape, pose=moved @ shape.pose)
-        for index, shape in enumerate(found.shapes)
+        for index, shape in enumerate(description.shapes)
     )
     return replace(
-        found, chain=chain, base=moved if found.base is None else moved @ found.base, shapes=shapes
+        description,
+        chain=chain,
+        base=moved if description.base is None else moved @ description.base,
+        shapes=shapes,
     )
 
 
 def grounded_chain(chain: Chain) -> tuple[Chain, Array]:
-    """A chain seen from a base_link whose Z is axis 1, as `opw_recognition.rooted` has it. Machines with rotary axes begin
-    at the torch, wherever that is, and mechanisms where they stand."""
+    """Return a chain seen from a base_link whose Z is axis 1, as `opw_recognition.rooted`
+    returns it.
+
+    Machines with rotary tables begin at the torch, and mechanisms at their foot.
+    """
     return (
         (chain, np.eye(4))
         if chain.sliding.any() or is_mechanism(chain)
@@ -141,5 +168,5 @@ def grounded_chain(chain: Chain) -> tuple[Chain, Array]:
 
 
 def is_mechanism(chain: Chain) -> bool:
-    """Whether a chain is not a machine by itself, but what stands beside a robot: a track, a turntable, a positioner."""
+    """Return whether a chain is not a complete machine but a track, a turntable or a positioner."""
     return chain.axes <= MECHANISM

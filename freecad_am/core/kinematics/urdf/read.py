@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Machines from URDF: the serial chain between two links of a robot description.
 
-Read are origins, axes, kinds, limits and speeds of joints, fixed joints, and the meshes of links. Metres become mm.
+Reads origins, axes, kinds, limits and speeds of joints, fixed joints, and the meshes of
+links. Metres become mm.
 """
 
 from __future__ import annotations
@@ -28,13 +29,13 @@ FIXED = "fixed"
 # names that ROS-Industrial gives them, and FANUC
 BASES, TIPS = ("base_link",), ("tool0", "flange", "fanuc_flange")
 ROBOT = 6  # joints of one
-STRAIGHT, BEHIND_MM = (
+PARALLEL_TOLERANCE_RAD, BEHIND_MM = (
     math.radians(0.25),
     1e-3,
-)  # of a tip: rad that its Z is off the axis, mm that it may lie behind
+)  # tolerances of a tip: angle of its Z from the axis in rad, distance behind in mm
 DEGREE = math.radians(1.0)
 MOST_RAD, FARTHEST_M = 50.0, 50.0  # more are degrees, or mm
-# what a joint may hold, and of which it may hold one alone
+# children of a joint, and those of which it may have only one
 SINGLE_TAGS = ("parent", "child", "origin", "axis", "limit", "mimic")
 JOINT_TAGS = (*SINGLE_TAGS, "dynamics", "calibration", "safety_controller", "physics", "gazebo")
 ATTRIBUTES = {
@@ -46,12 +47,13 @@ ATTRIBUTES = {
 
 @dataclass(frozen=True, eq=False)
 class Description:
-    """A chain with what a URDF tells of it.
+    """A chain with its data from a URDF.
 
-    lower, upper, max_speed (axes,) rad, mm and per s, infinite where endless or not known. base (4, 4): the frame of a link
-    `base` that is fixed to the first one, which is the maker's own; None without. shapes (axes + 1): the meshes of the
-    links, first that of the first one. notes: what was left out or taken for something else. bodies (axes + 1): of a
-    mechanism, what its links are made of (`urdf.collision`).
+    lower, upper, max_speed (axes,) rad, mm and per s, infinite where continuous or not known.
+    base (4, 4): the frame of a link `base` fixed to the first link, which is the
+    manufacturer's own; None without. shapes (axes + 1): the meshes of the links, the first
+    link first. notes: omissions and substitutions. bodies (axes + 1): of a mechanism, the
+    bodies of its links (`urdf.collision`).
     """
 
     name: str
@@ -113,22 +115,22 @@ class Urdf:
             self.parent[child] = joint
 
     def _named(self, tag: str) -> dict[str, Element]:
-        found: dict[str, Element] = {}
+        elements: dict[str, Element] = {}
         for element in self.top.all(tag):
             name = element.text("name")
-            if name in found:
+            if name in elements:
                 raise element.bad(
                     Text(
                         "there is a {} {!r} already, in line {}; rename one of the two",
                         tag,
                         name,
-                        found[name].line,
+                        elements[name].line,
                     )
                 )
-            found[name] = element
-        if not found:
+            elements[name] = element
+        if not elements:
             raise self.top.bad(Text("there is no <{}>; choose the URDF of a robot", tag))
-        return found
+        return elements
 
     def bases(self) -> list[str]:
         """Links that a machine may begin with, the likeliest first."""
@@ -138,8 +140,11 @@ class Urdf:
         )
 
     def tips(self, base: str) -> list[str]:
-        """Links that a machine from `base` may end in, the likeliest first: those that as many joints move as the one with
-        the usual name, or as can be; of these those whose Z points out along the last axis, then by name."""
+        """Return links in which a machine from `base` may end, the likeliest first.
+
+        First the links moved by as many joints as the one with the usual name, or by the maximum;
+        among them those whose Z points out along the last axis, then by name.
+        """
         moving: dict[str, int] = {}
         for link in self.links:
             carried = [link, *self.above(link)]
@@ -156,27 +161,32 @@ class Urdf:
         return sorted((link for link, count in moving.items() if count), key=rank)
 
     def moved_by(self, joint: str) -> str:
-        """The link that a joint moves; it must be there."""
-        return next(link for link, one in self.parent.items() if one.text("name") == joint)
+        """Return the link that a joint moves; it must exist."""
+        return next(
+            link for link, parent_joint in self.parent.items() if parent_joint.text("name") == joint
+        )
 
     def points_out(self, link: str) -> bool:
-        """Whether the Z of a link lies along the axis of the last joint that moves it, and does not point back to the one
-        before."""
-        last, rest = self._moved(link, np.eye(4))
-        axis = _axis(last)
-        _, from_before = self._moved(last.one("parent").text("link"), last.pose() @ rest)
+        """Return whether the Z of a link is along the axis of the last joint that moves it, and does
+        not point back to the one before.
+        """
+        last_joint, to_link = self._moving_joint(link, np.eye(4))
+        axis = _axis(last_joint)
+        _, from_before = self._moving_joint(
+            last_joint.one("parent").text("link"), last_joint.pose() @ to_link
+        )
         ahead = from_before[:3, 2] @ from_before[:3, 3]
-        return _along(rest[:3, 2], axis) and float(ahead) > -BEHIND_MM
+        return _is_along(to_link[:3, 2], axis) and float(ahead) > -BEHIND_MM
 
-    def _moved(self, link: str, rest: Array) -> tuple[Element, Array]:
-        """The joint that moves a link, and a pose (4, 4) in that link seen from the joint."""
+    def _moving_joint(self, link: str, to_link: Array) -> tuple[Element, Array]:
+        """Return the joint that moves a link, and a pose (4, 4) in that link seen from the joint."""
         while self.parent[link].text("type") == FIXED:
-            rest = self.parent[link].pose() @ rest
+            to_link = self.parent[link].pose() @ to_link
             link = self.parent[link].one("parent").text("link")
-        return self.parent[link], rest
+        return self.parent[link], to_link
 
     def between(self, base: str, tip: str) -> Description:
-        """The chain from a link to another that it carries."""
+        """Return the chain from a link to another that it carries."""
         joints = list(self._between(base, tip))
         moving = [joint for joint in joints if joint.text("type") != FIXED]
         if not moving:
@@ -187,12 +197,12 @@ class Urdf:
                 tip,
                 base,
             )
-        origins, rest = [], np.eye(4)
+        origins, to_tip = [], np.eye(4)
         for joint in joints:
-            rest = rest @ joint.pose()
+            to_tip = to_tip @ joint.pose()
             if joint in moving:
-                origins.append(rest)
-                rest = np.eye(4)
+                origins.append(to_tip)
+                to_tip = np.eye(4)
         limits = [_limits(joint) for joint in moving]
         notes = [*_rounded_angles(joints), *_joint_notes(moving)]
         shapes = tuple(
@@ -201,9 +211,9 @@ class Urdf:
         )
         sliding = np.array([joint.text("type") == "prismatic" for joint in moving])
         if len(moving) == ROBOT and not sliding.any():
-            rest = _turned_out(rest, _axis(moving[-1]), tip, notes)
+            to_tip = _turn_out(to_tip, _axis(moving[-1]), tip, notes)
         chain = Chain(
-            np.stack(origins), np.stack([_axis(joint) for joint in moving]), rest, sliding
+            np.stack(origins), np.stack([_axis(joint) for joint in moving]), to_tip, sliding
         )
         lower, upper, speed = (np.array(values) for values in zip(*limits, strict=True))
         names = tuple(joint.text("name") for joint in moving)
@@ -212,21 +222,21 @@ class Urdf:
         )
 
     def above(self, link: str) -> list[str]:
-        """The links that carry a link, next first."""
-        found: list[str] = []
+        """Return the links that carry a link, next first."""
+        carriers: list[str] = []
         while link in self.parent:
             link = self.parent[link].one("parent").text("link")
-            if link in found:
+            if link in carriers:
                 raise self.parent[link].bad(
                     Text(
                         "the link {!r} carries itself; correct parent and child of its joints", link
                     )
                 )
-            found.append(link)
-        return found
+            carriers.append(link)
+        return carriers
 
-    def carried(self, link: str) -> list[str]:
-        """The links that stand on a link."""
+    def children_of(self, link: str) -> list[str]:
+        """Return the links mounted on a link."""
         return [
             child
             for child, joint in self.parent.items()
@@ -276,15 +286,18 @@ class Urdf:
         return joint.pose() if fixed else None
 
     def _mesh(self, link: str, notes: list[str]) -> LinkShape | None:
-        """The first mesh of a link that is there and can be drawn; what stands in the way is noted."""
-        found = (
+        """Return the first mesh of a link that exists and can be drawn; obstacles to that are noted."""
+        meshes = (
             self.mesh_of(visual, f"{link} is drawn plain", notes)
             for visual in self.links[link].all("visual")
         )
-        return next((shape for shape in found if shape is not None), None)
+        return next((shape for shape in meshes if shape is not None), None)
 
     def mesh_of(self, element: Element, otherwise: str, notes: list[str]) -> LinkShape | None:
-        """The mesh of a <visual> or <collision>; what stands in the way is noted, with what happens then."""
+        """Return the mesh of a <visual> or <collision>.
+
+        A mesh that cannot be used is noted, with the consequence.
+        """
         geometry = element.first("geometry")
         mesh = None if geometry is None else geometry.first("mesh")
         if mesh is None:
@@ -311,11 +324,16 @@ class Urdf:
         return None
 
     def _file(self, name: str) -> Path | None:
-        """The file of a mesh. A package is a folder of its name above the URDF, or beside one that is."""
+        """Return the file of a mesh. A package is a folder of its name above the URDF, or next to
+        one above it.
+        """
         if name.startswith("package://"):
-            package, _, rest = name[len("package://") :].partition("/")
+            package, _, relative_path = name[len("package://") :].partition("/")
             folders = [folder / package for folder in locate(self.path).resolve().parents]
-            return next((folder / rest for folder in folders if is_there(folder / rest)), None)
+            return next(
+                (folder / relative_path for folder in folders if is_there(folder / relative_path)),
+                None,
+            )
         file = Path(name.removeprefix("file://"))
         file = file if file.is_absolute() else locate(self.path).resolve().parent / file
         return file if is_there(file) else None
@@ -335,30 +353,35 @@ class Urdf:
         return None
 
 
-def _along(direction: Array, axis: Array) -> bool:
-    return bool(np.linalg.norm(np.cross(direction, axis)) < STRAIGHT)
+def _is_along(direction: Array, axis: Array) -> bool:
+    return bool(np.linalg.norm(np.cross(direction, axis)) < PARALLEL_TOLERANCE_RAD)
 
 
-def _turned_out(rest: Array, axis: Array, tip: str, notes: list[str]) -> Array:
-    """The pose (4, 4) of a tip in its last moving link, its Z turned to its X where that lies along the axis (3,): `flange`
-    of ROS-Industrial has its X outwards, where tool0 has its Z."""
-    if _along(rest[:3, 2], axis) or not _along(rest[:3, 0], axis):
-        return rest
+def _turn_out(to_tip: Array, axis: Array, tip: str, notes: list[str]) -> Array:
+    """Return the pose (4, 4) of a tip in its last moving link, with its Z turned to its X if X
+    is along the axis (3,).
+
+    `flange` of ROS-Industrial has its X outwards, where tool0 has its Z.
+    """
+    if _is_along(to_tip[:3, 2], axis) or not _is_along(to_tip[:3, 0], axis):
+        return to_tip
     notes.append(
         Text(
             "the X of {} points out of the flange, not its Z: it is turned there, as tool0 stands to flange",
             tip,
         )
     )
-    inwards = float(rest[:3, 0] @ rest[:3, 3]) < -BEHIND_MM
+    inwards = float(to_tip[:3, 0] @ to_tip[:3, 3]) < -BEHIND_MM
     return np.asarray(
-        rest
+        to_tip
         @ frames.pose(frames.about_y(-0.5 * math.pi if inwards else 0.5 * math.pi), (0.0, 0.0, 0.0))
     )
 
 
 def _xacro_in(element: Element) -> Element | None:
-    """The first element that only xacro understands: of its namespace, or with an expression in a name."""
+    """Return the first element that only xacro understands: in its namespace, or with an
+    expression in a name.
+    """
     expressions = ("${", "$(")
     if element.tag.startswith("xacro:") or any(
         mark in element.attributes.get(name, "")
@@ -372,7 +395,9 @@ def _xacro_in(element: Element) -> Element | None:
 
 
 def _check_joint(joint: Element) -> None:
-    """InputError BAD_URDF for what of a joint is not read and may change where its link is, and for lengths that are not in m."""
+    """Raise InputError BAD_URDF for content of a joint that is not read and may move its link,
+    and for lengths not in m.
+    """
     for child in joint.children:
         if child.tag not in JOINT_TAGS:
             raise child.bad(
@@ -398,13 +423,13 @@ def _check_joint(joint: Element) -> None:
     axis = joint.first("axis")
     if axis is not None and axis.numbers("rpy", 3, "0 0 0").any():
         raise axis.bad("<axis> has no rpy; turn its xyz")
-    far = 0.001 * float(np.abs(joint.pose()[:3, 3]).max())
-    if far > FARTHEST_M:
+    distance_m = 0.001 * float(np.abs(joint.pose()[:3, 3]).max())
+    if distance_m > FARTHEST_M:
         raise joint.bad(
             Text(
                 "the origin of the joint {!r} is {:g} m away; a URDF is in metres: divide what is in mm by 1000",
                 joint.text("name"),
-                far,
+                distance_m,
             )
         )
 

@@ -13,7 +13,8 @@ _TEXT = re.compile(
 
 @dataclass(frozen=True)
 class Reference:
-    """A chain of a URDF: its file, and the links it begins and ends with, None for those that the file proposes.
+    """A chain of a URDF: its file, and the links at which it begins and ends, None for links
+    that the file proposes.
 
     Its text is `robot.urdf`, or `robot.urdf base=base_link tip=tool0`.
     """
@@ -31,6 +32,6 @@ class Reference:
 
 
 def reference(text: str) -> Reference | None:
-    """What a text says, None where it names no URDF."""
-    found = _TEXT.fullmatch(text.strip())
-    return None if found is None else Reference(found["file"], found["base"], found["tip"])
+    """Return the reference that a text gives, None if it does not name a URDF."""
+    match = _TEXT.fullmatch(text.strip())
+    return None if match is None else Reference(match["file"], match["base"], match["tip"])

@@ -46,11 +46,11 @@ def upright(external: ExternalAxes, directions: Array) -> list[Array]:
             np.unwrap(rotary_pair.nearest(external.turning[0], source, external.up).angle)[:, None]
         ]
     first_axis, second_axis = external.turning
-    solutions = rotary_pair.between(
+    solutions = rotary_pair.solve_turns(
         first_axis, second_axis, rotary_courses.onto_pole(source, second_axis), external.up
     )
     if not np.isfinite(
-        solutions.first + solutions.second
+        solutions.first_turn + solutions.second_turn
     ).all():  # axes that are not at right angles reach no farther
         angle = rotary_pair.nearest(second_axis, source, external.up).angle
         return [np.unwrap(np.stack([np.zeros(len(angle)), angle], axis=-1), axis=0)]

@@ -249,7 +249,7 @@ class Retracts:
         if self.branch is None:
             five = FiveAxis(self.cell.machine.chain)
             above, _ = self.cell.on_flange(tip.reshape(-1, 3), tools)
-            return five.placed(
+            return five.place_points(
                 np.repeat(joints[:, list(five.turning)], moves, axis=0), above, self.cell.station
             ).reshape(shape), tip
         arm, robot_axes = self.cell.robot.arm, self.cell.robot.chain.axes

@@ -37,7 +37,7 @@ def courses(
     if lock is not None:
         turned = _locked(arm, lock, tools, torch)
         turned[:, 1 - lock.axis] = np.unwrap(turned[:, 1 - lock.axis])
-        return [arm.placed(turned, points, cell.station)]
+        return [arm.place_points(turned, points, cell.station)]
     found = arm.turns(rotary_courses.onto_pole(tools, arm.pole, pole), torch)
     ways = rotary_courses.courses(found)
     if pole > rotary_courses.AT_POLE:
@@ -45,7 +45,7 @@ def courses(
         for axis, free in enumerate((found.first_free, found.second_free)):
             for course in ways:
                 course[:, axis] = rotary_courses.led_over(course[:, axis], free, place)
-    return [arm.placed(course, points, cell.station) for course in ways]
+    return [arm.place_points(course, points, cell.station) for course in ways]
 
 
 def chosen(cell: Cell, ways: Sequence[Array], before: Array) -> Array:

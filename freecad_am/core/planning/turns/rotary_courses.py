@@ -24,7 +24,7 @@ def onto_pole(directions: Array, pole: Array, within: float = AT_POLE) -> Array:
 
 def courses(found: Turns) -> list[Array]:
     """Two courses (n, 2) through the turns of the directions along a bead; an axis that is free stays where it was."""
-    turned = np.stack([found.first, found.second], axis=-1)
+    turned = np.stack([found.first_turn, found.second_turn], axis=-1)
     for axis, free in enumerate((found.first_free, found.second_free)):
         turned[:, :, axis] = kept(turned[:, :, axis], free)
     return continuous(turned)

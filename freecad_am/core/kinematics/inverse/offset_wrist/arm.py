@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Kinematics of arms whose wrist is not spherical, such as FANUC's CRX, Yaskawa's HC10 and ABB's GoFa.
+"""Kinematics of arms with an offset wrist, such as FANUC's CRX, Yaskawa's HC10 and ABB's
+GoFa.
 
-Axes 4 and 5 meet in a point that axis 6 turns about itself. For each angle of axis 6 the triangle of shoulder, elbow and
-that point gives axis 4, for either side of axis 1 and either elbow; what is left is the angle between axes 4 and 5, one
-function of axis 6 whose zeros are all solutions, at most 16 of them. `polynomial` finds them;
-`search` those that are too near to each other for it, `on_axis` those next to axis 1.
+Axes 4 and 5 meet in a point that axis 6 moves. For each angle of axis 6 the triangle of
+shoulder, elbow and that point gives axis 4, for either side of axis 1 and either elbow.
+The remaining condition is the angle between axes 4 and 5, one function of axis 6 whose
+zeros are all solutions, at most 16. `polynomial` finds them; `search` finds zeros too
+near to each other for it, `on_axis` those next to axis 1.
 """
 
 from __future__ import annotations
@@ -30,17 +32,20 @@ UP = np.array([0.0, 0.0, 1.0])
 
 @dataclass(frozen=True, eq=False)
 class OffsetWristArm:
-    """Lengths (mm) and zeros (rad) of the arm of a `chain` seen from a base_link whose Z is axis 1.
+    """Lengths (mm) and zeros (rad) of the arm of a `chain` seen from a base_link whose Z is axis
+    1.
 
-    Axis 2 is `ahead` of axis 1 and `above` base_link, `upper` and `fore` go from there to axis 3 and to the point where axes
-    4 and 5 meet, in the arm's plane. `turns` are the angles at all q 0 of plane, upper arm and forearm (rad, from X, and
-    from Z towards the plane's front), `signs` those of axes 1 to 3, `lean` turns the way from elbow to that point to axis 4.
-    At q 0 that `point` (3,) is in base_link. `flips` tells for each of the four shoulders and elbows which way of passing
-    zero is that with q5 < 0.
+    Axis 2 is `ahead` of axis 1 and `above` base_link, `upper` and `fore` go from there to
+    axis 3 and to the point where axes 4 and 5 meet, in the arm's plane. `turns` are the
+    angles at all q 0 of plane, upper arm and forearm (rad, from X, and from Z towards the
+    plane's front), `signs` are for axes 1 to 3, `lean` turns the direction from elbow to that
+    point to axis 4. At q 0 that `point` (3,) is in base_link. `flips` says, for each of the
+    four shoulders and elbows, which sense of passing zero has q5 < 0.
 
-    Front, back, up and down are as of a spherical wrist, with the point where axes 4 and 5 meet for the wrist centre. Flip
-    and noflip are parted by the singularities of the wrist, which need not be where q5 is 0; mostly q5 < 0 is flip. More
-    than one solution may bear the same words.
+    Front, back, up and down are as for a spherical wrist, with the point where axes 4 and 5
+    meet for the wrist centre. The singularities of the wrist separate flip and noflip; they
+    need not be where q5 is 0; mostly q5 < 0 is flip. Several solutions may have the same
+    words.
     """
 
     chain: Chain
@@ -58,7 +63,7 @@ class OffsetWristArm:
 
     @property
     def shoulder(self) -> tuple[float, float]:
-        """How far axis 2 lies ahead of axis 1 and above base_link, mm."""
+        """Distances of axis 2 ahead of axis 1 and above base_link, mm."""
         return self.ahead, self.above
 
     @property
@@ -67,10 +72,11 @@ class OffsetWristArm:
         return self.upper + self.fore
 
     def inverse(self, poses: ArrayLike) -> Array:
-        """Joint angles (16, n, 6) of all solutions for flange poses (n, 4, 4), in [-pi, pi] rad.
+        """Return joint angles (16, n, 6) of all solutions for flange poses (n, 4, 4), in [-pi, pi]
+        rad.
 
-        The first eight are one of each configuration, the least singular one; then those that are left. NaN where there are
-        no more.
+        The first eight are one of each configuration, the least singular one; then the remaining
+        solutions. NaN where there are no more.
         """
         return self.solutions(poses)[0]
 
@@ -80,7 +86,9 @@ class OffsetWristArm:
         return result
 
     def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
-        """All of `inverse`, and the configuration (16, n) whose words each bears, -1 where there is none."""
+        """Return all solutions of `inverse`, and the configuration (16, n) whose words each has, -1
+        without a solution.
+        """
         targets = np.asarray(poses, float)
         result = np.full((MAX_SOLUTIONS, len(targets), 6), np.nan)
         words = np.full((MAX_SOLUTIONS, len(targets)), -1, dtype=np.intp)
@@ -90,18 +98,18 @@ class OffsetWristArm:
         return result, words
 
     def branch_of(self, q: ArrayLike) -> Index:
-        """The configuration (...) that joint angles `q` (..., 6) are in."""
+        """Return the configuration (...) of joint angles `q` (..., 6)."""
         angles = np.asarray(q, float)
         flat = angles.reshape(-1, 6)
-        back, left = self._sides(flat)
+        back, elbow_left = self._sides(flat)
         curves = self._curves(self.chain.forward(flat))
         rows = np.arange(len(flat))
-        side, elbow = np.where(back, -1.0, 1.0), np.where(left, 1.0, -1.0)
+        side, elbow = np.where(back, -1.0, 1.0), np.where(elbow_left, 1.0, -1.0)
         ahead, behind = (
             search.values(curves, rows, flat[:, 5] + step, side, elbow)
             for step in (STEP_RAD, -STEP_RAD)
         )
-        configurations = self._words(back, left, ahead > behind)
+        configurations = self._words(back, elbow_left, ahead > behind)
         return configurations.reshape(angles.shape[:-1])
 
     def bend(self, q: ArrayLike) -> Array:
@@ -122,9 +130,9 @@ class OffsetWristArm:
         back = self.ahead + self.upper * np.sin(two) + self.fore * np.sin(three) < 0.0
         return np.asarray(back), np.asarray(np.sin(three - two) >= 0.0)
 
-    def _words(self, back: Mask, left: Mask, rising: Mask) -> Index:
-        down = back == left
-        flip = rising == np.array(self.flips)[2 * back.astype(int) + left.astype(int)]
+    def _words(self, back: Mask, elbow_left: Mask, rising: Mask) -> Index:
+        down = back == elbow_left
+        flip = rising == np.array(self.flips)[2 * back.astype(int) + elbow_left.astype(int)]
         result: Index = 4 * back.astype(np.intp) + 2 * down + flip
         return result
 
@@ -185,7 +193,10 @@ class OffsetWristArm:
         named[slot[in_range], pose[in_range]] = words[in_range]
 
     def _angles(self, poses: Array, curves: Curves, zeros: Zeros, plane: Array) -> Array:
-        """Joint angles (k, 6) of zeros, in [-pi, pi]; sine and cosine (2, k) of the plane, NaN where the point tells it."""
+        """Return joint angles (k, 6) of zeros, in [-pi, pi].
+
+        plane: its sine and cosine (2, k), NaN where the point determines it.
+        """
         at_rest = self.chain.frames(np.zeros(6))
         z = at_rest.directions
         spot = geometry(curves, zeros.pose, zeros.angle, zeros.side, zeros.bent)
@@ -199,29 +210,31 @@ class OffsetWristArm:
         q[2] = (three - two - (self.turns[2] - self.turns[1])) * self.signs[2]
         six = (poses[:, :3, :3] @ (at_rest.flange[:3, :3].T @ z[5])).T[:, zeros.pose]
         # axes 5 and 6 as the arm with axes 1 to 3 at zero would have them
-        plane = _less(plane, self.turns[0])
-        turned = _less(fore / np.hypot(*fore), self.turns[2])
+        plane = _subtract_angle(plane, self.turns[0])
+        turned = _subtract_angle(fore / np.hypot(*fore), self.turns[2])
         normal = z[1] * self.signs[1]
         five, six = (
-            _turned_back(normal, turned, _turned_back(UP, plane, direction))
+            _rotate_back(normal, turned, _rotate_back(UP, plane, direction))
             for direction in (np.stack(spot.five), six)
         )
         fourth = _towards(z[3], z[4], five)
-        six = _turned_back(z[3], fourth / np.hypot(*fourth), six)
+        six = _rotate_back(z[3], fourth / np.hypot(*fourth), six)
         q[3], q[4], q[5] = np.arctan2(*fourth), np.arctan2(*_towards(z[4], z[5], six)), zeros.angle
         q -= TURN * np.rint(q * (1.0 / TURN))
         return q.T
 
 
-def _less(sine_cosine: Array, angle: float) -> Array:
-    """Sine and cosine (2, k) of angles of which they are given, less an angle."""
+def _subtract_angle(sine_cosine: Array, angle: float) -> Array:
+    """Return sine and cosine (2, k) of angles, given by sine and cosine, less an angle."""
     sine, cosine = sine_cosine
     cos, sin = math.cos(angle), math.sin(angle)
     return np.stack([sine * cos - cosine * sin, cosine * cos + sine * sin])
 
 
-def _turned_back(axis: Array, by: Array, vectors: Array) -> Array:
-    """Vectors (3, k) turned back about an axis (3,) by angles of which sine and cosine (2, k) are given."""
+def _rotate_back(axis: Array, by: Array, vectors: Array) -> Array:
+    """Return vectors (3, k) rotated back about an axis (3,) by angles given by sine and cosine
+    (2, k).
+    """
     across = np.cross(axis, np.eye(3)).T @ vectors
     result: Array = (
         by[1] * vectors - by[0] * across + axis[:, None] * ((1.0 - by[1]) * (axis @ vectors))

@@ -16,33 +16,39 @@ EDGE = 1e-12  # of the cosine of axis 6: by how much rounding may take a stretch
 
 
 class Loops(NamedTuple):
-    """Loops (k,): pose and side; `elbow` 1 or -1 of whole turns, 0 of others. The angle of axis 6 is middle - half cos t, or
-    middle + t of whole turns. `near`, `far`: the angles, from where the point is farthest out, at which the arm is stretched
-    and folded; whether it ever is. `mean`, `swing`: mean and half the difference of squared distances from the shoulder.
+    """Loops (k,) of axis 6.
 
-    Of an arm whose axis 2 is ahead of axis 1 `near` and `far` are the angles at both ends, `stretched` and `folded` whether
-    the first is where it is stretched and the last where it is folded, `mean` and `swing` 0."""
+    pose and side; `elbow` 1 or -1 for whole turns, 0 for others. The angle of axis 6 is
+    middle - half cos t, or middle + t for whole turns. `near_angle`, `far_angle`: the angles,
+    from where the point is farthest out, at which the arm is stretched and folded;
+    `stretched`, `folded`: whether it ever is. `mean`, `swing`: mean and half the difference
+    of squared distances from the shoulder.
+
+    For an arm whose axis 2 is ahead of axis 1, `near_angle` and `far_angle` are the angles at
+    both ends, `stretched` and `folded` whether it is stretched at the first and folded at the
+    last, `mean` and `swing` 0.
+    """
 
     pose: Index
     side: Array
     elbow: Array
     middle: Array
     half: Array
-    near: Array
-    far: Array
+    near_angle: Array
+    far_angle: Array
     stretched: Mask
     folded: Mask
     mean: Array
     swing: Array
 
-    def of(self, rows: Index) -> Loops:
-        """Some of them."""
+    def select(self, rows: Index) -> Loops:
+        """Return selected loops."""
         columns: tuple[Any, ...] = self
         return Loops(*(column[rows] for column in columns))
 
 
 def loops_of(curves: Curves) -> Loops:
-    """The loops of all poses, on both sides."""
+    """Return the loops of all poses, on both sides."""
     if curves.ahead:
         return _offset_loops(curves)
     mean, swing, out = _distances(curves)
@@ -99,7 +105,7 @@ def _distances(curves: Curves) -> tuple[Array, Array, Array]:
 
 
 def _offset_loops(curves: Curves) -> Loops:
-    """The loops of all poses, on both sides, of an arm whose axis 2 lies ahead of axis 1."""
+    """Return the loops of all poses, on both sides, for an arm whose axis 2 is ahead of axis 1."""
     loops = []
     for side in (1.0, -1.0):
         pose, begin, end, stretched, folded, full_circles = shoulder_loops.spans(curves, side)
@@ -146,21 +152,23 @@ def angle_along(curves: Curves, loops: Loops, t: Array) -> tuple[Array, Array]:
         # half the way from the nearer end, and whether the arm is stretched there
         first_half = course <= 0.5
         since = np.where(first_half, loops.half * course, -loops.half * cosine_half * cosine_half)
-        ends = np.where(first_half, loops.near, loops.far)
+        ends = np.where(first_half, loops.near_angle, loops.far_angle)
         stretched = np.where(first_half, loops.stretched, ~loops.folded)
         return angle, _bent_from_end(curves, loops, angle, elbow, (ends, since, stretched))
-    from_out = np.where(full_circle, t, np.where(loops.stretched, loops.near + since, since - half))
+    from_out = np.where(
+        full_circle, t, np.where(loops.stretched, loops.near_angle + since, since - half)
+    )
     scale = 1.0 / (2.0 * curves.upper * curves.fore)
     squared = loops.mean + loops.swing * np.cos(from_out)
     begin, end = np.sin(half * course), np.sin(half * cosine_half * cosine_half)
     # squared distances to where the arm is stretched, and to where it is folded: differences of cosines as products
-    factor = np.where(loops.folded, np.sin(0.5 * (from_out + loops.near)), end)
+    factor = np.where(loops.folded, np.sin(0.5 * (from_out + loops.near_angle)), end)
     to_stretched = np.where(
         loops.stretched,
         2.0 * loops.swing * factor * begin,
         (curves.upper + curves.fore) ** 2 - squared,
     )
-    factor = np.where(loops.stretched, np.sin(0.5 * (from_out + loops.far)), begin)
+    factor = np.where(loops.stretched, np.sin(0.5 * (from_out + loops.far_angle)), begin)
     to_folded = np.where(
         loops.folded, 2.0 * loops.swing * factor * end, squared - (curves.upper - curves.fore) ** 2
     )

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solutions of arms with an offset wrist whose point of axes 4 and 5 lies on axis 1, or next to it.
+"""Solutions of arms with an offset wrist whose point of axes 4 and 5 is on axis 1, or next
+to it.
 
-There the place of the point no longer tells the plane of the arm, and while axis 6 sweeps the point past axis 1 the plane
-turns by half a turn within a few digits of its angle. So the plane is taken from the condition between axes 4 and 5, two of
-them for each elbow, and the angle of axis 6 is that at which the point lies in it.
+There the position of the point no longer determines the plane of the arm, and while axis
+6 sweeps the point past axis 1 the plane turns by half a turn within a few digits of its
+angle. The plane is therefore taken from the condition between axes 4 and 5, two planes
+for each elbow, and the angle of axis 6 is the one at which the point is in the plane.
 """
 
 from __future__ import annotations
@@ -28,7 +30,9 @@ PLANE_SHARE = 1e-13  # of the length of the stretched arm
 
 
 def exact(curves: Curves, zeros: Zeros) -> tuple[Zeros, Array]:
-    """Zeros with those next to axis 1 exact, and sine and cosine (2, k) of their planes; NaN where the point tells it."""
+    """Return zeros, exact next to axis 1, and sine and cosine (2, k) of their planes; NaN where
+    the point determines the plane.
+    """
     length = curves.upper + curves.fore
     row, angle = _passes(curves, length)
     if not len(row):
@@ -54,7 +58,9 @@ def exact(curves: Curves, zeros: Zeros) -> tuple[Zeros, Array]:
 def _replaced(
     curves: Curves, zeros: Zeros, solved: Zeros, plane: Array, passing: Index, noise: float
 ) -> Mask:
-    """Which zeros (k,) at poses `passing` were found exactly, or have a plane that cannot be told."""
+    """Return which zeros (k,) at poses `passing` were found exactly, or have an undetermined
+    plane.
+    """
     is_passing = np.zeros(curves.point.shape[2], dtype=bool)
     is_passing[passing] = True
     result: Mask = is_passing[zeros.pose]
@@ -111,7 +117,7 @@ def _passes(curves: Curves, length: float) -> tuple[Index, Array]:
     for _ in range(ROUNDS):
         (x, y, _), (u, v, _), (du, dv, _) = _point(curves, pose, angle)
         curved = u * u + v * v + x * du + y * dv
-        # Gauss's part alone where the whole is not convex
+        # only the Gauss part where the whole is not convex
         curved = np.where(curved > 0.0, curved, u * u + v * v + TINY)
         angle = angle - np.clip((x * u + y * v) / curved, -STEP_RAD, STEP_RAD)
     x, y, _ = _point(curves, pose, angle)[0]
@@ -132,7 +138,7 @@ def _solved(
         )
         ahead = x * plane[1] + y * plane[0]
         off, slope = x * plane[0] - y * plane[1], u * plane[0] - v * plane[1]
-        # the plane turns with the angle too: a secant, once the steps are those of one
+        # the plane turns with the angle too: a secant method, once the steps allow it
         moved = angle - previous[0]
         with np.errstate(invalid="ignore", divide="ignore"):
             secant = (off - previous[1]) / moved

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""An arm with an offset wrist at angles of axis 6: the plane of its upper arm and forearm, and the function of that angle
-whose zeros are solutions."""
+"""An arm with an offset wrist at angles of axis 6: the plane of its upper arm and forearm,
+and the solution function.
+"""
 
 from __future__ import annotations
 
@@ -16,9 +17,13 @@ TINY = 1e-150
 
 @dataclass(frozen=True, eq=False)
 class Curves:
-    """Of n poses: `point` (3, 3, n) and `five` (3, 3, n) are constant, cosine and sine parts of the point where axes 4 and 5
-    meet, from axis 1 at the shoulder's height, and of the direction of axis 5, by components. `lean` is cosine and sine of
-    the turn from the forearm to axis 4, `square` the cosine between axes 4 and 5; axis 2 is `ahead` of axis 1. mm."""
+    """Geometry of n poses, mm.
+
+    `point` (3, 3, n) and `five` (3, 3, n) are constant, cosine and sine parts of the point
+    where axes 4 and 5 meet, from axis 1 at the shoulder's height, and of the direction of
+    axis 5, by components. `lean` is cosine and sine of the turn from the forearm to axis 4,
+    `square` the cosine between axes 4 and 5; axis 2 is `ahead` of axis 1.
+    """
 
     point: Array
     five: Array
@@ -46,7 +51,7 @@ class Spot(NamedTuple):
 
 
 class Plane(NamedTuple):
-    """Of `Spot` what the elbow has no part in; `five` by its components."""
+    """The values of `Spot` that do not depend on the elbow; `five` by its components."""
 
     sine: Array
     cosine: Array
@@ -61,7 +66,7 @@ def geometry(curves: Curves, pose: Index, angle: Array, side: Array, bent: Array
 
 
 def plane_of(curves: Curves, pose: Index, angle: Array, side: Array) -> Plane:
-    """What is known of the arm at angles of axis 6 (k,) without its elbow."""
+    """Return the arm at angles of axis 6 (k,) without its elbow."""
     cos, sin = np.cos(angle), np.sin(angle)
     x, y, above = (
         harmonics[0][pose] + cos * harmonics[1][pose] + sin * harmonics[2][pose]

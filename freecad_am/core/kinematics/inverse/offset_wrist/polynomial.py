@@ -1,26 +1,32 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""All solutions of arms with an offset wrist, from a trigonometric polynomial of the angle of axis 6.
+"""All solutions of arms with an offset wrist, from a trigonometric polynomial of the angle
+of axis 6.
 
-Seen from axis 1 at the shoulder's height, with p the point of axes 4 and 5 and d the direction of axis 5, both functions of
-the angle of axis 6: H = x dx + y dy, and R, R^2 = x^2 + y^2, is positive in front of axis 1 and negative at the back. Axis 2
-is `a` ahead of axis 1. In the arm's plane axis 2 sees p at (R - a, z), at a squared distance D; d is (H / R, dz) there. The
-forearm is (C p + T p') / D, where p' is p turned by 90 deg, C = (D + fore^2 - upper^2) / (2 fore) and T^2 = D - C^2. Axis 4
-is the forearm turned by the lean, cosine c and sine s, and has the cosine q with axis 5. With
+Seen from axis 1 at the shoulder's height, with p the point of axes 4 and 5 and d the
+direction of axis 5, both functions of the angle of axis 6: H = x dx + y dy, and R, R^2 =
+x^2 + y^2, is positive in front of axis 1 and negative at the back. Axis 2 is `a` ahead of
+axis 1. In the arm's plane axis 2 sees p at (R - a, z), at a squared distance D; d is (H /
+R, dz) there. The forearm is (C p + T p') / D, where p' is p turned by 90 deg, C = (D +
+fore^2 - upper^2) / (2 fore) and T^2 = D - C^2. Axis 4 is the forearm turned by the lean,
+cosine c and sine s, and has the cosine q with axis 5. With
 
-    S = R (H + z dz) - a H,  N = z H - R^2 dz + a R dz,  X = c S + s N,  Y = c N - s S,  M = H^2 + R^2 dz^2
+S = R (H + z dz) - a H,  N = z H - R^2 dz + a R dz,  X = c S + s N,  Y = c N - s S,  M =
+H^2 + R^2 dz^2
 
-that reads C X + T Y - q D R = 0. The product for both elbows, by D, is
+the condition is C X + T Y - q D R = 0. The product for both elbows, divided by D, is
 
-    g = C^2 M - Y^2 - 2 q R C X + q^2 D R^2.
+g = C^2 M - Y^2 - 2 q R C X + q^2 D R^2.
 
-Outside of reach T^2 < 0, where the product is that of a number and its conjugate and positive. So each zero of g is one
-solution, and its T = (q D R - C X) / Y follows without a root, as exact near the stretched arm as elsewhere.
+Out of reach T^2 < 0, where the product is that of a number and its conjugate, so
+positive. Each zero of g is therefore one solution, and its T = (q D R - C X) / Y follows
+without a root, as exact near the stretched arm as elsewhere.
 
-D and C are of degree 1 in R and in cosine and sine, R^2 and H are of degree 2; so g = A + R B, where A is a trigonometric
-polynomial of degree 4 and B one of degree 3. A^2 - R^2 B^2, of degree 8, has the zeros in front and at the back, the 16
-solutions of six joints. Where a, s and q are 0, as of CRX and HC10, B is 0, and each zero of A is a solution in front and
-one at the back. `trigonometric_zeros` parts them. Where two are too near to each other for that, `search` looks
-for those of the pose too.
+D and C are of degree 1 in R and in cosine and sine, R^2 and H are of degree 2; so g = A +
+R B, where A is a trigonometric polynomial of degree 4 and B one of degree 3. A^2 - R^2
+B^2, of degree 8, has the zeros in front and at the back, the 16 solutions of six joints.
+Where a, s and q are 0, as for CRX and HC10, B is 0, and each zero of A is a solution in
+front and one at the back. `trigonometric_zeros` isolates them. Where two are too near to
+each other for that, `search` finds the zeros of the pose too.
 """
 
 from __future__ import annotations
@@ -40,7 +46,7 @@ from .search import Zeros
 NEWTON, NEWTON_RAD = 12, 5e-10  # turns of the flange that follow are off by as much
 SAME_RAD = 1e-6  # nearer zeros that the search finds are those found here
 TWICE_RAD = 4e-6  # as near to others are zeros at which the polynomial only touches zero
-MEETS = 2e-10  # of the cosine between axes 4 and 5, which is off where such a touch is none of this side or elbow
+MEETS = 2e-10  # of the cosine between axes 4 and 5, which is wrong where a touch belongs to another side or elbow
 NEAR_AXIS = 3e-4  # of the length of the stretched arm: nearer to axis 1 the search has more digits
 SQUARE = 1e-13  # sine of the angles that must be square or straight
 
@@ -57,7 +63,7 @@ class _Lengths(NamedTuple):
 
 
 class _Terms(NamedTuple):
-    """See the head of this file: R, D, C, X, Y, g and the slope of g."""
+    """R, D, C, X, Y, g and the slope of g, see the module docstring."""
 
     radius: Array
     squared: Array
@@ -123,17 +129,21 @@ def zeros(curves: Curves) -> Zeros:
             curves.ahead,
         )
     )
-    solutions = _together(solutions, searched._replace(pose=doubtful[searched.pose]), close)
-    solutions = _with(solutions, _touching(arm, curves, harmonics, *touching))
+    solutions = _merge_zeros(solutions, searched._replace(pose=doubtful[searched.pose]), close)
+    solutions = _add_zeros(solutions, _touching(arm, curves, harmonics, *touching))
     return (
-        _with(solutions, without_digits.zeros(curves, *drowned)) if len(drowned[0]) else solutions
+        _add_zeros(solutions, without_digits.zeros(curves, *drowned))
+        if len(drowned[0])
+        else solutions
     )
 
 
 def _touching(
     arm: _Lengths, curves: Curves, harmonics: Array, number: Index, angle: Array
 ) -> Zeros:
-    """Solutions where the polynomial touches zero and no sign changes, those of them that give back their pose."""
+    """Return solutions where the polynomial touches zero without a sign change and that
+    reproduce their pose.
+    """
     even = is_even(curves)
     # on either side of axis 1
     side = np.repeat([1.0] if even else [1.0, -1.0], len(number))
@@ -148,8 +158,8 @@ def _touching(
     return Zeros(*(column[..., valid] for column in columns))
 
 
-def _with(zeros: Zeros, extra: Zeros) -> Zeros:
-    """Zeros, and those of some more that are none of them, each once."""
+def _add_zeros(zeros: Zeros, extra: Zeros) -> Zeros:
+    """Return zeros, with additional ones that are not among them, each once."""
     for k in range(len(extra.pose)):
         same = (
             (zeros.pose == extra.pose[k])
@@ -167,8 +177,8 @@ def _with(zeros: Zeros, extra: Zeros) -> Zeros:
     return zeros
 
 
-def _together(zeros: Zeros, searched: Zeros, close: Mask) -> Zeros:
-    """Zeros found here, and those of the search at poses (n,) that are `close`, each once."""
+def _merge_zeros(zeros: Zeros, searched: Zeros, close: Mask) -> Zeros:
+    """Merge zeros found here with zeros of the search at poses (n,) that are `close`, each once."""
     sure = np.flatnonzero(~close[zeros.pose])
     unsure = np.flatnonzero(close[zeros.pose])
     same = np.ones((len(unsure), len(searched.pose)), dtype=bool)
@@ -190,7 +200,10 @@ def _together(zeros: Zeros, searched: Zeros, close: Mask) -> Zeros:
 
 
 def _coefficients(arm: _Lengths, harmonics: Array, even: bool) -> Array:
-    """Of the polynomial (9 or 17, n), for constant, cosine and sine parts of point and axis 5 (2, 3, 3, n)."""
+    """Return the coefficients (9 or 17, n) of the polynomial.
+
+    harmonics: constant, cosine and sine parts of point and axis 5 (2, 3, 3, n).
+    """
     degree = 4 if even else 8
     nodes = 2 * degree + 2
     node_angles = trigonometric.angles(nodes)
@@ -226,7 +239,7 @@ def _halves(arm: _Lengths, point: list[Array], five: list[Array]) -> tuple[Array
     constant_part = squared * sizes - across * across - flat * by_across * by_across
     by_radius = 2.0 * (factor * common * sizes - across * by_across)
     if arm.square:
-        # what is multiplied by q, then what by its square
+        # terms in q, then terms in its square
         out, by_out = (
             arm.sin * rise - (arm.cos * arm.ahead) * within,
             (arm.sin * arm.ahead) * up + arm.cos * level,
@@ -239,10 +252,12 @@ def _halves(arm: _Lengths, point: list[Array], five: list[Array]) -> tuple[Array
 
 
 def _side(arm: _Lengths, harmonics: Array, low: Array, high: Array) -> Array:
-    """1 where the zero of a step is one in front of axis 1, -1 where it is one at the back, 0 where this cannot be told."""
+    """Return 1 where the zero of a step is in front of axis 1, -1 where it is at the back, 0
+    where this is undecided.
+    """
     ends = []
     for angle in (low, high):
-        point, five = _turned(harmonics, np.cos(angle), np.sin(angle))
+        point, five = _evaluate(harmonics, np.cos(angle), np.sin(angle))
         constant_part, by_radius, flat = _halves(arm, list(point), list(five))
         by_radius *= np.sqrt(flat)
         ends.append((constant_part + by_radius >= 0.0, constant_part - by_radius >= 0.0))
@@ -251,7 +266,7 @@ def _side(arm: _Lengths, harmonics: Array, low: Array, high: Array) -> Array:
     return result
 
 
-def _turned(harmonics: Array, cos: Array, sin: Array) -> Array:
+def _evaluate(harmonics: Array, cos: Array, sin: Array) -> Array:
     """Point and axis 5 (2, 3, k)."""
     result: Array = harmonics[:, 1] * cos
     result += harmonics[:, 2] * sin
@@ -260,9 +275,9 @@ def _turned(harmonics: Array, cos: Array, sin: Array) -> Array:
 
 
 def _terms(arm: _Lengths, harmonics: Array, angle: Array, side: Array) -> _Terms:
-    """Of points and axes 5 (2, 3, 3, k) at angles (k,), on a side of axis 1."""
+    """Return the terms for points and axes 5 (2, 3, 3, k) at angles (k,), on a side of axis 1."""
     cos, sin = np.cos(angle), np.sin(angle)
-    (x, y, z), (five_x, five_y, up) = _turned(harmonics, cos, sin)
+    (x, y, z), (five_x, five_y, up) = _evaluate(harmonics, cos, sin)
     moved = harmonics[:, 2] * cos
     moved -= harmonics[:, 1] * sin
     (x_, y_, z_), (five_x_, five_y_, up_) = moved
@@ -327,7 +342,7 @@ def _roots(
         if not len(going):
             break
         if 2 * len(going) < len(active):
-            # most are there: go on with the others alone
+            # most have converged: continue with the others
             active, active_harmonics, its_side = (
                 active[going],
                 active_harmonics[..., going],

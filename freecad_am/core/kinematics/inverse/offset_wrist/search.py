@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""All zeros of one function of axis 6, for many poses of an arm with an offset wrist at once.
+"""All zeros of one function of axis 6, for many poses of an arm with an offset wrist at
+once.
 
-The function is smooth on closed loops: all turns of axis 6 where the triangle of shoulder, elbow and wrist closes for all of
-them, one loop for each elbow; else from where the arm is stretched with one elbow to the other end, and back with the
-other, along the cosine of which the root at the ends is smooth. Loops are sampled, finer where the arm swings fast, and
-zeros are looked for between samples of different sign and where samples nearly touch zero.
+The function is smooth on closed loops. If the triangle of shoulder, elbow and wrist
+closes at all angles of axis 6, the loops are whole turns, one for each elbow. Otherwise a
+loop goes from the stretched arm with one elbow to the other end, and back with the other
+elbow, along a cosine in which the root at the ends is smooth. Loops are sampled, more
+finely where the arm swings fast, and zeros are searched between samples of different sign
+and where samples nearly touch zero.
 """
 
 from __future__ import annotations
@@ -20,7 +23,7 @@ from .loops import Loops, angle_along, loops_of
 from .plane import TINY, Curves, Spot, geometry, plane_of, spot_of
 
 SAMPLES = 36
-SAMPLE_SHIFT = 0.37  # of a step: no sample where the arm is stretched or folded, where a zero of it would have either sign
+SAMPLE_SHIFT = 0.37  # of a step: no sample where the arm is stretched or folded, where a zero could have either sign
 PIECES, LEVELS = 8, 6  # into which a step is divided where the arm swings fast, and how often again
 FLAT_VALUES = (
     0.02,
@@ -48,14 +51,21 @@ def zeros(curves: Curves) -> Zeros:
     """All zeros, in no order."""
     loops = loops_of(curves)
     t = (np.arange(-1, SAMPLES + 2) + SAMPLE_SHIFT) * (2.0 * math.pi / SAMPLES)
-    return along(curves, loops, np.broadcast_to(t, (len(loops.pose), len(t))), 0, alike=True)
+    return find_zeros_along(
+        curves, loops, np.broadcast_to(t, (len(loops.pose), len(t))), 0, alike=True
+    )
 
 
-def along(curves: Curves, loops: Loops, t: Array, level: int, alike: bool = False) -> Zeros:
-    """The zeros between samples t (k, s) along loops, of which the first and the last are there for extremes beside them;
-    `level`: how often steps between samples were divided; `alike`: all rows of t are."""
+def find_zeros_along(
+    curves: Curves, loops: Loops, t: Array, level: int, alike: bool = False
+) -> Zeros:
+    """Return the zeros between samples t (k, s) along loops; the first and last samples serve
+    for adjacent extremes.
+
+    level: how often steps between samples were divided. alike: all rows of t are equal.
+    """
     loop, low, high = _steps(curves, loops, np.arange(len(loops.pose)), t, level, alike)
-    zero_loops = loops.of(loop)
+    zero_loops = loops.select(loop)
     root = _refined(curves, zero_loops, low, high)
     angle, bent = angle_along(curves, zero_loops, root)
     elbow = np.where(
@@ -105,7 +115,7 @@ def _bent(curves: Curves, pose: Index, angle: Array, side: Array, elbow: Array) 
     return np.stack([elbow * np.sqrt(np.maximum(1.0 - cosine * cosine, 0.0)), cosine])
 
 
-def _at(curves: Curves, loops: Loops, t: Array) -> Spot:
+def _evaluate(curves: Curves, loops: Loops, t: Array) -> Spot:
     angle, bent = angle_along(curves, loops, t)
     return geometry(curves, loops.pose, angle, loops.side, bent)
 
@@ -130,17 +140,20 @@ def _sampled(curves: Curves, loops: Loops, rows: Index, t: Array, alike: bool) -
 def _steps(
     curves: Curves, loops: Loops, rows: Index, t: Array, level: int, alike: bool = False
 ) -> tuple[Index, Array, Array]:
-    """Loops (k,) and ends (k,), (k,) of steps with a zero in them, from samples t (m, s) along loops `rows` (m,), of which
-    the first and the last are there for extremes beside them alone."""
+    """Return loops (k,) and ends (k,), (k,) of steps with a zero, from samples t (m, s) along
+    loops `rows` (m,).
+
+    The first and last samples serve only for adjacent extremes.
+    """
     spot = _sampled(curves, loops, rows, t, alike)
     value = spot.value
     above = value >= 0.0
     change = above[:, 1:] != above[:, :-1]
     steps = _touching(curves, loops, rows, t, value)
     if level < LEVELS:
-        fast = _turned(spot.cosine, spot.sine) < SWING
-        fast |= _turned(*spot.along) < SWING
-        # steps beside fast ones are not even either, and where the function is flat it may pass zero more than once
+        fast = _turn_cosine(spot.cosine, spot.sine) < SWING
+        fast |= _turn_cosine(*spot.along) < SWING
+        # steps next to fast ones are not even either, and where the function is flat it may pass zero more than once
         fast[:, 1:] |= fast[:, :-1]
         fast[:, :-1] |= fast[:, 1:]
         size = np.abs(value)
@@ -152,7 +165,7 @@ def _steps(
         if len(row):
             share = np.arange(-1, PIECES + 2) / PIECES
             finer = t[row, column][:, None] + share * (t[row, column + 1] - t[row, column])[:, None]
-            finer[:, -2] = t[row, column + 1]  # to its last digit, as in the step beside
+            finer[:, -2] = t[row, column + 1]  # to its last digit, as in the adjacent step
             steps.append(_steps(curves, loops, rows[row], finer, level + 1))
     change[:, [0, -1]] = False
     row, column = np.nonzero(change)
@@ -160,8 +173,8 @@ def _steps(
     return tuple(np.concatenate(columns) for columns in zip(*steps))  # type: ignore[return-value]
 
 
-def _turned(cosine: Array, sine: Array) -> Array:
-    """The cosine (m, s - 1) of the turn between neighbours of directions (m, s)."""
+def _turn_cosine(cosine: Array, sine: Array) -> Array:
+    """Return the cosine (m, s - 1) of the turn between neighbours of directions (m, s)."""
     return np.asarray(cosine[:, :-1] * cosine[:, 1:] + sine[:, :-1] * sine[:, 1:])
 
 
@@ -178,7 +191,7 @@ def _touching(
     row, column = np.nonzero(same & is_minimum & (size[:, 1:-1] - fall < 0.25 * curve))
     if not len(row):
         return []
-    loop = loops.of(rows[row])
+    loop = loops.select(rows[row])
     sign = np.where(value[row, column + 1] >= 0.0, 1.0, -1.0)
     a, b, c = t[row, column], t[row, column + 1], t[row, column + 2]
     fa, fb, fc = (sign * value[row, column + k] for k in range(3))
@@ -189,11 +202,11 @@ def _touching(
             x = b - 0.5 * ((b - a) * fall_left - (b - c) * fall_right) / (fall_left - fall_right)
         wide = np.where(c - b > b - a, b + 0.3 * (c - b), b - 0.3 * (b - a))
         x = np.where((x > a) & (x < c) & (np.abs(x - b) > 1e-12), x, wide)
-        fx = sign * _at(curves, loop, x).value
+        fx = sign * _evaluate(curves, loop, x).value
         x, fx = (
             np.where(fb < 0.0, b, x),
             np.where(fb < 0.0, fb, fx),
-        )  # which lies between two zeros already
+        )  # which is already between two zeros
         lower, right = fx < fb, x > b
         above = ~lower & (x != b)
         a, fa = (
@@ -216,18 +229,18 @@ def _touching(
 def _refined(curves: Curves, loops: Loops, low: Array, high: Array) -> Array:
     """The zero t (k,) in each step: Chandrupatla's method, which does not leave the step."""
     a, b = high.copy(), low.copy()
-    fa, fb = _at(curves, loops, a).value, _at(curves, loops, b).value
+    fa, fb = _evaluate(curves, loops, a).value, _evaluate(curves, loops, b).value
     c, fc = a.copy(), fa.copy()
     share = np.full(len(a), 0.5)
     best = np.where(np.abs(fa) < np.abs(fb), a, b)
-    # samples are less exact: what is of one sign at both ends after all is zero to their digits at one of them
+    # samples are less exact: a step with one sign at both ends is zero to their digits at one of them
     active = np.flatnonzero((a != b) & (fa != 0.0) & (fb != 0.0) & ((fa >= 0.0) != (fb >= 0.0)))
     for _ in range(ROUNDS):
         if not len(active):
             break
         k = active
         x = a[k] + share[k] * (b[k] - a[k])
-        fx = _at(curves, loops.of(k), x).value
+        fx = _evaluate(curves, loops.select(k), x).value
         same_sign = (fx >= 0.0) == (fa[k] >= 0.0)
         c[k], fc[k] = np.where(same_sign, a[k], b[k]), np.where(same_sign, fa[k], fb[k])
         b[k], fb[k] = np.where(same_sign, b[k], a[k]), np.where(same_sign, fb[k], fa[k])

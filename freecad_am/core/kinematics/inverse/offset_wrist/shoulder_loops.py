@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where axis 6 can turn while the triangle of shoulder, elbow and wrist closes, of an arm whose axis 2 lies ahead of axis 1.
+"""Ranges of axis 6 where the triangle of shoulder, elbow and wrist closes, for an arm whose
+axis 2 is ahead of axis 1.
 
-The squared distance of the point of axes 4 and 5 from axis 2 has a root in it; squared once more, the angles at which the
-arm is stretched or folded are the zeros of a trigonometric polynomial of degree 2: eigenvalues of a matrix of four rows.
+The squared distance of the point of axes 4 and 5 from axis 2 contains a root; squared
+once more, the angles at which the arm is stretched or folded are the zeros of a
+trigonometric polynomial of degree 2: eigenvalues of a matrix of four rows.
 """
 
 from __future__ import annotations
@@ -28,11 +30,13 @@ def spans(curves: Curves, side: float) -> tuple[Index, Array, Array, Mask, Mask,
     angles = np.concatenate([_angles(curves, squared) for squared in lengths], axis=1)
     pose = np.arange(len(angles))[:, None]
     for _ in range(NEWTON):
-        off, slope = _off(curves, pose, angles, side, lengths)
+        off, slope = _length_difference(curves, pose, angles, side, lengths)
         angles = angles - np.clip(
             off / np.where(np.abs(slope) < TINY, TINY, slope), -LONGEST_STEP_RAD, LONGEST_STEP_RAD
         )
-    angles[np.abs(_off(curves, pose, angles, side, lengths)[0]) > ENDS * lengths[0]] = np.nan
+    angles[
+        np.abs(_length_difference(curves, pose, angles, side, lengths)[0]) > ENDS * lengths[0]
+    ] = np.nan
     angles %= TURN
     angles = np.sort(angles, axis=1)
     count = np.isfinite(angles).sum(axis=1)
@@ -64,10 +68,12 @@ def squared_distance(curves: Curves, pose: Index, angle: Array, side: float | Ar
     return result
 
 
-def _off(
+def _length_difference(
     curves: Curves, pose: Index, angle: Array, side: float, lengths: Array
 ) -> tuple[Array, Array]:
-    """By how much the squared distance (...) differs from the nearer of both squared lengths, and its slope."""
+    """Return the difference (...) of the squared distance from the nearer of both squared
+    lengths, and its slope.
+    """
     cos, sin = np.cos(angle), np.sin(angle)
     harmonics = [
         (component[0][pose], component[1][pose], component[2][pose])
@@ -152,7 +158,9 @@ def _angles(curves: Curves, squared: float) -> Array:
 
 
 def _square(constant: Array, cos: Array, sin: Array) -> Array:
-    """The square (5, n) of constant + cos c + sin s, by constant, cosine, sine, and those of twice the angle."""
+    """Return the square (5, n) of constant + cos c + sin s, as constant, cosine and sine, and
+    cosine and sine of twice the angle.
+    """
     return np.stack(
         [
             constant**2 + 0.5 * (cos**2 + sin**2),

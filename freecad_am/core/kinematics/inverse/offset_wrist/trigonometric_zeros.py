@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The zeros of many trigonometric polynomials of one degree at once, each parted from all others.
+"""The zeros of many trigonometric polynomials of one degree at once, each isolated from all
+others.
 
-In a step of h the cubic with a polynomial's values and slopes at both ends is off by h^4 / 384 of the most of the fourth
-derivative at most, its slope by sqrt(3) h^3 / 216 of that, and cubic and slope lie between the least and the most of their
-Bernstein coefficients. So a step has no zero where all coefficients are of one sign and larger than the bound, and one at
-most where the same is true of those of the slope. What neither tells is cut into pieces.
+In a step of h the cubic with a polynomial's values and slopes at both ends is off by at
+most h^4 / 384 of the maximum of the fourth derivative, its slope by sqrt(3) h^3 / 216 of
+the same, and cubic and slope are between the smallest and largest of their Bernstein
+coefficients. So a step has no zero if all coefficients have one sign and are larger than
+the bound, and at most one if the same holds for the coefficients of the slope. Undecided
+steps are cut into pieces.
 """
 
 from __future__ import annotations
@@ -22,12 +25,12 @@ STEPS = {4: 32, 8: 48}  # of a turn, by degree
 PIECES, LEVELS = (
     4,
     {4: 10, 8: 7},
-)  # into which undecided steps are cut, and how often: of the higher degree while it tells
+)  # into which undecided steps are cut, and how often: for the higher degree while it decides
 SURE_LEVELS = (
     7  # levels: zeros parted by later ones are so near to each other that they have few digits
 )
 VALUE_SHARE, SLOPE_SHARE = 1.0 / 384.0, math.sqrt(3.0) / 216.0
-# of the sum of all coefficients, by degree: how far off a value is, and how far an extreme that is a double zero may be
+# of the sum of all coefficients, by degree: error of a value, and maximum of an extreme that is a double zero
 # from zero by the rounding of the pose; the higher one is a difference of products of two
 ROUNDING, TOUCHING = {4: 5e-17, 8: 4e-15}, {4: 1e-13, 8: 1e-13}
 EXTREME_STEPS, MAX_STEP_RAD = (
@@ -39,15 +42,19 @@ DROWNED = 8.0  # times that a step's values and slopes are, at most, that roundi
 
 
 class Parted(NamedTuple):
-    """Steps (k,) with one zero: the polynomial's number, its ends and about where between them the zero is; and which
-    polynomials (n,) have zeros too near to each other to tell. touching: number and angle (m,) of such zeros, from how the
-    polynomial bends where it touches zero to the last digits. drowned: number and ends (s,) of steps throughout which it is
-    of the size of rounding."""
+    """Steps (k,) with one zero: the polynomial's number, the ends, and an estimate of the zero
+    between them.
+
+    close: polynomials (n,) with zeros too near to each other to separate. touching: number
+    and angle (m,) of such zeros, from the bend of the polynomial where it touches zero to the
+    last digits. drowned: number and ends (s,) of steps throughout which it is as small as
+    rounding.
+    """
 
     number: Index
     low: Array
     high: Array
-    near: Array
+    guess: Array
     close: Mask
     touching: tuple[Index, Array]
     drowned: tuple[Index, Array, Array]
@@ -68,7 +75,9 @@ def angles(count: int) -> Array:
 
 
 def harmonics(degree: int, angle: Array, derivative: int = 0) -> Array:
-    """Rows (2 degree + 1, m) of 1, cosines and sines of 1 to `degree` times angles (m,), or of a derivative of these."""
+    """Return rows (2 degree + 1, m) of 1, cosines and sines of 1 to `degree` times angles (m,),
+    or their derivative.
+    """
     order = np.arange(degree + 1)[:, None]
     # a derivative turns by a quarter and multiplies
     turned = order * angle + 0.5 * math.pi * derivative
@@ -81,7 +90,9 @@ def harmonics(degree: int, angle: Array, derivative: int = 0) -> Array:
 
 @cache
 def _grid(degree: int) -> Array:
-    """What gives the values, then the slopes by a third of a step, at the ends of all steps of a turn."""
+    """Return the matrix for the values, then the slopes times a third of a step, at the ends of
+    all steps of a turn.
+    """
     step_ends = np.append(angles(STEPS[degree]), 0.0)
     slopes = harmonics(degree, step_ends, 1) * (TURN / STEPS[degree] / 3.0)
     result: Array = np.concatenate([harmonics(degree, step_ends), slopes], axis=1).T.copy()
@@ -89,7 +100,9 @@ def _grid(degree: int) -> Array:
 
 
 def isolate_zeros(coefficients: Array) -> Parted:
-    """Of polynomials given by their coefficients (2 degree + 1, n), in the order of `harmonics`."""
+    """Isolate the zeros of polynomials given by their coefficients (2 degree + 1, n), in the
+    order of `harmonics`.
+    """
     degree = len(coefficients) // 2
     amplitudes = np.hypot(coefficients[1 : degree + 1], coefficients[degree + 1 :])
     size = np.abs(coefficients[0]) + amplitudes.sum(axis=0)
@@ -103,7 +116,7 @@ def isolate_zeros(coefficients: Array) -> Parted:
     for level in range(LEVELS[degree]):
         single, open_ = _single_or_open(steps, fourth, rounding, width)
         singles.append((single, width))
-        drowned_now = _drowned(open_, rounding)
+        drowned_now = _is_drowned(open_, rounding)
         close[open_.number if level >= SURE_LEVELS - 1 else open_.number[drowned_now]] = True
         is_last = level == LEVELS[degree] - 1
         under = np.flatnonzero(drowned_now)
@@ -131,8 +144,12 @@ def isolate_zeros(coefficients: Array) -> Parted:
 def _touching(
     coefficients: Array, number: Index, angle: Array, max_value: Array, rounding: Array
 ) -> tuple[Index, Array]:
-    """Number and angle (m,) of the zeros next to angles (k,) at which a polynomial has an extreme no farther from zero than
-    `max_value`, or just beyond zero: where a parabola there is zero, or the extreme where it is zero but for rounding."""
+    """Return number and angle (m,) of the zeros next to angles (k,) with an extreme no farther
+    from zero than `max_value`.
+
+    The zero is where a parabola there is zero, or the extreme itself if it is zero within
+    rounding. Extremes just beyond zero count too.
+    """
     own_coefficients, degree = coefficients[:, number], len(coefficients) // 2
 
     def derivative(order: int) -> Array:
@@ -177,7 +194,7 @@ def _first(coefficients: Array, width: float, fourth: Array, touching: Array) ->
     values, slopes = (_grid(degree) @ coefficients).reshape(2, STEPS[degree] + 1, -1)
     possible = np.flatnonzero(
         _may_be_zero(
-            values[:-1], values[1:], slopes[:-1], slopes[1:], _off(fourth, touching, width)
+            values[:-1], values[1:], slopes[:-1], slopes[1:], _value_bound(fourth, touching, width)
         )
     )
     row, number = np.divmod(possible, coefficients.shape[1])
@@ -190,7 +207,7 @@ def _first(coefficients: Array, width: float, fourth: Array, touching: Array) ->
     )
 
 
-def _off(fourth: Array, touching: Array, width: float) -> Array:
+def _value_bound(fourth: Array, touching: Array, width: float) -> Array:
     result: Array = VALUE_SHARE * width**4 * fourth + touching
     return result
 
@@ -206,7 +223,7 @@ def _may_be_zero(
 
 
 def _drop_empty(steps: _Steps, fourth: Array, touching: Array, width: float) -> _Steps:
-    off = _off(fourth[steps.number], touching[steps.number], width)
+    off = _value_bound(fourth[steps.number], touching[steps.number], width)
     (begin_value, end_value), (rise, end_slope) = steps.value, steps.slope
     return _some(steps, np.flatnonzero(_may_be_zero(begin_value, end_value, rise, end_slope, off)))
 
@@ -218,7 +235,9 @@ def _some(steps: _Steps, rows: Index | Mask) -> _Steps:
 def _single_or_open(
     steps: _Steps, fourth: Array, rounding: Array, width: float
 ) -> tuple[_Steps, _Steps]:
-    """Of steps that may have a zero those that have one alone, and those of which it cannot be told."""
+    """Return, of steps that may have a zero, the steps with exactly one, and the undecided
+    steps.
+    """
     number, _, (begin_value, end_value), (rise, end_slope) = steps
     off = SLOPE_SHARE / 3.0 * width**4 * fourth[number] + 3.0 * rounding[number]
     middle = end_value - begin_value - rise - end_slope
@@ -229,8 +248,10 @@ def _single_or_open(
     )
 
 
-def _drowned(steps: _Steps, rounding: Array) -> Mask:
-    """Steps throughout which the cubic is of the size of rounding: pieces would tell no more."""
+def _is_drowned(steps: _Steps, rounding: Array) -> Mask:
+    """Return steps throughout which the cubic is as small as rounding: pieces would not decide
+    more.
+    """
     begin_value, end_value = np.abs(steps.value)
     rise, end_slope = np.abs(steps.slope)
     return np.asarray(
@@ -253,7 +274,7 @@ def _cut(waves: Array, steps: _Steps, width: float) -> _Steps:
         value += wave
     slope *= turn
     values, slopes = np.empty((2, PIECES + 1, len(steps.number)))
-    # at the ends to the last digit as in the steps beside
+    # at the ends to the last digit as in the adjacent steps
     values[0], values[-1] = steps.value
     slopes[0], slopes[-1] = steps.slope / PIECES
     values[1:-1], slopes[1:-1] = value.real, slope.imag * (-width / 3.0)
