@@ -391,7 +391,7 @@ def test_a_message_of_another_process_keeps_its_parts(tmp_path, french):
 def test_a_message_of_a_row_of_a_batch_keeps_its_parts(tmp_path, french):
     values = {"version": 1, "part": {"file": "part.step"}, "strategy": {"layer_height": "-2 mm"}}
     order = process.Order("row 1", values, str(tmp_path / "job.yaml"), str(tmp_path / "out"), False)
-    message = process.received(*process.started(order))["message"]
+    message = process.received(*process.start_row(order))["message"]
     assert (
         check_told(message, french) == f"-2 mm est hors de la plage{NO_BREAK}; donnez plus de 0 mm"
     )

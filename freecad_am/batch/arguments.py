@@ -13,7 +13,7 @@ PROGRAM = "freecad-am"
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose errors are those of a user's input, and name the command that explains itself."""
+    """A parser that raises its errors as errors of user input, with the help command to use."""
 
     def error(self, message: str) -> NoReturn:
         """Raise InputError USAGE."""
@@ -21,16 +21,19 @@ class Parser(argparse.ArgumentParser):
 
 
 def command_parsers() -> tuple[Parser, dict[str, Parser]]:
-    """Return the parser of the whole command line, and that of each command by its name.
+    """Return the parser of the whole command line, and the commands' parsers by name.
 
-    Help is not an action of these parsers: the session prints it, with escapes where the terminal needs them.
+    Help is not an action of the parsers: the session prints it, with escapes where the terminal
+    needs them.
     """
-    whole = Parser(prog=PROGRAM, allow_abbrev=False, add_help=False)
-    whole.usage = f"{PROGRAM} COMMAND"
-    whole.epilog = (
+    command_line_parser = Parser(prog=PROGRAM, allow_abbrev=False, add_help=False)
+    command_line_parser.usage = f"{PROGRAM} COMMAND"
+    command_line_parser.epilog = (
         f"demo, test, bench and docs: see the README; {PROGRAM} COMMAND --help tells the rest"
     )
-    commands = whole.add_subparsers(title="commands", metavar="COMMAND", dest="command")
+    commands = command_line_parser.add_subparsers(
+        title="commands", metavar="COMMAND", dest="command"
+    )
     output = Parser(add_help=False)
     output.add_argument(
         "-o",
@@ -51,7 +54,7 @@ def command_parsers() -> tuple[Parser, dict[str, Parser]]:
         )
         add_arguments(parser)
         parsers[name] = parser
-    return whole, parsers
+    return command_line_parser, parsers
 
 
 def _add_plan(parser: Parser) -> None:
@@ -156,7 +159,7 @@ def _process_count(text: str) -> int:
     return int(text)
 
 
-# of each command: what it does, whether it writes outputs, and what adds its arguments
+# for each command: its purpose, whether it writes outputs, and the function that adds its arguments
 COMMANDS: dict[str, tuple[str, bool, Callable[[Parser], None]]] = {
     "plan": ("plan one job, from part to programs", True, _add_plan),
     "export": ("recompute a saved document and write its programs", True, _add_export),

@@ -11,10 +11,10 @@ import os
 import runpy
 import sys
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.dirname(os.path.dirname(HERE))
+SCRIPT_FOLDER = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(os.path.dirname(SCRIPT_FOLDER))
 NOBODY = 2
-WELCOME = (
+OPTIONAL_MODULES = (
     "PyKDL",
     "shapely",
     "matplotlib",
@@ -30,16 +30,16 @@ SCRIPTS = {
 
 
 def arguments():
-    """The words after the script; freecadcmd leaves only what follows a double dash to it."""
+    """The words after the script; freecadcmd passes on only words after a double dash."""
     return (
         sys.argv[sys.argv.index("--") + 1 :] if "FREECAD_AM_HOSTED" in os.environ else sys.argv[1:]
     )
 
 
 def hand_over(missing, words):
-    """Go on in the next Python of the list; the exit status where there is none left."""
-    others = os.environ.get("FREECAD_AM_NEXT", "").split("\n")[1:]
-    if not others:
+    """Go on in the next Python of the list; the exit status if the list is exhausted."""
+    next_pythons = os.environ.get("FREECAD_AM_NEXT", "").split("\n")[1:]
+    if not next_pythons:
         print(
             f"error[NO_FREECAD] freecad-am: no Python here has FreeCAD, numpy, scipy and yaml (the last one tried lacks "
             f"{', '.join(missing)}); on Debian: apt-get install freecad python3-scipy python3-yaml, else name a Python in "
@@ -47,19 +47,21 @@ def hand_over(missing, words):
             file=sys.stderr,
         )
         return NOBODY
-    script = os.path.join(HERE, "boot.py")
-    environment = {**os.environ, "FREECAD_AM_NEXT": "\n".join(others)}
-    hosted = os.path.basename(others[0]).lower().startswith("freecad")
-    command = [others[0], script, *(["--"] if hosted else []), *words]
+    script = os.path.join(SCRIPT_FOLDER, "boot.py")
+    environment = {**os.environ, "FREECAD_AM_NEXT": "\n".join(next_pythons)}
+    hosted = os.path.basename(next_pythons[0]).lower().startswith("freecad")
+    command = [next_pythons[0], script, *(["--"] if hosted else []), *words]
     if hosted:
         environment["FREECAD_AM_HOSTED"] = "1"
-    return os.execvpe(others[0], command, environment)
+    return os.execvpe(next_pythons[0], command, environment)
 
 
 def run(words):
     """The exit status of a command."""
-    sys.path[:] = [ROOT] + [entry for entry in sys.path if os.path.abspath(entry or ".") != HERE]
-    if sys.pycache_prefix is None and not os.access(HERE, os.W_OK):
+    sys.path[:] = [ROOT] + [
+        entry for entry in sys.path if os.path.abspath(entry or ".") != SCRIPT_FOLDER
+    ]
+    if sys.pycache_prefix is None and not os.access(SCRIPT_FOLDER, os.W_OK):
         sys.dont_write_bytecode = True
     from freecad_am.batch import host
     from freecad_am.core.one_thread import ENVIRONMENT
@@ -72,7 +74,7 @@ def run(words):
     if words[:1] == ["ready"]:
         import importlib.util
 
-        return 0 if all(map(importlib.util.find_spec, WELCOME)) else 1
+        return 0 if all(map(importlib.util.find_spec, OPTIONAL_MODULES)) else 1
     if words[:1] and words[0] in SCRIPTS:
         sys.argv[:] = [os.path.join(ROOT, SCRIPTS[words[0]]), *words[1:]]
         runpy.run_path(sys.argv[0], run_name="__main__")

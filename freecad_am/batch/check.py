@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Drives a program that is there - edited, or written by somebody else - in a cell, and says what it does.
+"""Drives an existing program, edited or from another source, in a cell, and reports its behaviour.
 
-Nothing of a plan is asked: the moves are those of the text, read by the post of its controller.
+No plan is needed: the moves come from the text, read by the post of its controller.
 """
 
 from __future__ import annotations
@@ -48,13 +48,14 @@ from .outputs import folder as outputs
 CODES = ("LIMIT", "UNREACHABLE", "SPEED", "SINGULAR", "RAPID_COLLISION")
 LARGEST_MB, MOST_FILES = 200, 2_000
 RAPID_PLACES = 20_000
-LONGEST_STATEMENT = 80  # characters of one that a message shows
+LONGEST_STATEMENT = 80  # characters of a statement that a message shows
 DIGITS = 0.5  # % of an axis's largest speed: by so much a move is quicker that a text has with few digits
 
 
 class Known(NamedTuple):
-    """What is told of a program beside its text: the cell, how programs are written, what joints are to keep, and the width
-    and height of beads, None where only a cell is given."""
+    """Context of a program in addition to its text: the cell, program and joint parameters, and the
+    width and height of beads; None for all but the cell if only a cell is given.
+    """
 
     cell: CellParameters
     program: ProgramParameters | None
@@ -63,7 +64,7 @@ class Known(NamedTuple):
 
 
 class Result(NamedTuple):
-    """Absolute paths of what was written, the issues, and the exit status, 0 or 3."""
+    """Absolute paths of the written files, the issues, and the exit status, 0 or 3."""
 
     paths: list[str]
     issues: list[Issue]
@@ -73,46 +74,47 @@ class Result(NamedTuple):
 def check(
     programs: Sequence[str], cell_file: str, post: str | None, folder: str | None, session: Any
 ) -> Result:
-    """Drive the program of these files, or of all files of a folder, in a cell and write what it does.
+    """Drive the program in given files, or in the files of a folder, in a cell and write a report.
 
-    cell_file: a job file, or a file with a cell alone. post: the name of the one that reads it, by default that of the job,
-    else the first one of the machine's that understands it. It goes into `folder`, by default out/<name>-check beside the
-    program. Raises InputError; then nothing is written.
+    cell_file: a job file, or a file with only a cell. post: the name of the post that reads the
+    program, by default the job's, else the first of the machine's posts that understands it.
+    Outputs go into `folder`, by default out/<name>-check next to the program. Raises InputError;
+    then nothing is written.
     """
     paths.require_freecad()
     from freecad_am.objects import user_machines
 
     files = _files(programs)
-    known = _known(cell_file)
-    cell = cells.resolve(known.cell, np.eye(4), folders=user_machines.folders())
-    name, read = _read(files, _posts(cell, known, post))
-    settings = known.program or ProgramParameters(post=name)
+    context = _known(cell_file)
+    cell = cells.resolve(context.cell, np.eye(4), folders=user_machines.folders())
+    name, moves = _read(files, _posts(cell, context, post))
+    settings = context.program or ProgramParameters(post=name)
     motion = driven.driven(
-        cell, without_moves(cell, settings, catalogue.controller(name), "check"), read
+        cell, without_moves(cell, settings, catalogue.controller(name), "check"), moves
     )
-    promises = _promises(motion, cell, known)
+    promises = _promises(motion, cell, context)
     findings = [
         Finding(
             Issue(
                 ERROR,
                 code,
-                Text("{} - it does not: {}", one.promise, one.figure),
-                *(one.place or (None, None, None)),
+                Text("{} - it does not: {}", entry.promise, entry.figure),
+                *(entry.place or (None, None, None)),
             ),
-            one.row,
+            entry.row,
         )
-        for code, one in zip(CODES, promises, strict=True)
-        if one.ok is False
+        for code, entry in zip(CODES, promises, strict=True)
+        if entry.ok is False
     ]
-    findings += [*switched.switching_findings(motion, read), *into_platform(motion, cell)]
-    job_numbers = known.program and (known.program.user_frame, known.program.tool_frame)
-    findings += selection_findings(motion, read, job_numbers)
+    findings += [*switched.switching_findings(motion, moves), *into_platform(motion, cell)]
+    job_numbers = context.program and (context.program.user_frame, context.program.tool_frame)
+    findings += selection_findings(motion, moves, job_numbers)
     if not motion.deposit.any():
         findings.append(
             Finding(Issue(NOTE, "NO_DEPOSIT", "the program never switches the deposit on"), None)
         )
-    lines = [one.line(motion, read) for one in findings]
-    issues = [_with_line(one.issue, line) for one, line in zip(findings, lines, strict=True)]
+    lines = [entry.line(motion, moves) for entry in findings]
+    issues = [_add_line(entry.issue, line) for entry, line in zip(findings, lines, strict=True)]
     stem = os.path.splitext(os.path.basename(catalogue.main_file(files)))[0]
     target = folder or os.path.join(
         os.path.dirname(os.path.abspath(programs[0])), "out", f"{stem}-check"
@@ -126,15 +128,15 @@ def check(
             [figures.text(_report(stem, name, motion, cell, promises, issues, lines))],
         )
         earlier = {
-            one
-            for one in (outputs.WAYPOINTS, outputs.REPORT)
-            if os.path.isfile(os.path.join(written.folder, one))
+            entry
+            for entry in (outputs.WAYPOINTS, outputs.REPORT)
+            if os.path.isfile(os.path.join(written.folder, entry))
         }
-        made = [os.path.join(written.folder, one) for one in written.publish(earlier)]
-    return Result(made, issues, 3 if any(one.level == ERROR for one in issues) else 0)
+        written_paths = [os.path.join(written.folder, entry) for entry in written.publish(earlier)]
+    return Result(written_paths, issues, 3 if any(entry.level == ERROR for entry in issues) else 0)
 
 
-def _with_line(issue: Issue, line: tuple[str, int] | None) -> Issue:
+def _add_line(issue: Issue, line: tuple[str, int] | None) -> Issue:
     """The issue with the line of the program that it is about, where that is known."""
     return (
         issue
@@ -144,39 +146,41 @@ def _with_line(issue: Issue, line: tuple[str, int] | None) -> Issue:
 
 
 def _files(programs: Sequence[str]) -> dict[str, bytes]:
-    """The files by their names as controllers know them; those of a folder by their paths in it."""
-    found: dict[str, str] = {}
-    for one in programs:
-        if os.path.isdir(one):
-            inside = (os.path.join(top, name) for top, _, names in os.walk(one) for name in names)
+    """The files by their names as controllers know them; files of a folder by their relative paths."""
+    paths: dict[str, str] = {}
+    for program in programs:
+        if os.path.isdir(program):
+            inside = (
+                os.path.join(top, name) for top, _, names in os.walk(program) for name in names
+            )
             for path in itertools.islice(inside, MOST_FILES + 1):
-                found[os.path.relpath(path, one).replace(os.sep, "/")] = path
+                paths[os.path.relpath(path, program).replace(os.sep, "/")] = path
         else:
-            found[os.path.basename(one)] = one
+            paths[os.path.basename(program)] = program
     where = os.path.basename(os.path.abspath(programs[0]))
-    if not found:
+    if not paths:
         raise InputError(
             "NO_FILE",
             where,
             "the folder holds no program; name its files, or the folder they are in",
         )
-    if len(found) > MOST_FILES:
+    if len(paths) > MOST_FILES:
         raise InputError(
             "BAD_FILE",
             where,
             "the folder holds more than {} files; name those of the program",
             MOST_FILES,
         )
-    read, remaining = {}, LARGEST_MB * MB
-    for name, path in sorted(found.items()):
+    contents, remaining = {}, LARGEST_MB * MB
+    for name, path in sorted(paths.items()):
         try:
-            read[name] = read_content(path, LARGEST_MB, "BAD_FILE", name)
+            contents[name] = read_content(path, LARGEST_MB, "BAD_FILE", name)
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or str(error)
             raise InputError(
                 "NO_FILE", name, "it cannot be read ({}); name the program's files", reason
             ) from None
-        remaining -= len(read[name])
+        remaining -= len(contents[name])
         if remaining < 0:
             raise InputError(
                 "BAD_FILE",
@@ -184,34 +188,36 @@ def _files(programs: Sequence[str]) -> dict[str, bytes]:
                 "its files are larger than {} MB together; name those of the program alone",
                 LARGEST_MB,
             )
-    return read
+    return contents
 
 
 def _known(path: str) -> Known:
-    """What a job file, or a file with a cell alone, tells."""
+    """The context from a job file, or a file with only a cell."""
     values = tree.read(path).values
     if not {"part", "features", "cell"} & set(values):
         return Known(job_cell.of_file(os.path.abspath(path)), None, JointParameters(), None)
     if not {"part", "features"} & set(values):
         read_cell = job.read_without_part(path)
         return Known(read_cell.cell, read_cell.program, read_cell.joints, None)
-    read = job.read_job(path)
-    if read.cell is None:
+    job_read = job.read_job(path)
+    if job_read.cell is None:
         raise InputError(
             "NO_CELL",
             f"{os.path.basename(path)}: cell",
             "the job has no cell to drive a program in; add one",
         )
-    heights = max(one.strategy.layer_height for one in read.features)
-    return Known(read.cell, read.program, read.joints, (read.process.bead_width, heights))
+    heights = max(feature.strategy.layer_height for feature in job_read.features)
+    return Known(
+        job_read.cell, job_read.program, job_read.joints, (job_read.process.bead_width, heights)
+    )
 
 
-def _posts(cell: Cell, known: Known, post: str | None) -> tuple[str, ...]:
+def _posts(cell: Cell, context: Known, post: str | None) -> tuple[str, ...]:
     """The names of the posts that may read a program, the most likely one first."""
     if post is not None:
         return (post,)
-    if known.program is not None and known.program.post != "none":
-        return (known.program.post,)
+    if context.program is not None and context.program.post != "none":
+        return (context.program.post,)
     posts = controllers.readers(cell)
     return catalogue.NAMES if posts is None else posts
 
@@ -223,7 +229,7 @@ def _read(files: dict[str, bytes], posts: Sequence[str]) -> tuple[str, ReadMoves
         try:
             return name, catalogue.load(name).read(files)
         except InputError as error:
-            refusals.append(_with_statement(error, files))
+            refusals.append(_add_statement(error, files))
     if not refusals:
         raise InputError(
             "UNKNOWN_POST",
@@ -233,8 +239,8 @@ def _read(files: dict[str, bytes], posts: Sequence[str]) -> tuple[str, ReadMoves
     raise refusals[0]
 
 
-def _with_statement(error: InputError, files: dict[str, bytes]) -> InputError:
-    """The error with the statement that stands on the line it names, where it does not show that itself."""
+def _add_statement(error: InputError, files: dict[str, bytes]) -> InputError:
+    """The error with the statement on its line, unless it shows the statement already."""
     file, _, number = error.where.rpartition(" line ")
     lines = files.get(file, b"").decode("latin-1").splitlines()
     if not number.isdigit() or not 0 < int(number) <= len(lines):
@@ -245,45 +251,52 @@ def _with_statement(error: InputError, files: dict[str, bytes]) -> InputError:
     return InputError(error.code, error.where, "{} ({!r})", error.message, statement)
 
 
-def _promises(motion: Motion, cell: Cell, known: Known) -> list[Promise]:
-    """Those of the preflight that a text alone can keep or break, in the order of CODES."""
+def _promises(motion: Motion, cell: Cell, context: Known) -> list[Promise]:
+    """The preflight promises that the text of a program can keep or break, in the order of CODES."""
     rows = np.flatnonzero(motion.deposit)
-    condition, least = np.full(len(rows), np.nan), np.full(len(rows), np.nan)
+    condition, thresholds = np.full(len(rows), np.nan), np.full(len(rows), np.nan)
     reached = motion.reachable[rows]
     if cell.machine.free and reached.any():
-        asked = known.joints.min_condition
-        least[:] = CONDITION_FLOOR if isinstance(asked, str) else asked
+        min_condition = context.joints.min_condition
+        thresholds[:] = CONDITION_FLOOR if isinstance(min_condition, str) else min_condition
         condition[reached] = _condition(
-            cell, motion.joints[rows[reached]], known.joints.characteristic_length
+            cell, motion.joints[rows[reached]], context.joints.characteristic_length
         )
-    found = joints.promises(
+    promises = joints.promises(
         motion,
         cell,
         spread_to_deposit_rows(motion.deposit, condition),
-        spread_to_deposit_rows(motion.deposit, least),
+        spread_to_deposit_rows(motion.deposit, thresholds),
         DIGITS,
     )
-    found[1] = replace(
-        found[1], how="inverse kinematics of what the text tells in positions, and joints driven"
+    promises[1] = replace(
+        promises[1], how="inverse kinematics of what the text tells in positions, and joints driven"
     )
-    if known.bead is None:
+    if context.bead is None:
         how = "not checked: a cell alone does not tell how wide and high beads are; give a job"
-        return [*found, Promise(clearance.ON_RAPIDS, how, None)]
-    looked = rapid_look.looked_at(motion, driven.beads(motion), cell, [], *known.bead, RAPID_PLACES)
-    row = int(looked.rows[0]) if len(looked.rows) else None
-    place = None if row is None else row_place(motion, row)
-    how = f"driven at {looked.places} places against the platform and what is deposited by then; no other body is known"
-    met = float(len(looked.rows))
-    return [*found, Promise(clearance.ON_RAPIDS, how, not met, met, "rapids", 0.0, place, row=row)]
+        return [*promises, Promise(clearance.ON_RAPIDS, how, None)]
+    rapid_check = rapid_look.looked_at(
+        motion, driven.beads(motion), cell, [], *context.bead, RAPID_PLACES
+    )
+    row = int(rapid_check.rows[0]) if len(rapid_check.rows) else None
+    location = None if row is None else row_place(motion, row)
+    how = f"driven at {rapid_check.places} places against the platform and what is deposited by then; no other body is known"
+    met = float(len(rapid_check.rows))
+    return [
+        *promises,
+        Promise(clearance.ON_RAPIDS, how, not met, met, "rapids", 0.0, location, row=row),
+    ]
 
 
 def _condition(cell: Cell, serial: Any, length: float) -> Any:
-    """(n,) of the robot alone at the deposition point, for joints (n, axes)."""
+    """Inverse condition numbers (n,) of the robot without external axes at the deposition point,
+    for joints (n, axes).
+    """
     chain = cell.robot.chain
-    own = serial[:, : chain.axes]
-    flange = chain.forward(own)
+    robot_joints = serial[:, : chain.axes]
+    flange = chain.forward(robot_joints)
     point = cell.deposition_point(flange)
-    return jacobian.condition(jacobian.jacobian(chain, own, point), length)
+    return jacobian.condition(jacobian.jacobian(chain, robot_joints, point), length)
 
 
 def _report(
@@ -295,32 +308,32 @@ def _report(
     issues: Sequence[Issue],
     lines: Sequence[tuple[str, int] | None],
 ) -> dict[str, Any]:
-    """The keys of a plan's report that a text alone can fill."""
+    """The keys of a plan's report that the text of a program can fill."""
     deposited, reached = motion.deposit & motion.moves, motion.reachable
-    way = np.linalg.norm(np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1)
-    shown = motion.joints[reached] / cell.machine.unit_values
+    steps = np.linalg.norm(np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1)
+    displayed_joints = motion.joints[reached] / cell.machine.unit_values
     starts = motion.deposit & (motion.point == 0)
     return {
         "version": figures.VERSION,
         "name": name,
         "post": post,
-        "status": "infeasible" if any(one.level == ERROR for one in issues) else "ok",
+        "status": "infeasible" if any(entry.level == ERROR for entry in issues) else "ok",
         "issues": [
-            {**one.as_dict(), **dict(zip(("file", "line"), line or (None, None), strict=True))}
-            for one, line in zip(issues, lines, strict=True)
+            {**entry.as_dict(), **dict(zip(("file", "line"), line or (None, None), strict=True))}
+            for entry, line in zip(issues, lines, strict=True)
         ],
         "counts": {
             "layers": len(np.unique(motion.layer[motion.deposit])),
             "beads": int(starts.sum()),
             "points": int(motion.deposit.sum()),
         },
-        "length_mm": float(way[deposited].sum()),
+        "length_mm": float(steps[deposited].sum()),
         "duration_s": motion.total_time,
         "joints": {
-            "min_deg": shown.min(axis=0).tolist() if len(shown) else None,
-            "max_deg": shown.max(axis=0).tolist() if len(shown) else None,
+            "min_deg": displayed_joints.min(axis=0).tolist() if len(displayed_joints) else None,
+            "max_deg": displayed_joints.max(axis=0).tolist() if len(displayed_joints) else None,
         },
-        "preflight": [one.as_dict() for one in promises],
+        "preflight": [entry.as_dict() for entry in promises],
         "machine": {
             "id": cell.machine.id,
             "title": cell.machine.title,

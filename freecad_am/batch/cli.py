@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The headless commands: plan, export, batch, inspect, check, place, machines.
 
-What a command needs is imported when it runs: starting is most of the time of a small job, and a slip on the
-command line should be told at once.
+What a command needs is imported when it runs: starting is most of the time of a small job, and a
+slip on the command line should be reported at once.
 """
 
 from __future__ import annotations
@@ -11,14 +11,14 @@ import os
 import sys
 from typing import Any
 
-DONE, OUR_FAULT, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 1, 2, 3, 130
+SUCCESS, OUR_FAULT, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 1, 2, 3, 130
 SHAPES = ("plan", "export", "inspect", "place")  # commands that read shapes
 
 
 def main(argv: list[str]) -> int:
-    """Run one command; the exit status. Messages go to stderr, what was asked for to stdout.
+    """Run one command; the exit status. Messages go to stderr, results to stdout.
 
-    A command that reads shapes runs in a copy of this process, which may crash.
+    A command that reads shapes runs in a fork, which may crash.
     """
     from freecad_am.batch import console
 
@@ -41,7 +41,7 @@ def _main(argv: list[str]) -> int:
         except KeyboardInterrupt:
             return _interrupted(session)
         except BrokenPipeError:
-            return DONE  # nobody reads on, which is for the reader to decide
+            return SUCCESS  # the reader has closed the pipe, which is its decision
         except Exception as error:
             # modules of FreeCAD 1.0 that are interrupted while they are imported raise something else, or end up empty
             return _interrupted(session) if session.interrupted else _failed(error, session)
@@ -51,30 +51,36 @@ def _run(argv: list[str], session: Any) -> int:
     from freecad_am.batch.arguments import command_parsers
     from freecad_am.core.issues import InputError
 
-    whole, parsers = command_parsers()
+    command_line_parser, parsers = command_parsers()
     if not argv or argv[0] in ("-h", "--help", "help"):
-        session.out(whole.format_help())
-        return DONE if argv else BAD_INPUT
+        session.out(command_line_parser.format_help())
+        return SUCCESS if argv else BAD_INPUT
     command, words = argv[0], argv[1:]
     for word in argv:
         if not word.isascii() and word != word.encode("utf-8", "replace").decode("utf-8"):
-            shown = word.encode("utf-8", "backslashreplace").decode("utf-8")
+            printable = word.encode("utf-8", "backslashreplace").decode("utf-8")
             raise InputError(
                 "USAGE",
                 "command line",
                 "{!r} holds bytes that are not UTF-8; use a name in UTF-8",
-                shown,
+                printable,
             )
     if command not in parsers:
         import difflib
 
-        near = difflib.get_close_matches(command, (*parsers, "demo", "test", "bench", "docs"), n=1)
-        hint = f"did you mean {near[0]}?" if near else f"use one of {', '.join(parsers)}"
+        close_matches = difflib.get_close_matches(
+            command, (*parsers, "demo", "test", "bench", "docs"), n=1
+        )
+        hint = (
+            f"did you mean {close_matches[0]}?"
+            if close_matches
+            else f"use one of {', '.join(parsers)}"
+        )
         raise InputError("USAGE", "command line", "there is no command {!r}; {}", command, hint)
     parser = parsers[command]
     if "-h" in words or "--help" in words:
         session.out(parser.format_help())
-        return DONE
+        return SUCCESS
     options = parser.parse_args(words)
     status: int = getattr(sys.modules[__name__], f"_{command}")(options, session)
     return status
@@ -108,9 +114,9 @@ def _plan(options: Any, session: Any) -> int:
     from freecad_am.batch import run
     from freecad_am.batch.job import job
 
-    read = job.read_job(options.job)
+    job_read = job.read_job(options.job)
     result = run.run(
-        read, options.output or run.default_folder(read), session, page=not options.no_page
+        job_read, options.output or run.default_folder(job_read), session, page=not options.no_page
     )
     _tell_paths(result.paths, session)
     return result.exit_status
@@ -129,7 +135,7 @@ def _export(options: Any, session: Any) -> int:
         options.document, options.output, tuple(options.object), session, options.wires
     )
     _tell_paths(paths, session)
-    return DONE
+    return SUCCESS
 
 
 def _batch(options: Any, session: Any) -> int:
@@ -160,7 +166,7 @@ def _inspect(options: Any, session: Any) -> int:
         session,
     )
     _tell_paths(paths, session)
-    return DONE
+    return SUCCESS
 
 
 def _check(options: Any, session: Any) -> int:
@@ -197,8 +203,8 @@ def _machines(options: Any, session: Any) -> int:
         raise InputError(
             "USAGE", "freecad-am machines", "--{} of what machine? Give its name", options.form
         )
-    wanted = (options.maker, options.reach, options.payload, options.post)
-    filtered = any(one is not None for one in wanted)
+    criteria = (options.maker, options.reach, options.payload, options.post)
+    filtered = any(criterion is not None for criterion in criteria)
     if filtered and options.machine is not None:
         raise InputError(
             "USAGE",
@@ -207,10 +213,10 @@ def _machines(options: Any, session: Any) -> int:
             options.machine,
         )
     if options.machine is not None:
-        session.out(machines.written(options.machine, options.form))
+        session.out(machines.export_text(options.machine, options.form))
     else:
-        session.out(machines.chosen(*wanted) if filtered else machines.listing())
-    return DONE
+        session.out(machines.chosen(*criteria) if filtered else machines.listing())
+    return SUCCESS
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rows of a batch planned by the workers of a Dask cluster, which is somebody else's engine (decision 0018).
+"""Rows of a batch planned by the workers of a Dask cluster, a third-party engine (decision 0018).
 
 Code and files go with the rows, and outputs come back with the results, so that workers need no folder of ours. Rows whose
 worker is lost are done again by Dask.
@@ -28,19 +28,20 @@ from .rows.table import Row
 WHERE, CODE = "--scheduler", "SCHEDULER"
 WORKER = "freecad_am_row_worker"
 ANSWER = 10.0  # s for a scheduler to answer
-READY = 180.0  # s for every worker to have FreeCAD loaded
-GONE = 60.0  # s without scheduler or without workers that are waited
-LOOK = 0.5  # s between looks at what has changed
+START_TIMEOUT_S = 180.0  # s for every worker to have FreeCAD loaded
+LOSS_TIMEOUT_S = 60.0  # s without scheduler or without workers that are waited
+POLL_S = 0.5  # s between polls
 AHEAD = 2  # rows given out for each that can be planned at the same time
-LARGEST = 1 << 30  # bytes of a file that goes along
+MAX_FILE_BYTES = 1 << 30  # bytes of a file that goes along
 
 
 class Cluster:
     """The workers of a scheduler, ready for the rows of one batch. Use as a context."""
 
     def __init__(self, address: str, session: Session) -> None:
-        """Raises InputError NO_DASK, or SCHEDULER where there is none, it or a worker is of another version of Dask, or a
-        worker has no FreeCAD."""
+        """Raises InputError NO_DASK, or SCHEDULER if it does not answer, if it or a worker has
+        another version of Dask, or if a worker has no FreeCAD.
+        """
         self._address, self._session = address, session
         self._reported: set[str] = set()
         self._token = uuid.uuid4().hex
@@ -74,14 +75,14 @@ class Cluster:
                 while waiting and len(running) < AHEAD * max(1, self._threads()):
                     row = waiting.pop()
                     running[self._submitted(row, dry)] = row
-                done = [future for future in _first_done(list(running)) if future in running]
-                for future in done:
+                finished = [future for future in _first_done(list(running)) if future in running]
+                for future in finished:
                     row = running.pop(future)
                     yield row, self._result(future, row, folder, dry, journal)
                 self._session.check()
-                since = time.monotonic() if done or self._is_there() else since
-                if time.monotonic() - since > GONE:
-                    raise self._gone()
+                since = time.monotonic() if finished or self._is_there() else since
+                if time.monotonic() - since > LOSS_TIMEOUT_S:
+                    raise self._lost_error()
         finally:
             with contextlib.suppress(Exception):
                 self._client.cancel(list(running), force=True)
@@ -110,9 +111,9 @@ class Cluster:
         )
 
     def _file(self, path: str) -> Any:
-        """A file of this machine on the cluster, once for all rows."""
+        """A local file on the cluster, sent once for all rows."""
         if path not in self._kept:
-            if os.path.getsize(path) > LARGEST:
+            if os.path.getsize(path) > MAX_FILE_BYTES:
                 raise InputError(
                     CODE,
                     path,
@@ -125,11 +126,11 @@ class Cluster:
     def _sent(self, content: bytes, name: str) -> Any:
         """A result on the cluster that is made of the content again if the worker that has it is lost."""
         return self._client.submit(
-            self._module.kept, content, pure=False, key=f"freecad-am-{name}-{self._token}"
+            self._module.keep_content, content, pure=False, key=f"freecad-am-{name}-{self._token}"
         )
 
     def _make_ready(self) -> None:
-        """Tell the versions of every worker. InputError where there is none, or one cannot plan."""
+        """Report the versions of every worker. InputError without workers, or if one cannot plan."""
         from distributed import wait
 
         workers = sorted(self._workers())
@@ -141,7 +142,7 @@ class Cluster:
                 self._address,
                 self._address,
             )
-        asked = {
+        futures = {
             worker: self._client.submit(
                 self._module.ready,
                 self._token,
@@ -154,29 +155,33 @@ class Cluster:
             for number, worker in enumerate(workers)
         }
         with contextlib.suppress(TimeoutError):
-            wait(list(asked.values()), timeout=READY)
-        for worker, future in asked.items():
+            wait(list(futures.values()), timeout=START_TIMEOUT_S)
+        for worker, future in futures.items():
             if future.status == "error":
                 raise InputError(
                     CODE,
                     worker,
                     "this worker cannot plan: {}; install FreeCAD there, or end it",
-                    _why(future),
+                    _failure_text(future),
                 )
             if future.status == "finished":
-                self._tell(worker, future.result())
+                self._report_versions(worker, future.result())
 
-    def _tell(self, worker: str, found: dict[str, str]) -> None:
+    def _report_versions(self, worker: str, worker_versions: dict[str, str]) -> None:
         """The versions of a worker, the first time."""
         if worker in self._reported:
             return
         self._reported.add(worker)
-        own = versions.found_versions()
-        other = [name for name in sorted({*own, *found}) if own.get(name) != found.get(name)]
-        text = ", ".join(f"{name} {version}" for name, version in found.items())
+        local_versions = versions.found_versions()
+        differing = [
+            name
+            for name in sorted({*local_versions, *worker_versions})
+            if local_versions.get(name) != worker_versions.get(name)
+        ]
+        text = ", ".join(f"{name} {version}" for name, version in worker_versions.items())
         self._session.say(f"note[WORKER] {worker}: {text}")
-        if other:
-            ours = ", ".join(f"{name} {own.get(name, 'missing')}" for name in other)
+        if differing:
+            ours = ", ".join(f"{name} {local_versions.get(name, 'missing')}" for name in differing)
             self._session.say(
                 f"warning[VERSIONS] {worker}: here is {ours}; last digits of its rows may differ from what is "
                 "planned here"
@@ -197,15 +202,15 @@ class Cluster:
                 "others",
                 self._address,
                 row.number,
-                _why(future),
+                _failure_text(future),
             )
         result: dict[str, Any] = future.result()
-        self._tell(result.pop("worker"), result.pop("versions"))
-        found = result.pop("files")
+        self._report_versions(result.pop("worker"), result.pop("versions"))
+        contents = result.pop("files")
         with staging.uninterrupted():
-            if found:
+            if contents:
                 with outputs.Outputs(os.path.join(folder, row.folder)) as files:
-                    for name, content in found.items():
+                    for name, content in contents.items():
                         files.write(name, content)
                     files.publish(outputs.earlier_outputs(files.folder))
             journal.keep(row, dry, result)
@@ -215,13 +220,13 @@ class Cluster:
         return sum(int(worker["nthreads"]) for worker in self._workers().values())
 
     def _workers(self) -> dict[str, Any]:
-        found: dict[str, Any] = self._client.scheduler_info().get("workers", {})
-        return found
+        workers: dict[str, Any] = self._client.scheduler_info().get("workers", {})
+        return workers
 
     def _is_there(self) -> bool:
         return self._client.status == "running" and bool(self._workers())
 
-    def _gone(self) -> InputError:
+    def _lost_error(self) -> InputError:
         what = (
             "it has no workers any more"
             if self._client.status == "running"
@@ -270,10 +275,13 @@ def _connected(address: str) -> Any:
 
 def _refuse_versions(address: str, client: Any) -> None:
     """Dask promises nothing between versions: results come late, not at all, or end in errors of its own."""
-    found = client.get_versions()
-    ours = found["client"]["packages"]["distributed"]
-    for where, there in (("scheduler", found["scheduler"]), *sorted(found["workers"].items())):
-        theirs = (there or {}).get("packages", {}).get("distributed")
+    reported_versions = client.get_versions()
+    ours = reported_versions["client"]["packages"]["distributed"]
+    for where, info in (
+        ("scheduler", reported_versions["scheduler"]),
+        *sorted(reported_versions["workers"].items()),
+    ):
+        theirs = (info or {}).get("packages", {}).get("distributed")
         if theirs != ours:
             raise InputError(
                 CODE,
@@ -287,14 +295,16 @@ def _refuse_versions(address: str, client: Any) -> None:
 
 
 def _sent_module(client: Any) -> Any:
-    """The module of workers, sent to those that are there and those that come, and imported here under the same name."""
+    """The module of workers, sent to present and future workers, and imported here under the same
+    name.
+    """
     path = os.path.join(os.path.dirname(os.path.abspath(__file__)), f"{WORKER}.py")
     client.upload_file(path)
     if WORKER not in sys.modules:
-        meant = importlib.util.spec_from_file_location(WORKER, path)
-        assert meant is not None and meant.loader is not None
-        sys.modules[WORKER] = importlib.util.module_from_spec(meant)
-        meant.loader.exec_module(sys.modules[WORKER])
+        spec = importlib.util.spec_from_file_location(WORKER, path)
+        assert spec is not None and spec.loader is not None
+        sys.modules[WORKER] = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(sys.modules[WORKER])
     return sys.modules[WORKER]
 
 
@@ -308,18 +318,19 @@ def _settings() -> dict[str, Any]:
 
 
 def _first_done(futures: list[Any]) -> list[Any]:
-    """Those that have ended in one way or another, waited for a moment. A result that was lost with its worker before it was
-    fetched has not: Dask makes it again."""
+    """The futures that have ended in any way, after a short wait. A result that was lost with its
+    worker before it was fetched has not ended: Dask makes it again.
+    """
     from distributed import wait
 
     try:
-        wait(futures, timeout=LOOK, return_when="FIRST_COMPLETED")
-    except Exception:  # nothing yet, or some cancelled at once, whose status tells it
+        wait(futures, timeout=POLL_S, return_when="FIRST_COMPLETED")
+    except Exception:  # nothing yet, or some cancelled at once, which their status shows
         time.sleep(0.02)
     return [future for future in futures if future.status not in ("pending", "lost")]
 
 
-def _why(future: Any) -> str:
+def _failure_text(future: Any) -> str:
     if future.status != "error":
         return Text("it was {}", future.status)
     return " ".join(str(future.exception()).split()) or type(future.exception()).__name__

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a command says and where: stdout for what was asked for, stderr for messages, progress on a terminal only."""
+"""Output of a command: stdout for results, stderr for messages, progress only on a terminal."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from freecad_am.batch.supervised import tell_stopping
 from freecad_am.core.issues import ERROR, Issue, summarised
 
 DEBOUNCE_S = 1.0  # s within which a second Ctrl-C is the first: a terminal sends it, and the process that waits for us
-FIRST = ("REMEDY", "NO_REMEDY")  # codes of what would make a job feasible
-_MOST_ISSUES = 12  # told on stderr; the report has them all
-LONGEST = 4000  # signs of a line: a value that it tells may be as long as a file
+LEADING_CODES = ("REMEDY", "NO_REMEDY")  # codes of remedies, listed first
+_MAX_ISSUES = 12  # on stderr; the report has them all
+MAX_LINE_LENGTH = 4000  # signs of a line: a value in it may be as long as a file
 # signs that move the cursor, end a line or turn the direction of writing: in a name they could forge what we say
 _UNSEEN = re.compile(
     "[\\x00-\\x1f\\x7f-\\x9f\\u061c\\u200e\\u200f\\u2028\\u2029\\u202a-\\u202e\\u2066-\\u2069\\ufeff\\ud800-\\udfff]"
@@ -28,7 +28,7 @@ _UNSEEN = re.compile(
 def escaped(text: str) -> str:
     """The text on one line, with control signs, ends of lines and what turns writing round as Python would write them."""
     return _UNSEEN.sub(
-        lambda found: repr(found[0])[1:-1] if found[0].isascii() else f"\\u{ord(found[0]):04x}",
+        lambda match: repr(match[0])[1:-1] if match[0].isascii() else f"\\u{ord(match[0]):04x}",
         text,
     )
 
@@ -42,7 +42,7 @@ class Session:
     def __init__(self) -> None:
         self.interrupted = False  # whether Ctrl-C was pressed
         self._when = 0.0
-        self.outcome = "nothing was written"  # told where the command is interrupted
+        self.outcome = "nothing was written"  # message when the command is interrupted
         self._progress = ""
 
     def __enter__(self) -> Session:
@@ -50,7 +50,7 @@ class Session:
         self._handle(signal.SIGTERM)
         sys.stdout.flush()
         sys.stderr.flush()
-        self._saved = (_kept(1), _kept(2))
+        self._saved = (_duplicate(1), _duplicate(2))
         self._tty = os.isatty(2)
         if not os.environ.get("FREECAD_AM_DEBUG"):
             nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -74,30 +74,33 @@ class Session:
         _write(self._saved[0], "\n".join(lines))
 
     def say(self, line: str) -> None:
-        """Write a line to stderr, one whatever is in it; of a very long one its beginning and its end."""
+        """Write one line to stderr, with control signs escaped; a very long line is shortened in
+        its middle.
+        """
         self._clear()
         text = escaped(line)
-        if len(text) > LONGEST:
-            text = f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2 :]}"
+        if len(text) > MAX_LINE_LENGTH:
+            text = f"{text[: MAX_LINE_LENGTH // 2]} ... {text[-MAX_LINE_LENGTH // 2 :]}"
         _write(self._saved[1], text + "\n")
 
-    def issues(self, found: Iterable[Issue], others: str = "stand in report.json") -> None:
-        """Write findings to stderr, first what would make the job feasible, then errors.
+    def issues(self, findings: Iterable[Issue], elsewhere: str = "stand in report.json") -> None:
+        """Write findings to stderr, first remedies, then errors.
 
         Findings of one kind in several layers are one line. After a dozen lines the rest is counted, with where it is.
         """
         ordered = sorted(
-            summarised(found), key=lambda issue: (issue.code not in FIRST, issue.level != ERROR)
+            summarised(findings),
+            key=lambda issue: (issue.code not in LEADING_CODES, issue.level != ERROR),
         )
-        for issue in ordered[:_MOST_ISSUES]:
+        for issue in ordered[:_MAX_ISSUES]:
             self.say(
                 f"{issue.level}[{issue.code}] {issue.where or 'job'}: {' '.join(issue.message.split())}"
             )
-        if len(ordered) > _MOST_ISSUES:
-            self.say(f"note[MORE] job: {len(ordered) - _MOST_ISSUES} more findings {others}")
+        if len(ordered) > _MAX_ISSUES:
+            self.say(f"note[MORE] job: {len(ordered) - _MAX_ISSUES} more findings {elsewhere}")
 
     def progress(self, text: str) -> None:
-        """Show what is being done, on a terminal only; ends the command where Ctrl-C was pressed since."""
+        """Show the current activity, only on a terminal; ends the command if Ctrl-C was pressed."""
         self.check()
         if self._tty:
             self._clear()
@@ -128,7 +131,7 @@ class Session:
         raise KeyboardInterrupt
 
 
-def _kept(descriptor: int) -> int:
+def _duplicate(descriptor: int) -> int:
     try:
         return os.dup(descriptor)
     except OSError:  # closed by who started us

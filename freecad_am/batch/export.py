@@ -19,9 +19,10 @@ def export(
 ) -> list[str]:
     """The paths of the files written: the programs of the document, or of the objects called `names` (Name or Label).
 
-    They go into program/ of `folder`, by default out/<document> beside the document, which itself is not changed.
-    wires: 'step' or 'dxf' writes into wires/ instead, a file for each joint path, or for each toolpath, joint path or
-    program that is named. Raises InputError and InfeasibleError; then nothing is written.
+    They go into program/ of `folder`, by default out/<document> next to the document, which is not
+    changed. wires: 'step' or 'dxf' writes into wires/ instead, a file for each joint path, or for
+    each toolpath, joint path or program that is named. Raises InputError and InfeasibleError; then
+    nothing is written.
     """
     label = os.path.basename(path)
     if not os.path.isfile(path):
@@ -40,7 +41,7 @@ def export(
     )
     with outputs.Outputs(target, session) as files:
         session.progress("opening ...")
-        before = set(FreeCAD.listDocuments())
+        open_before = set(FreeCAD.listDocuments())
         document = document_file.opened(path, label)
         try:
             linked_files.renew_changed(document)
@@ -54,8 +55,8 @@ def export(
                 ).items():
                     files.write(f"{outputs.PROGRAMS}/{name}", content)
         finally:
-            # those that it links to were opened with it
-            for name in set(FreeCAD.listDocuments()) - before:
+            # linked documents were opened with it
+            for name in set(FreeCAD.listDocuments()) - open_before:
                 FreeCAD.closeDocument(name)
         earlier = set() if names or wires else outputs.earlier_programs(files.folder)
         return [os.path.join(files.folder, name) for name in files.publish(earlier)]
@@ -64,33 +65,35 @@ def export(
 def _chosen(
     document: Any, label: str, names: tuple[str, ...], kinds: tuple[str, ...], code: str
 ) -> list[Any]:
-    """The objects called `names` among those of some kinds, else all of the first kind that there is."""
+    """The objects called `names` among objects of some kinds, else all objects of the first kind
+    present.
+    """
     from freecad_am import api
     from freecad_am.objects.shapes import linked_files
 
     of_kinds = [api.stages_of(document, kind) for kind in kinds]
-    every = [obj for objects in of_kinds for obj in objects]
-    if not every:
+    candidates = [obj for objects in of_kinds for obj in objects]
+    if not candidates:
         raise InputError(
             code, label, "the document has no {}s; make one with the workbench", kinds[0]
         )
-    known = ", ".join(obj.Label for obj in every)
-    chosen = []
+    labels = ", ".join(obj.Label for obj in candidates)
+    selected = []
     for name in names:
-        found = [obj for obj in every if obj.Name == name] or [
-            obj for obj in every if obj.Label == name
+        matches = [obj for obj in candidates if obj.Name == name] or [
+            obj for obj in candidates if obj.Label == name
         ]
-        if not found:
+        if not matches:
             message = "no {} is called {!r}; name one of {}"
-            raise InputError("NO_OBJECT", label, message, kinds[0], name, known)
-        if len(found) > 1:
+            raise InputError("NO_OBJECT", label, message, kinds[0], name, labels)
+        if len(matches) > 1:
             message = "{!r} is the label of several {}s; use the name of one of them"
             raise InputError("NO_OBJECT", label, message, name, kinds[0])
-        chosen += found
-    chosen = chosen or next(objects for objects in of_kinds if objects)
-    for obj in chosen:
+        selected += matches
+    selected = selected or next(objects for objects in of_kinds if objects)
+    for obj in selected:
         linked_files.refuse_missing_of(obj, label)
-    return chosen
+    return selected
 
 
 def _write_wires(paths: list[Any], kind: str, files: outputs.Outputs, session: Any) -> None:
@@ -116,16 +119,16 @@ def _files(programs: list[Any], session: Any) -> dict[str, bytes]:
     from freecad_am import api
 
     files: dict[str, bytes] = {}
-    known: dict[Issue, None] = {}
+    reported: dict[Issue, None] = {}
     for program in dict.fromkeys(programs):
         session.progress(f"computing {program.Label} ...")
         try:
             api.recompute(program, force=True)
         except InfeasibleError:  # what one ends with may be the fault of what another warns about
-            _tell_findings(program, known, session)
+            _report_findings(program, reported, session)
             raise
         session.check()
-        _tell_findings(program, known, session)
+        _report_findings(program, reported, session)
         for name, content in api.result(program).files.items():
             if files.setdefault(name, content) != content:
                 raise InputError(
@@ -134,8 +137,8 @@ def _files(programs: list[Any], session: Any) -> dict[str, bytes]:
     return files
 
 
-def _tell_findings(program: Any, known: dict[Issue, None], session: Any) -> None:
-    """Those of a program and of all that it is made of, but for those that are known by now."""
+def _report_findings(program: Any, reported: dict[Issue, None], session: Any) -> None:
+    """Report findings of a program and its inputs, except those in `reported`, and add them to it."""
     from freecad_am import api
 
     inputs = [
@@ -143,8 +146,11 @@ def _tell_findings(program: Any, known: dict[Issue, None], session: Any) -> None
         for obj in api.stages_of(program.Document)
         if obj is program or obj in program.OutListRecursive
     ]
-    found = dict.fromkeys(
-        issue for one in inputs for issue in api.issues(one) if issue not in known
+    new_findings = dict.fromkeys(
+        issue
+        for stage_input in inputs
+        for issue in api.issues(stage_input)
+        if issue not in reported
     )
-    known |= found
-    session.issues(found, "are in the document")
+    reported |= new_findings
+    session.issues(new_findings, "are in the document")

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a worker of a Dask cluster does for a batch. This file is sent to workers by itself and imports nothing of ours.
+"""The work of a Dask worker for a batch. The file is sent to workers separately and imports nothing
+of the package.
 
-Our code comes as an archive, which is unpacked in the worker's own folder, with the files of the jobs beside it. Rows are
-planned by a process of `row_host.py`, found by the launcher: a worker's Python needs neither FreeCAD nor numpy. There are as
-many such processes as the worker has rows at the same time, and they end with it.
+Our code comes as an archive, which is unpacked in the worker's own folder, next to the files of the
+jobs. Rows are planned by a process of `row_host.py`, found by the launcher: a worker's Python needs
+neither FreeCAD nor numpy. There are as many such processes as the worker has rows at the same time,
+and they end with it.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ import time
 import zipfile
 from typing import Any
 
-LONGEST = 2000  # characters of what a process says that does not start
+MAX_MESSAGE_LENGTH = 2000  # characters of the message of a process that does not start
 ENDED = "the batch has ended"
 _ATTRIBUTE = "_freecad_am_batches"  # of the worker: this module may be sent again, by another batch
 
@@ -45,7 +47,7 @@ class Batch:
     def unpacked(
         self, package: bytes, files: list[tuple[str, bytes]], links: list[tuple[str, str]]
     ) -> None:
-        """Put code and files where they belong, what is not there yet."""
+        """Write missing code and files to their places."""
         with self._lock:
             if not os.path.isdir(os.path.join(self.path, "code")):
                 with zipfile.ZipFile(io.BytesIO(package)) as archive:
@@ -57,14 +59,14 @@ class Batch:
                     os.makedirs(os.path.dirname(target), exist_ok=True)
                     with open(target, "wb") as stream:
                         stream.write(content)
-            for name, meant in links:
+            for name, link_target in links:
                 target = self.settings["copies"] + name
                 if not os.path.lexists(target):
                     os.makedirs(os.path.dirname(target), exist_ok=True)
-                    os.symlink(self.settings["copies"] + meant, target)
+                    os.symlink(self.settings["copies"] + link_target, target)
 
     def ask(self, order: dict[str, Any]) -> dict[str, Any]:
-        """The answer of a process. RuntimeError where there can be none, with what it said."""
+        """The answer of a process. RuntimeError, with its message, if no process starts."""
         process = self._process()
         answer = _exchanged(process, order)
         if answer is None:
@@ -73,7 +75,7 @@ class Batch:
         return answer
 
     def stop(self) -> None:
-        """End it with what it is doing, and remove its folder."""
+        """End the process, even during work, and remove its folder."""
         with self._lock:
             self._stopped = True
             for process in self._all:
@@ -113,13 +115,13 @@ class Batch:
         return process
 
 
-def kept(content: bytes) -> bytes:
+def keep_content(content: bytes) -> bytes:
     """The content: a file of a batch as a result of its own, which Dask makes again where it is lost with a worker."""
     return content
 
 
 def ready(token: str, settings: dict[str, Any], package: bytes) -> dict[str, str]:
-    """The versions of what computes on this worker; RuntimeError where FreeCAD is missing."""
+    """The versions of the software on the worker; RuntimeError if FreeCAD is missing."""
     batch = _batch(token, settings)
     batch.unpacked(package, [], [])
     return dict(batch.ask({"versions": True}))
@@ -132,12 +134,12 @@ def planned(
     from distributed import get_worker
 
     batch = _batch(token, settings)
-    asked = dict(order)
+    request = dict(order)
     batch.unpacked(
-        package, list(zip(asked.pop("files"), contents, strict=True)), asked.pop("links")
+        package, list(zip(request.pop("files"), contents, strict=True)), request.pop("links")
     )
     with tempfile.TemporaryDirectory(dir=batch.path) as folder:
-        result = batch.ask({**asked, "folder": os.path.join(folder, "row")})
+        result = batch.ask({**request, "folder": os.path.join(folder, "row")})
         result["files"] = dict(_files(os.path.join(folder, "row")))
     return {**result, "worker": get_worker().address, "versions": batch.versions}
 
@@ -145,9 +147,9 @@ def planned(
 def stop(token: str, dask_worker: Any) -> None:
     """End what this worker does for a batch. `dask_worker` is put in by Dask."""
     with _making:
-        known: dict[str, Batch | None] = dask_worker.__dict__.setdefault(_ATTRIBUTE, {})
-        batch, known[token] = (
-            known.get(token),
+        batches: dict[str, Batch | None] = dask_worker.__dict__.setdefault(_ATTRIBUTE, {})
+        batch, batches[token] = (
+            batches.get(token),
             None,
         )  # rows that were given out may still begin here
     if batch is not None:
@@ -162,17 +164,17 @@ def _batch(token: str, settings: dict[str, Any]) -> Batch:
 
     worker = get_worker()
     with _making:
-        known: dict[str, Batch | None] = worker.__dict__.setdefault(_ATTRIBUTE, {})
-        if token not in known:
-            known[token] = Batch(worker.local_directory, settings)
-        batch = known[token]
+        batches: dict[str, Batch | None] = worker.__dict__.setdefault(_ATTRIBUTE, {})
+        if token not in batches:
+            batches[token] = Batch(worker.local_directory, settings)
+        batch = batches[token]
     if batch is None:
         raise RuntimeError(ENDED)
     return batch
 
 
 def _exchanged(process: subprocess.Popen[str], request: dict[str, Any]) -> Any:
-    """What a process answers to a line; None where it ends."""
+    """The answer of a process to a line; None if it ends."""
     assert process.stdin is not None and process.stdout is not None
     try:
         process.stdin.write(json.dumps(request) + "\n")
@@ -188,14 +190,17 @@ def _last_words(process: subprocess.Popen[str]) -> str:
     with contextlib.suppress(subprocess.TimeoutExpired):
         process.wait(10.0)
     process.kill()
-    said = " ".join(process.stderr.read().split())
-    return said[-LONGEST:] or f"the process that plans rows ended with status {process.returncode}"
+    message = " ".join(process.stderr.read().split())
+    return (
+        message[-MAX_MESSAGE_LENGTH:]
+        or f"the process that plans rows ended with status {process.returncode}"
+    )
 
 
 def _files(folder: str) -> Any:
-    """Names, with slashes, and contents of what is in a folder."""
-    for place, _, names in os.walk(folder):
+    """Names, with slashes, and contents of the files in a folder."""
+    for subfolder, _, names in os.walk(folder):
         for name in names:
-            path = os.path.join(place, name)
+            path = os.path.join(subfolder, name)
             with open(path, "rb") as stream:
                 yield os.path.relpath(path, folder).replace(os.sep, "/"), stream.read()

@@ -21,12 +21,12 @@ LIBRARY_FOLDERS = (
 
 def library_folders() -> list[str]:
     """Folders that may hold FreeCAD.so, the user's own choice (FREECAD_LIB) first."""
-    own = [os.environ[name] for name in ("FREECAD_LIB",) if os.environ.get(name)]
+    user_folders = [os.environ[name] for name in ("FREECAD_LIB",) if os.environ.get(name)]
     python_folders = [
         os.path.join(sys.prefix, "lib"),
         os.path.join(sys.prefix, "lib", "freecad", "lib"),
     ]
-    return own + list(LIBRARY_FOLDERS) + python_folders
+    return user_folders + list(LIBRARY_FOLDERS) + python_folders
 
 
 def find_freecad() -> bool:
@@ -57,7 +57,9 @@ def _add_shims(folder: str) -> None:
 
 
 def provide_home() -> None:
-    """Where the home folder is closed to this user (sudo keeps that of root), give FreeCAD another: it would abort."""
+    """Give FreeCAD another home folder if the user cannot enter the present one (sudo keeps
+    root's): FreeCAD would abort.
+    """
     home = os.path.expanduser("~")
     closed = os.path.isdir(home) and not os.access(home, os.R_OK | os.W_OK | os.X_OK)
     if closed and not os.environ.get("FREECAD_USER_HOME"):
@@ -65,30 +67,31 @@ def provide_home() -> None:
 
 
 def _private_folder(name: str) -> str:
-    """A folder of this user alone below the temporary one: of that name or, where somebody else has taken it, another.
+    """A folder that only the current user can enter, below the temporary one, with the given name
+    or, if taken by another user, a derived one.
 
-    FreeCAD runs the code that it finds in its home, and anybody may make a folder here.
+    FreeCAD runs the code that it finds in its home, and any user may make a folder there.
     """
     top = tempfile.gettempdir()
     path = os.path.join(top, name)
     try:
         os.mkdir(path, 0o700)
     except FileExistsError:
-        known = (path, *sorted(glob.glob(os.path.join(glob.escape(top), f"{name}-*"))))
-        return next(filter(_is_private, known), None) or tempfile.mkdtemp(prefix=f"{name}-")
+        candidates = (path, *sorted(glob.glob(os.path.join(glob.escape(top), f"{name}-*"))))
+        return next(filter(_is_private, candidates), None) or tempfile.mkdtemp(prefix=f"{name}-")
     return path
 
 
 def _is_private(path: str) -> bool:
-    """True of a folder, no link, that nobody but this user can enter."""
+    """Whether a path is a folder, not a link, that only the current user can enter."""
     try:
-        found = os.lstat(path)
+        status = os.lstat(path)
     except OSError:
         return False
     return (
-        stat.S_ISDIR(found.st_mode)
-        and stat.S_IMODE(found.st_mode) == 0o700
-        and found.st_uid == os.getuid()
+        stat.S_ISDIR(status.st_mode)
+        and stat.S_IMODE(status.st_mode) == 0o700
+        and status.st_uid == os.getuid()
     )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The table of the machines known, and one of them in the words of other programs."""
+"""The table of known machines, and one machine in the formats of other programs."""
 
 from __future__ import annotations
 
@@ -23,8 +23,10 @@ def listing() -> str:
 
 
 def chosen(maker: str | None, reach: str | None, payload: str | None, post: str | None) -> str:
-    """The lines of `listing` of those machines that `machine_catalogue.chosen` finds, each with reach, payload and posts as
-    far as its file tells them. `reach` is a length and `payload` a mass as users write them; InputError for others."""
+    """The lines of `listing` for the machines that `machine_catalogue.chosen` finds, each with the
+    reach, payload and posts of its file. `reach` is a length and `payload` a mass as users write
+    them; InputError for others.
+    """
     paths.require_freecad()
     from freecad_am.core.kinematics.machines import catalogue as machine_catalogue
     from freecad_am.core.parameters import field
@@ -33,20 +35,20 @@ def chosen(maker: str | None, reach: str | None, payload: str | None, post: str 
 
     if post is not None:
         catalogue.load(post)
-    least = 0.0 if reach is None else quantity.read(reach, field.LENGTH, "--reach")
-    found = machine_catalogue.chosen(
+    min_reach = 0.0 if reach is None else quantity.read(reach, field.LENGTH, "--reach")
+    entries = machine_catalogue.chosen(
         machine_catalogue.entries(user_machines.folders()),
         maker,
-        least,
+        min_reach,
         0.0 if payload is None else _mass(payload),
         post,
     )
-    return _lines([(entry.id, f"{entry.title}{_figures(entry)}") for entry in found])
+    return _lines([(entry.id, f"{entry.title}{_figures(entry)}") for entry in entries])
 
 
-def _lines(known: list[tuple[str, str]]) -> str:
-    width = max((len(identity) for identity, _ in known), default=0)
-    return "".join(f"{identity:<{width}}  {title}\n" for identity, title in known)
+def _lines(entries: list[tuple[str, str]]) -> str:
+    width = max((len(identity) for identity, _ in entries), default=0)
+    return "".join(f"{identity:<{width}}  {title}\n" for identity, title in entries)
 
 
 def _figures(entry: Any) -> str:
@@ -69,25 +71,27 @@ def _mass(text: str) -> float:
     return mass
 
 
-def written(name: str, form: str) -> str:
-    """A machine, given by its id or file, as `urdf`, or as the table `dh` or `modified-dh`: figures in mm and degrees, one
-    line per row, between the pose before them and that after them (x y z and roll pitch yaw as URDF has them)."""
+def export_text(name: str, form: str) -> str:
+    """A machine, given by its id or file, as `urdf`, or as the table `dh` or `modified-dh`: figures
+    in mm and degrees, one line per row, between the base pose and the tool pose (x y z and roll
+    pitch yaw as in URDF).
+    """
     paths.require_freecad()
     from freecad_am.objects import user_machines
 
-    found = machine.load(name, user_machines.folders())
+    machine_loaded = machine.load(name, user_machines.folders())
     if form == "urdf":
         from freecad_am.core.kinematics.urdf import text as urdf_text
 
-        return urdf_text.text(found)
+        return urdf_text.text(machine_loaded)
     from freecad_am.core.kinematics.machines import denavit_hartenberg
 
-    table = denavit_hartenberg.table_of(found.chain, form == "modified-dh")
+    table = denavit_hartenberg.table_of(machine_loaded.chain, form == "modified-dh")
     joints = [
         [math.degrees(row.theta), row.d, row.a, math.degrees(row.alpha)] for row in table.rows
     ]
     lines = [f"before {_words(_pose(table.before))}", "axis theta d a alpha"]
-    lines += [f"{axis} {_words(row)}" for axis, row in zip(found.axes, joints)]
+    lines += [f"{axis} {_words(row)}" for axis, row in zip(machine_loaded.axes, joints)]
     return "\n".join([*lines, f"after {_words(_pose(table.after))}", ""])
 
 

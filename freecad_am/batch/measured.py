@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Compares files of measured points with what a job or a saved document plans, and writes what came of it."""
+"""Compares files of measured points with the plan of a job or a saved document, and writes the
+results.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,7 @@ FIGURES, DATA, PAGE, DOCUMENT = (
     "inspection.html",
     "inspection.FCStd",
 )
-_KEPT = {"measured", "planned", "file", "label", "inspection"}
+_RESERVED_KEYS = {"measured", "planned", "file", "label", "inspection"}
 
 
 def inspect(
@@ -31,9 +33,10 @@ def inspect(
 ) -> list[str]:
     """The paths of the files written: figures of every file of measured points, and over them mean and standard deviation.
 
-    source: a job file, whose part is compared, or an FCStd document, of which `name` (Name or Label) is, by default its one
-    feature. settings: key=value, parameters of an inspection. They go into `folder`, by default out/<name>-inspection
-    beside the source. Raises InputError and InfeasibleError; then nothing is written.
+    source: a job file, whose part is compared, or an FCStd document, compared by its object `name`
+    (Name or Label), by default its one feature. settings: key=value, parameters of an inspection.
+    They go into `folder`, by default out/<name>-inspection next to the source. Raises InputError
+    and InfeasibleError; then nothing is written.
     """
     values = _values(settings)
     paths.require_freecad()
@@ -48,11 +51,11 @@ def inspect(
         session.progress("opening ...")
         document, planned = _opened(source, name, session)
         try:
-            made = [
-                _made(document, planned, path, label, values, session)
+            results = [
+                _inspection_result(document, planned, path, label, values, session)
                 for path, label in zip(measured, labels, strict=True)
             ]
-            _write(files, f"{document.Label}, {planned.Label}", made, labels)
+            _write(files, f"{document.Label}, {planned.Label}", results, labels)
             document.saveAs(files.path(DOCUMENT))
         finally:
             FreeCAD.closeDocument(document.Name)
@@ -65,36 +68,36 @@ def inspect(
 
 
 def _values(settings: tuple[str, ...]) -> dict[str, str]:
-    found = {}
+    values = {}
     for text in settings:
         key, sign, value = text.partition("=")
-        if not sign or key.strip() in _KEPT:
+        if not sign or key.strip() in _RESERVED_KEYS:
             raise InputError(
                 "USAGE",
                 "freecad-am inspect",
                 "{!r} is not a setting; give such as --set tolerance=0.3",
                 text,
             )
-        found[key.strip()] = value.strip()
-    return found
+        values[key.strip()] = value.strip()
+    return values
 
 
 def _labels(measured: tuple[str, ...]) -> list[str]:
     """What the files are called in tables and names of files, each another way."""
-    found: list[str] = []
+    labels: list[str] = []
     for path in measured:
         label = os.path.splitext(os.path.basename(path))[0] or "points"
         number = 2
-        while label in found:
+        while label in labels:
             label, number = f"{label.rpartition(' ')[0] or label} {number}", number + 1
-        found.append(label)
-    return found
+        labels.append(label)
+    return labels
 
 
 def _opened(source: str, name: str, session: Any) -> tuple[Any, Any]:
     """A document, and the object in it that was measured."""
     if source.lower().endswith(".fcstd"):
-        return _of_document(source, name)
+        return _open_document(source, name)
     if name:
         raise InputError(
             "USAGE",
@@ -105,25 +108,25 @@ def _opened(source: str, name: str, session: Any) -> tuple[Any, Any]:
 
     from .job import job
 
-    read = job.read_job(source)
+    job_read = job.read_job(source)
     document = FreeCAD.newDocument("Inspection")
     try:
-        document.Label, document.UndoMode = read.name, 0
-        return document, _feature(document, read, session)
+        document.Label, document.UndoMode = job_read.name, 0
+        return document, _feature(document, job_read, session)
     except BaseException:
         FreeCAD.closeDocument(document.Name)
         raise
 
 
-def _feature(document: Any, read: Any, session: Any) -> Any:
+def _feature(document: Any, job_read: Any, session: Any) -> Any:
     """The feature of a job; its toolpath need not be made."""
     from .job.shapes import Shapes
 
     session.progress("feature ...")
-    return Shapes(document, read, 0).make_feature([])
+    return Shapes(document, job_read, 0).make_feature([])
 
 
-def _of_document(path: str, name: str) -> tuple[Any, Any]:
+def _open_document(path: str, name: str) -> tuple[Any, Any]:
     import FreeCAD
 
     from freecad_am import api
@@ -133,58 +136,66 @@ def _of_document(path: str, name: str) -> tuple[Any, Any]:
     if not os.path.isfile(path):
         raise InputError("NO_FILE", path, "there is no such file; check the path")
     document = document_file.opened(path, label)
-    known = api.stages_of(document, "feature") if not name else list(document.Objects)
-    found = (
-        known
+    candidates = api.stages_of(document, "feature") if not name else list(document.Objects)
+    matches = (
+        candidates
         if not name
-        else [one for one in known if one.Name == name]
-        or [one for one in known if one.Label == name]
+        else [candidate for candidate in candidates if candidate.Name == name]
+        or [candidate for candidate in candidates if candidate.Label == name]
     )
-    if len(found) != 1:
+    if len(matches) != 1:
         FreeCAD.closeDocument(document.Name)
         text = (
-            Text("{} objects are called {!r}", len(found), name)
+            Text("{} objects are called {!r}", len(matches), name)
             if name
-            else Text("it has {} features; choose with --object", len(found))
+            else Text("it has {} features; choose with --object", len(matches))
         )
         raise InputError("NO_OBJECT", label, "{}; name what was measured", Word(text))
-    return document, found[0]
+    return document, matches[0]
 
 
-def _made(
+def _inspection_result(
     document: Any, planned: Any, path: str, label: str, values: dict[str, str], session: Any
 ) -> Any:
     from freecad_am import api
 
     session.progress(f"{label} ...")
-    made = api.inspect(document, planned, os.path.abspath(path), label, **values)
+    inspection = api.inspect(document, planned, os.path.abspath(path), label, **values)
     session.check()
-    session.issues(api.issues(made))
-    return api.result(made)
+    session.issues(api.issues(inspection))
+    return api.result(inspection)
 
 
-def _write(files: outputs.Outputs, planned: str, made: list[Any], labels: list[str]) -> None:
+def _write(files: outputs.Outputs, planned: str, results: list[Any], labels: list[str]) -> None:
     from freecad_am.core.inspection import table
 
     from .outputs import inspection_page
 
-    compared = table.compared(made)
-    several = len(made) > 1
+    compared = table.compared(results)
+    several = len(results) > 1
     heads = ["figure", "unit", *labels, *(("mean", "standard deviation") if several else ())]
     lines = [",".join(map(_quoted, heads))]
     for name, unit, values, mean, deviation in compared:
         numbers = [*values, *((mean, deviation) if several else ())]
         lines.append(
             ",".join(
-                [_quoted(name), unit, *("" if one is None else f"{one:.6f}" for one in numbers)]
+                [
+                    _quoted(name),
+                    unit,
+                    *("" if result is None else f"{result:.6f}" for result in numbers),
+                ]
             )
         )
     files.write(FIGURES, ["\n".join(lines) + "\n"])
-    data = {"version": 1, "planned": planned, "inspections": [table.as_data(one) for one in made]}
+    data = {
+        "version": 1,
+        "planned": planned,
+        "inspections": [table.as_data(result) for result in results],
+    }
     files.write(DATA, [json.dumps(data, indent=1, ensure_ascii=False) + "\n"])
-    for one, label in zip(made, labels, strict=True):
-        files.write(f"{label}-deviations.csv", table.deviations(one))
-    files.write(PAGE, [inspection_page.render(planned, made, labels)])
+    for result, label in zip(results, labels, strict=True):
+        files.write(f"{label}-deviations.csv", table.deviations(result))
+    files.write(PAGE, [inspection_page.render(planned, results, labels)])
 
 
 def _quoted(text: str) -> str:

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A job whose stages end with an error, planned otherwise: what it leaves open chosen anew, or to tell what would help."""
+"""Plan a job again if its stages end with an error: with other choices for its open settings, or to
+find a remedy.
+"""
 
 from __future__ import annotations
 
@@ -14,12 +16,14 @@ from .job.job import Job
 
 Plan = Callable[
     [Job, str], Any
-]  # the stages of a job, given the code of the error that what was chosen ends with
+]  # the stages of a job, given the error code of the automatic choice
 
 
 def planned(job: Job, plan: Plan, close: Callable[[Any], None]) -> Any:
-    """The stages of a job. Where curved layers that were chosen for it end with an error, with planes; where walls do that
-    were, with fixed build directions, if these are carried out. close: what becomes of stages that are not wanted."""
+    """The stages of a job. If automatically chosen curved layers end with an error, with planes; if
+    chosen walls do, with fixed build directions, provided that these succeed. close: disposes of
+    unused stages.
+    """
     stages = plan(job, "")
     if not has_errors(stages.issues):
         return stages
@@ -27,28 +31,28 @@ def planned(job: Job, plan: Plan, close: Callable[[Any], None]) -> Any:
         close(stages)
         return plan(job, fails)
     if fails := _in_vain(stages, _leaning(job, stages)):
-        other = plan(job, fails)
-        better = not has_errors(other.issues)
-        close(stages if better else other)
-        return other if better else stages
-    return _with_remedy(job, stages, plan, close)
+        alternative = plan(job, fails)
+        better = not has_errors(alternative.issues)
+        close(stages if better else alternative)
+        return alternative if better else stages
+    return _check_remedy(job, stages, plan, close)
 
 
-def _in_vain(stages: Any, chosen: bool) -> str:
-    """The code of the first error where something was chosen; else ''."""
-    return next((issue.code for issue in stages.issues if chosen and issue.level == ERROR), "")
+def _in_vain(stages: Any, is_chosen: bool) -> str:
+    """The code of the first error if something was chosen automatically; else ''."""
+    return next((issue.code for issue in stages.issues if is_chosen and issue.level == ERROR), "")
 
 
 def _curved(job: Job, stages: Any) -> bool:
     """Whether curved layers were chosen for a feature that leaves layers open."""
     from freecad_am.core.parameters.filled import GEODESIC
 
-    chosen = zip(job.features, stages.job.features, strict=True)
+    feature_pairs = zip(job.features, stages.job.features, strict=True)
     return any(
-        asked.sections is not None
-        and "layers" not in asked.sections["strategy"]
-        and getattr(one.strategy, "layers", "") == GEODESIC
-        for asked, one in chosen
+        job_feature.sections is not None
+        and "layers" not in job_feature.sections["strategy"]
+        and getattr(chosen_feature.strategy, "layers", "") == GEODESIC
+        for job_feature, chosen_feature in feature_pairs
     )
 
 
@@ -58,12 +62,17 @@ def _leaning(job: Job, stages: Any) -> bool:
 
     if stages.joint_path is None and any(issue.code == NO_REMEDY for issue in stages.issues):
         return False
-    chosen = zip(job.features, stages.job.features, strict=True)
-    return any(asked.sections is not None and leans(asked, one.strategy) for asked, one in chosen)
+    feature_pairs = zip(job.features, stages.job.features, strict=True)
+    return any(
+        job_feature.sections is not None and leans(job_feature, chosen_feature.strategy)
+        for job_feature, chosen_feature in feature_pairs
+    )
 
 
 def _with(feature: JobFeature, alone: bool) -> JobFeature:
-    """A feature with what is tried to clear its nozzle: a wall with one direction, curved layers, alone, as plane ones."""
+    """A feature changed to clear its nozzle: a wall gets one direction, curved layers (of a single
+    feature) become plane ones.
+    """
     from freecad_am.core.parameters.filled import GEODESIC, OFFSET, PLANES
 
     if leans(feature, feature.strategy):
@@ -77,19 +86,22 @@ def _with(feature: JobFeature, alone: bool) -> JobFeature:
     return feature
 
 
-def _with_remedy(job: Job, stages: Any, plan: Plan, close: Callable[[Any], None]) -> Any:
-    """The stages with a note on whether the whole job is feasible with what would clear the nozzle, if its toolpath told
-    something that does; the stages as they are, if not."""
+def _check_remedy(job: Job, stages: Any, plan: Plan, close: Callable[[Any], None]) -> Any:
+    """The stages with a note on whether the whole job is feasible with the remedy that its toolpath
+    reported for the nozzle; unchanged without such a remedy.
+    """
     from freecad_am.core.planning.remedies import NO_REMEDY, REMEDY
 
     text = next((issue for issue in stages.issues if issue.code == REMEDY), None)
     if text is None or stages.joint_path is not None or job.cell is None:
         return stages
-    features = tuple(_with(one, len(stages.job.features) == 1) for one in stages.job.features)
+    features = tuple(
+        _with(feature, len(stages.job.features) == 1) for feature in stages.job.features
+    )
     what = text.message.values[0]
-    other = plan(dataclasses.replace(job, features=features), "")
-    feasible = not has_errors(other.issues)
-    close(other)
+    alternative = plan(dataclasses.replace(job, features=features), "")
+    feasible = not has_errors(alternative.issues)
+    close(alternative)
     note = (
         Issue(NOTE, REMEDY, Text("with {} this job is feasible; tried, not applied", what))
         if feasible

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where the part of a job, its positioner or its deposition point may stand: a table, a page, and the best pose."""
+"""Possible positions of the part of a job, its positioner or its deposition point: a table, a page,
+and the best pose.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,7 @@ TABLE, PAGE = "place.csv", "place.html"
 
 
 class Result(NamedTuple):
-    """The best pose as a line of a section `cell`, '' where there is none; the issues, and the exit status, 0 or 3."""
+    """The best pose as a line of a section `cell`, or ''; the issues, and the exit status, 0 or 3."""
 
     line: str
     issues: list[Issue]
@@ -26,8 +28,8 @@ class Result(NamedTuple):
 
 
 def place(job: Job, folder: str | None, session: Any) -> Result:
-    """Try the poses of the section `place` of a job and write what they come to into `folder`, by default out/<name>-place
-    beside the job file.
+    """Try the poses of the section `place` of a job and write the results into `folder`, by default
+    out/<name>-place next to the job file.
 
     Raises InputError; then nothing is written.
     """
@@ -45,12 +47,12 @@ def place(job: Job, folder: str | None, session: Any) -> Result:
     try:
         run.check(job)
         with one_thread(), outputs.Outputs(target, session) as files:
-            document = job_document.made(job)
+            document = job_document.new_document(job)
             try:
                 stages = run.as_far_as_toolpath(job, document, session)
                 if has_errors(stages.issues):
                     return Result("", stages.issues, 3)
-                return _written(job, stages, files, session)
+                return _write_results(job, stages, files, session)
             finally:
                 FreeCAD.closeDocument(document.Name)
     except InputError as found:
@@ -60,41 +62,44 @@ def place(job: Job, folder: str | None, session: Any) -> Result:
         raise error from None
 
 
-def _written(job: Job, stages: Any, files: outputs.Outputs, session: Any) -> Result:
+def _write_results(job: Job, stages: Any, files: outputs.Outputs, session: Any) -> Result:
     from freecad_am.core.placement import table
     from freecad_am.objects.checks.placed import placing_of
 
     from .outputs import place_page
 
     with stages.timed("place", session):
-        found = placing_of(stages.toolpath, stages.cell, job.joints).search_poses(job.place)
-    files.write(TABLE, table.rows(found))
-    files.write(PAGE, [place_page.render(job.name, found)])
+        placement = placing_of(stages.toolpath, stages.cell, job.joints).search_poses(job.place)
+    files.write(TABLE, table.rows(placement))
+    files.write(PAGE, [place_page.render(job.name, placement)])
     files.publish(
         {name for name in (TABLE, PAGE) if os.path.isfile(os.path.join(files.folder, name))}
     )
-    count, serve = len(found.poses), sum(one.feasible for one in found.judged)
-    looked = Text("{} of {} points", found.points, found.of)
-    if found.best is None:
-        most = max(one.share for one in found.judged)
-        wrong = found.judged[max(range(count), key=lambda k: found.judged[k].share)]
+    count, serve = (
+        len(placement.poses),
+        sum(pose_result.feasible for pose_result in placement.judged),
+    )
+    extent = Text("{} of {} points", placement.points, placement.of)
+    if placement.best is None:
+        best_share = max(pose_result.share for pose_result in placement.judged)
+        wrong = placement.judged[max(range(count), key=lambda k: placement.judged[k].share)]
         text = Text(
             "none of {} poses serves, as far as {} tell: at most {:.3g} % of them are within reach and limits ({}); "
             "give a larger box in place, or another cell.branch",
             count,
-            Word(looked),
-            100.0 * most,
+            Word(extent),
+            100.0 * best_share,
             wrong.code,
         )
         if serve:
             text = Text(
                 "none of the {} best of {} poses is feasible with all points, though some points of each are; raise "
                 "place.points or place.proven",
-                len(found.proven),
+                len(placement.proven),
                 serve,
             )
         return Result("", [*stages.issues, Issue(ERROR, "NO_PLACE", text)], 3)
-    best = found.of_pose(found.best)
+    best = placement.of_pose(placement.best)
     note = Issue(
         NOTE,
         "PLACED",
@@ -103,7 +108,7 @@ def _written(job: Job, stages: Any, files: outputs.Outputs, session: Any) -> Res
             "margin {:.3g} %, {:.0f} s; {} and {} are in {}",
             serve,
             count,
-            Word(looked),
+            Word(extent),
             100.0 * best.margin,
             best.time,
             TABLE,
@@ -111,4 +116,4 @@ def _written(job: Job, stages: Any, files: outputs.Outputs, session: Any) -> Res
             files.folder,
         ),
     )
-    return Result(table.key(found, found.best), [*stages.issues, note], 0)
+    return Result(table.key(placement, placement.best), [*stages.issues, note], 0)

@@ -28,16 +28,14 @@ def main() -> None:
     os.dup2(nowhere, 1)  # FreeCAD and OpenCASCADE write there as well
     lines = sys.stdin
     planning.import_all()
-    os.dup2(nowhere, 2)  # nobody reads it from now on
+    os.dup2(nowhere, 2)  # without a reader from now on
     settings = json.loads(lines.readline())
     _set_up(settings)
     _answer(answers, versions.found_versions())
     for line in lines:
-        asked = json.loads(line)
-        _answer(answers, versions.found_versions() if "versions" in asked else _planned(asked))
-    shutil.rmtree(
-        settings["folder"], ignore_errors=True
-    )  # the worker is lost, and nobody else removes it
+        request = json.loads(line)
+        _answer(answers, versions.found_versions() if "versions" in request else _planned(request))
+    shutil.rmtree(settings["folder"], ignore_errors=True)  # the worker is lost and cannot remove it
 
 
 def _answer(stream: Any, answer: dict[str, Any]) -> None:
@@ -57,21 +55,21 @@ def _set_up(settings: dict[str, Any]) -> None:
     user_machines.use_folders(tuple(settings["machines"]))
 
 
-def _planned(asked: dict[str, Any]) -> dict[str, Any]:
+def _planned(request: dict[str, Any]) -> dict[str, Any]:
     """The result of an order."""
     from freecad_am.batch.rows import process as row_process
 
-    receiver, process = row_process.started(row_process.Order(**asked))
+    receiver, process = row_process.start_row(row_process.Order(**request))
 
     def end(*_: Any) -> None:
         row_process.stop(process)
         os._exit(1)
 
-    before = signal.signal(signal.SIGTERM, end)
+    old_handler = signal.signal(signal.SIGTERM, end)
     try:
         return row_process.received(receiver, process)
     finally:
-        signal.signal(signal.SIGTERM, before)
+        signal.signal(signal.SIGTERM, old_handler)
 
 
 if __name__ == "__main__":

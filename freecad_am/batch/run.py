@@ -47,7 +47,7 @@ class Stages:
 
     @contextlib.contextmanager
     def timed(self, stage: str, session: Any) -> Iterator[None]:
-        """Tell of a stage and take its time."""
+        """Report a stage and take its time."""
         from freecad_am.objects.work.progress import told_to
 
         name = stage.replace("_", " ")
@@ -75,8 +75,8 @@ def import_all() -> None:
 
 
 def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
-    """Plan a job and write its outputs into `folder`, report.html only with `page`. `session` is told of progress and
-    findings.
+    """Plan a job and write its outputs into `folder`, report.html only with `page`. `session`
+    receives progress and findings.
 
     Raises InputError; then nothing is written. An infeasible job has a result, but no programs.
     """
@@ -89,7 +89,7 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
         with one_thread(), outputs.Outputs(folder, session) as files:
             stages = otherwise.planned(
                 job,
-                lambda of, fails: _in_a_document(of, session, fails),
+                lambda variant, fails: _in_a_document(variant, session, fails),
                 lambda stages: FreeCAD.closeDocument(stages.document.Name),
             )
             try:
@@ -115,7 +115,8 @@ def named_by_keys(job: Job) -> Iterator[None]:
 
 
 def check(job: Job) -> Any:
-    """What can be refused before the long work starts: machine, limits, set-up, post, name of the program.
+    """Reject errors before the long work starts: machine, limits, set-up, post, name of the
+    program.
 
     The cell without its feature, or None.
     """
@@ -148,7 +149,7 @@ def _in_a_document(job: Job, session: Any, fails: str) -> Stages:
     """The stages of a job in a document of its own."""
     import FreeCAD
 
-    document = job_document.made(job)
+    document = job_document.new_document(job)
     try:
         return plan(job, document, session, fails)
     except BaseException:
@@ -157,8 +158,9 @@ def _in_a_document(job: Job, session: Any, fails: str) -> Stages:
 
 
 def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
-    """All stages of a job in a document; stops where the job cannot be carried out and says so in `issues`. fails: code
-    of the error that what was chosen ends with, where the job leaves it open."""
+    """All stages of a job in a document; stops at an infeasible stage, with the reason in `issues`.
+    fails: error code of the first automatic choice for an open setting.
+    """
 
     from freecad_am import api
     from freecad_am.core.process.model.predicted import HEIGHTS
@@ -179,10 +181,12 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
         stages.joint_path = api.make_joint_path(
             document, stages.toolpath, stages.cell, joints=job.joints
         )
-    found = api.issues(stages.joint_path)
-    if any(issue.code == HEIGHTS for issue in found):  # at the speeds as run, not only as asked for
+    path_issues = api.issues(stages.joint_path)
+    if any(
+        issue.code == HEIGHTS for issue in path_issues
+    ):  # at the speeds as run, not only as asked for
         stages.issues = [issue for issue in stages.issues if issue.code != HEIGHTS]
-    stages.issues += found
+    stages.issues += path_issues
     if has_errors(stages.issues):
         return stages
     if job.program is not None:
@@ -205,11 +209,15 @@ def as_far_as_toolpath(job: Job, document: Any, session: Any, fails: str = "") -
         with stages.timed("cell", session):
             stages.cell = api.make_cell(document, parameters=job.cell)
     with stages.timed("feature", session):
-        for one in shapes:
-            earlier = [other.part for other in shapes[: one.number] if other.solid]
-            proposal = one.choose(earlier)
+        for shape in shapes:
+            earlier = [
+                earlier_shape.part
+                for earlier_shape in shapes[: shape.number]
+                if earlier_shape.solid
+            ]
+            proposal = shape.choose(earlier)
             stages.issues += [] if proposal is None else [proposal]
-            stages.features.append(one.make_feature(earlier))
+            stages.features.append(shape.make_feature(earlier))
     job = stages.job = _as_chosen(job, shapes)
     for feature in stages.features:
         stages.issues += api.issues(feature)
@@ -238,7 +246,7 @@ def _make_program(stages: Stages) -> None:
 
 def _as_chosen(job: Job, shapes: Sequence[Any]) -> Job:
     """The job with the features as they were chosen."""
-    features = tuple(one.of for one in shapes)
+    features = tuple(shape.of for shape in shapes)
     return dataclasses.replace(
         job, features=features, process=features[0].process if len(features) == 1 else job.process
     )
@@ -272,9 +280,9 @@ def _write(
         files.write(f"{outputs.PROGRAMS}/{name}", content)
     with stages.timed("document", session):
         job_document.save(stages.document, files.path(job.name + outputs.DOCUMENT_ENDING))
-    asked = for_report.job(job, stages)
+    report_job = for_report.job(job, stages)
     report = made.made(
-        asked, results, cell, lambda stage: stages.timed(stage, session), session.progress
+        report_job, results, cell, lambda stage: stages.timed(stage, session), session.progress
     )
     report.content["timing_s"] = {**stages.timing, "total": time.perf_counter() - started}
     files.write(outputs.REPORT, [figures.text(report.content)])

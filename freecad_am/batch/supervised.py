@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A command carried out in a copy of the process, so that somebody is left to tell where FreeCAD crashes.
+"""A command carried out in a fork of the process, so that the parent can report a crash of FreeCAD.
 
-The copy is made by fork before anything is loaded, which takes a millisecond. It is passed the signals on, ends with the
-process that waits for it, and tells where its outputs are in the making, so that nothing is left of them.
+The fork is made before anything is loaded, which takes a millisecond. It receives forwarded
+signals, ends with its parent, and reports the folder of its unfinished outputs, so that the parent
+can remove them.
 """
 
 from __future__ import annotations
@@ -20,15 +21,19 @@ from freecad_am.core.issues import AmError, InputError
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 INTERRUPTED = 130
-DONE = "done"  # told at the end by a copy that came to it
-STOPPING = "stopping"  # told by a copy that has noticed a signal
-GRACE = 0.7  # s that a copy has to notice one; the geometry kernel lets nothing through while it is at work
+DONE_MESSAGE = "done"  # message at the regular end of the fork
+STOPPING = "stopping"  # message of a fork that has noticed a signal
+GRACE = (
+    0.7  # s for the fork to notice a signal; the geometry kernel blocks signals while it is at work
+)
 
-_channel = -1  # where a copy tells
+_channel = -1  # file descriptor of the fork for messages
 
 
 def supervised(work: Callable[[], int], where: str, say: Callable[[str], None]) -> int:
-    """The status of `work`, done in a copy of this process. `say` takes the line about a crash, which is about `where`."""
+    """The status of `work`, done in a fork of the current process. `say` takes the line about a
+    crash, which names `where`.
+    """
     if not sys.platform.startswith("linux"):
         return work()
     ours, theirs = os.pipe()
@@ -46,8 +51,8 @@ def supervised(work: Callable[[], int], where: str, say: Callable[[str], None]) 
         if child[0] and passed:
             os.kill(child[0], signal.SIGKILL)
 
-    before = {number: signal.signal(number, pass_on) for number in SIGNALS}
-    before[signal.SIGALRM] = signal.signal(signal.SIGALRM, kill)
+    old_handlers = {number: signal.signal(number, pass_on) for number in SIGNALS}
+    old_handlers[signal.SIGALRM] = signal.signal(signal.SIGALRM, kill)
     sys.stdout.flush()
     sys.stderr.flush()
     child[0] = os.fork()
@@ -64,18 +69,18 @@ def supervised(work: Callable[[], int], where: str, say: Callable[[str], None]) 
             for line in stream:
                 if line.endswith("\n"):
                     messages.append(json.loads(line))
-                    if messages[-1] in (STOPPING, DONE):
+                    if messages[-1] in (STOPPING, DONE_MESSAGE):
                         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         status = os.waitstatus_to_exitcode(os.waitpid(child[0], 0)[1])
     finally:
-        for number, handler in before.items():
+        for number, handler in old_handlers.items():
             signal.signal(number, handler)
-    if DONE in messages:
+    if DONE_MESSAGE in messages:
         return status
     for entry in messages:
         if entry != STOPPING:
-            _tidied(*entry)
+            _clean_up(*entry)
     if passed:
         say("interrupted: nothing was written")
         return INTERRUPTED
@@ -86,16 +91,16 @@ def supervised(work: Callable[[], int], where: str, say: Callable[[str], None]) 
 
 def tell_stopping() -> None:
     """From a copy: it has noticed that it is to stop, and does."""
-    _tell(STOPPING)
+    _send(STOPPING)
 
 
-def tell_outputs(folder: str, made: list[str]) -> None:
+def tell_outputs(folder: str, made_folders: list[str]) -> None:
     """From a copy: outputs are in the making in this folder, for which these were made."""
-    _tell([folder, made])
+    _send([folder, made_folders])
 
 
 def crash(where: str, status: int) -> AmError:
-    """The error of a process that ended without its result, with the status that Popen tells."""
+    """The error of a process that ended without its result, with the status as Popen gives it."""
     name = signal.Signals(-status).name if -status in set(signal.Signals) else f"status {status}"
     if status == -signal.SIGKILL:
         message = "the system ended the command, for lack of memory most likely; free some, or plan less at the same time"
@@ -132,29 +137,29 @@ def _carry_out(work: Callable[[], int], channel: int, passed: list[int], parent:
             signal.signal(number, signal.SIG_IGN)
         sys.stdout.flush()
         sys.stderr.flush()
-        _tell(DONE)
+        _send(DONE_MESSAGE)
         os._exit(status)
 
 
 def _interrupted(*_: Any) -> None:
-    """Once: the keys of a terminal reach the copy by itself and through the process that waits for it."""
+    """Once: the keys of a terminal reach the fork directly and through its parent."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
     tell_stopping()
     raise KeyboardInterrupt
 
 
-def _tell(value: Any) -> None:
+def _send(value: Any) -> None:
     if _channel >= 0:
         with contextlib.suppress(OSError):
             os.write(_channel, (json.dumps(value) + "\n").encode())
 
 
-def _tidied(folder: str, made: list[str]) -> None:
+def _clean_up(folder: str, made_folders: list[str]) -> None:
     """Finish or remove what a crash has left in the making."""
     from .outputs import staging
 
     with contextlib.suppress(OSError):
         staging.clear(folder)
-        for path in reversed(made):
+        for path in reversed(made_folders):
             os.rmdir(path)

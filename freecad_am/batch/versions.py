@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the digits of a result depend on besides its job: versions of what computes, and our own code."""
+"""Inputs of a result's digits besides its job: versions of the software, and our own code."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ _WHEN = (1980, 1, 1, 0, 0, 0)  # of every file in the archive: the same code is 
 
 
 def found_versions() -> dict[str, str]:
-    """Versions by the name of the program or library; of this process, in which FreeCAD is there."""
+    """Versions by the name of the program or library, in the current process, which has FreeCAD."""
     import FreeCAD
     import numpy as np
     import Part
     import scipy
 
-    found = {
+    versions = {
         "FreeCAD": ".".join(FreeCAD.Version()[:3]),
         "OpenCASCADE": str(Part.OCC_VERSION),
         "Python": platform.python_version(),
@@ -34,8 +34,8 @@ def found_versions() -> dict[str, str]:
         "scipy": scipy.__version__,
     }
     with contextlib.suppress(importlib.metadata.PackageNotFoundError):
-        found["shapely"] = importlib.metadata.version("shapely")
-    return found
+        versions["shapely"] = importlib.metadata.version("shapely")
+    return versions
 
 
 @functools.cache
@@ -54,11 +54,11 @@ def package() -> bytes:
 @functools.cache
 def code() -> str:
     """The digest of our code and data without the window."""
-    found = hashlib.sha256()
+    digest = hashlib.sha256()
     for name in _files():
         with open(os.path.join(ROOT, name), "rb") as stream:
-            found.update(f"{name} {hashlib.sha256(stream.read()).hexdigest()}\n".encode())
-    return found.hexdigest()
+            digest.update(f"{name} {hashlib.sha256(stream.read()).hexdigest()}\n".encode())
+    return digest.hexdigest()
 
 
 def _files() -> Iterator[str]:

@@ -47,7 +47,7 @@ def test_large_results_are_saved_as_they_are_packed(stages, tmp_path, chosen, mo
     if before is not None:
         chosen.SetInt(LEVEL, before)
     path = str(tmp_path / "large results.FCStd")
-    monkeypatch.setattr(saving, "LARGE", 1)
+    monkeypatch.setattr(saving, "MAX_DEFLATED_BYTES", 1)
     saving.save(stages.Document, path)
     sizes = _sizes(path)
     assert len(sizes) > 1 and all(packed >= size for size, packed in sizes)
@@ -82,7 +82,7 @@ def test_the_choice_comes_back_where_the_file_cannot_be_written(
             assert chosen.GetInt(LEVEL, -1) == 0
             raise OSError("no space left")
 
-    monkeypatch.setattr(saving, "LARGE", 1)
+    monkeypatch.setattr(saving, "MAX_DEFLATED_BYTES", 1)
     chosen.SetInt(LEVEL, 4)
     with pytest.raises(saving.InputError, match="no space left"):
         saving.save(Full(), str(tmp_path / "x.FCStd"))

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from freecad_am.batch.check import _with_statement
+from freecad_am.batch.check import _add_statement
 from freecad_am.core.issues import ERROR, WARNING, InputError
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.planning.program.build import without_moves
@@ -261,7 +261,7 @@ def test_a_statement_that_is_not_understood_is_refused_on_its_line(post):
                 try:
                     read(changed)
                 except InputError as error:
-                    shown = _with_statement(error, changed)
+                    shown = _add_statement(error, changed)
                     assert shown.code == "UNREADABLE_PROGRAM"
                     assert shown.where == f"{name} line {line}", (statement, shown.message)
                     assert repr(statement.strip()) in shown.message

@@ -19,14 +19,16 @@ HEIGHT, SPACING = "layer_height", "bead_spacing"
 
 
 def asked(section: Any) -> bool:
-    """Whether a section `strategy` leaves one of them to the model."""
+    """Whether a section `strategy` leaves layer height or spacing to the model."""
     return isinstance(section, dict) and WORD in (section.get(HEIGHT), section.get(SPACING))
 
 
 def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, Any]:
-    """The section with numbers in their place. The layer height is that of a straight bead; beads lie so far apart that
-    spacing times layer height is the wire that a millimetre of bead gets, for then what is fed is what fills the layer.
-    InputError BAD_VALUE without a bead model, or where beads would lie farther apart than they are wide."""
+    """The section with numbers in place of the words. The layer height is the height of a straight
+    bead. The spacing is chosen so that spacing times layer height equals the wire volume per
+    millimetre of bead: then the fed wire fills the layer. InputError BAD_VALUE without a bead
+    model, or if the spacing would exceed the bead width.
+    """
     key = HEIGHT if section.get(HEIGHT) == WORD else SPACING
     model = bead_table.process_model(process)
     if model is None:
@@ -37,12 +39,14 @@ def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, A
             "process.bead_model or a process.material that has one",
         )
     speed = model.straight_speed(process.bead_width)
-    found = dict(section)
-    if found.get(HEIGHT) == WORD:
+    section_with_numbers = dict(section)
+    if section_with_numbers.get(HEIGHT) == WORD:
         height = float(model.heights(np.array([speed]), np.array([np.inf]))[0])
-        found[HEIGHT] = f"{height!r} mm"
-    if found.get(SPACING) == WORD:
-        height = quantity.read(found.get(HEIGHT, 1.0), f.LENGTH, f"strategy.{HEIGHT}")
+        section_with_numbers[HEIGHT] = f"{height!r} mm"
+    if section_with_numbers.get(SPACING) == WORD:
+        height = quantity.read(
+            section_with_numbers.get(HEIGHT, 1.0), f.LENGTH, f"strategy.{HEIGHT}"
+        )
         if not height > 0.0:
             raise InputError(
                 "BAD_VALUE",
@@ -61,5 +65,5 @@ def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, A
                 spacing,
                 process.bead_width,
             )
-        found[SPACING] = f"{spacing!r} mm"
-    return found
+        section_with_numbers[SPACING] = f"{spacing!r} mm"
+    return section_with_numbers

@@ -12,11 +12,11 @@ from freecad_am.core.issues import InputError
 
 from .job import Job
 
-LARGE = 4_000_000  # bytes of results, beyond which they are not deflated once more
+MAX_DEFLATED_BYTES = 4_000_000  # bytes of results, beyond which they are not deflated once more
 _LEVEL = "CompressionLevel"
 
 
-def made(job: Job) -> Any:
+def new_document(job: Job) -> Any:
     """An empty document for a job."""
     import FreeCAD
 
@@ -28,7 +28,7 @@ def made(job: Job) -> Any:
 def save(document: Any, path: str) -> None:
     """Save it into a file. Raises InputError UNWRITABLE."""
     try:
-        with _without_deflating(document):
+        with _disable_deflating(document):
             document.saveAs(path)
     except (OSError, RuntimeError) as error:
         raise InputError(
@@ -39,24 +39,25 @@ def save(document: Any, path: str) -> None:
 
 
 @contextmanager
-def _without_deflating(document: Any) -> Iterator[None]:
-    """While a document of large results is saved FreeCAD leaves its parts as they are: results are packed already, and to
-    pack them once more takes 50 ns a byte for a twentieth of them. The user's own choice comes back."""
+def _disable_deflating(document: Any) -> Iterator[None]:
+    """Save a document of large results without deflating: results are packed already, and packing
+    again takes 50 ns a byte and saves a twentieth. The user's setting is restored.
+    """
     results = sum(
         thing.MemSize for thing in document.Objects if thing.isDerivedFrom("App::FeaturePython")
     )
-    if results < max(LARGE, 0.5 * document.MemSize):
+    if results < max(MAX_DEFLATED_BYTES, 0.5 * document.MemSize):
         yield
         return
     import FreeCAD
 
-    chosen = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Document")
-    before = chosen.GetInt(_LEVEL, -1)
-    chosen.SetInt(_LEVEL, 0)
+    settings = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Document")
+    old_level = settings.GetInt(_LEVEL, -1)
+    settings.SetInt(_LEVEL, 0)
     try:
         yield
     finally:
-        if before < 0:
-            chosen.RemInt(_LEVEL)
+        if old_level < 0:
+            settings.RemInt(_LEVEL)
         else:
-            chosen.SetInt(_LEVEL, before)
+            settings.SetInt(_LEVEL, old_level)

@@ -22,18 +22,21 @@ from .part_source import PartSource, part_of
 
 
 def kept_clear(kind: str) -> tuple[str, ...]:
-    """The keys of `strategy` that are not parameters of the family: its kind, and what is picked of the part."""
+    """The keys of `strategy` that are not parameters of the family: its kind, and selections on the
+    part.
+    """
     return ("kind", "guide", "start_faces") if kind == "solid" else ("kind",)
 
 
 def process_of(section: Any, strategy: LayerParameters | None = None) -> ProcessParameters:
-    """The process, what its material says filled in; where solids are filled a bead width that the job gives is meant,
-    whatever it is. strategy: None of a program of several features, which may differ from it, or where none is chosen yet.
-    InputError, of its bead table too."""
-    given = job_classes.as_text(material.filled_in(fields.mapping(section, "process")))
-    if strategy is not None and "bead_width" in given and family_of(strategy).filled:
-        given = {"fill_width": "bead_width", **given}
-    process = fields.build(ProcessParameters, given, "process")
+    """The process, completed from its material; for filled solids the job's bead width counts, at
+    any value. strategy: None for a program of several features, which may differ, or if not chosen
+    yet. InputError, also from its bead table.
+    """
+    process_section = job_classes.as_text(material.filled_in(fields.mapping(section, "process")))
+    if strategy is not None and "bead_width" in process_section and family_of(strategy).filled:
+        process_section = {"fill_width": "bead_width", **process_section}
+    process = fields.build(ProcessParameters, process_section, "process")
     if process.bead_model != "none":
         bead_table.load(process.bead_model)
     return process
@@ -46,51 +49,51 @@ def refuse_direction(strategy: Any, build_direction: BuildDirectionParameters) -
         raise InputError("NOT_FOR_FAMILY", "build_direction.mode", family.why, build_direction.mode)
 
 
-def substrate_of(section: Any, strategy: Any, part: PartSource) -> PartSource | None:
-    """Where what a feature grows on comes from; None where it stands on the platform."""
+def substrate_of(section: Any, strategy: Any, source: PartSource) -> PartSource | None:
+    """The source of a feature's substrate; None for the platform."""
     family = family_of(strategy)
-    if part.start_edges and not family.edges:
+    if source.start_edges and not family.edges:
         raise InputError(
             "NOT_FOR_FAMILY",
             "part.start_edges",
             "only strategy.kind surface starts from edges; leave them out",
         )
-    table = part.file.lower().endswith(tuple(POINT_FILES))
-    if family.kind != "curves" and (part.edges or table):
-        where, what = ("part.edges", "edges") if part.edges else ("part.file", "tables of points")
+    table = source.file.lower().endswith(tuple(POINT_FILES))
+    if family.kind != "curves" and (source.edges or table):
+        where, what = ("part.edges", "edges") if source.edges else ("part.file", "tables of points")
         raise InputError(
             "NOT_FOR_FAMILY", where, "only strategy.kind curves lays {} as beads; use it", what
         )
-    if table and (part.edges or part.faces):
+    if table and (source.edges or source.faces):
         raise InputError(
             "NOT_FOR_FAMILY",
-            "part.edges" if part.edges else "part.faces",
+            "part.edges" if source.edges else "part.faces",
             "a table of points has no edges and no faces; leave them out",
         )
-    if part.faces and not family.faces:
+    if source.faces and not family.faces:
         raise InputError(
             "NOT_FOR_FAMILY", "part.faces", "solids are deposited as a whole; leave the faces out"
         )
     if family.substrate == NEEDED:
         if section is None:
             return None
-        found = part_of(fields.mapping(section, "substrate"), "substrate")
-        if found.faces:
+        substrate = part_of(fields.mapping(section, "substrate"), "substrate")
+        if substrate.faces:
             raise InputError(
                 "NOT_YET",
                 "substrate.faces",
                 "{!r} is not supported yet; use the whole solid",
-                ", ".join(found.faces),
+                ", ".join(substrate.faces),
             )
-        if not part.start_edges and _alike(part, found):
+        if not source.start_edges and _alike(source, substrate):
             raise InputError(
                 "OWN_SUBSTRATE",
                 "substrate",
                 "the wall and what it grows on are the same, {}; give the part that is there "
                 "before it, or leave the substrate out where the wall starts on the platform or from part.start_edges",
-                os.path.basename(found.file),
+                os.path.basename(substrate.file),
             )
-        return found
+        return substrate
     if section is not None and family.substrate == NONE:
         raise InputError(
             "NOT_FOR_FAMILY", "substrate", "parts of revolution grow on no substrate; leave it out"
@@ -98,11 +101,11 @@ def substrate_of(section: Any, strategy: Any, part: PartSource) -> PartSource | 
     return None if section is None else part_of(fields.mapping(section, "substrate"), "substrate")
 
 
-def _alike(part: PartSource, other: PartSource) -> bool:
+def _alike(source: PartSource, other_source: PartSource) -> bool:
     """Whether two sources are the same, whichever faces are meant."""
-    return os.path.realpath(part.file) == os.path.realpath(other.file) and (
-        (part.object, part.solids, part.settings, part.scale)
-        == (other.object, other.solids, other.settings, other.scale)
+    return os.path.realpath(source.file) == os.path.realpath(other_source.file) and (
+        (source.object, source.solids, source.settings, source.scale)
+        == (other_source.object, other_source.solids, other_source.settings, other_source.scale)
     )
 
 
@@ -117,16 +120,16 @@ def strategy_of(section: Any) -> LayerParameters:
             {key: value for key, value in section.items() if key != "layers"},
         )
     if kind == "developable":
-        section = _with_base(section)
+        section = _base_as_text(section)
     if kind in ("solid", "curves"):
-        section = with_direction(section)
+        section = direction_as_text(section)
     if kind == "curves":
-        section = _with_roles(section)
+        section = _roles_as_text(section)
     factory: type[LayerParameters] = KINDS[kind].parameters
     return fields.build(factory, section, "strategy", also=kept_clear(kind))
 
 
-def with_direction(section: dict[str, Any]) -> dict[str, Any]:
+def direction_as_text(section: dict[str, Any]) -> dict[str, Any]:
     """The section with a direction, a list of three numbers, as their text."""
     direction = section.get("direction")
     if not isinstance(direction, list):
@@ -135,7 +138,7 @@ def with_direction(section: dict[str, Any]) -> dict[str, Any]:
     return {**section, "direction": " ".join(f"{number:.15g}" for number in numbers)}
 
 
-def _with_roles(section: dict[str, Any]) -> dict[str, Any]:
+def _roles_as_text(section: dict[str, Any]) -> dict[str, Any]:
     """The section with roles, a list of names, as their text."""
     roles = section.get("roles")
     if not isinstance(roles, list):
@@ -146,7 +149,7 @@ def _with_roles(section: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _with_base(section: dict[str, Any]) -> dict[str, Any]:
+def _base_as_text(section: dict[str, Any]) -> dict[str, Any]:
     """The section with a base of `auto` left out, and the axis, a point and a direction, as the text of six numbers."""
     base = section.get("base")
     if base == "auto":

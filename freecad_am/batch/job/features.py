@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The features of a job: what is deposited, on what, cut how; each with keys of its own, over those of the job."""
+"""The features of a job: source, substrate and strategy; each with its own keys over the job's."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from freecad_am.sections import fields, tree
 
 from . import auto_layers
 from .feature_sections import (
+    direction_as_text,
     kept_clear,
     process_of,
     refuse_direction,
     strategy_of,
     substrate_of,
-    with_direction,
 )
 from .part_source import PartSource, faces_of, fixtures_of, guide_of, part_of
 from .scan_source import ScanSource, scan_of, split
@@ -44,9 +44,11 @@ KEYS = ("name", "part", "substrate", "fixtures", "strategy", "build_direction", 
 
 @dataclass(frozen=True)
 class JobFeature:
-    """What is deposited, and how. `substrate` is there as the family of the strategy has it (`core.strategies.families`), or
-    where what was deposited before may be it. `guide` of layers along one; None: their centre line. `start_faces` of the
-    part, that curved layers start on. `scan` of the substrate, that layers are fitted to."""
+    """A deposit and its parameters. `substrate` is set if the family of the strategy uses it
+    (`core.strategies.families`), or if an earlier deposit may serve. `guide`: of layers along one;
+    None for their centre line. `start_faces`: faces of the part on which curved layers start.
+    `scan`: of the substrate, to which layers are fitted.
+    """
 
     name: str
     part: PartSource
@@ -75,13 +77,13 @@ def one_feature(values: dict[str, Any], name: str) -> JobFeature:
     section = values.get("strategy")
     if isinstance(section, dict) and section.get("kind") == AUTO.kind:
         return _left_open(values, section, name)
-    strategy = strategy_of(_with_fuse(values.get("strategy") or {}, part_section))
+    strategy = strategy_of(_add_fuse(values.get("strategy") or {}, part_section))
     process = process_of(values.get("process") or {}, strategy)
     build_direction = fields.build(
         BuildDirectionParameters, values.get("build_direction") or {}, "build_direction"
     )
     refuse_direction(strategy, build_direction)
-    part = part_of({key: value for key, value in part_section.items() if key != "fuse"})
+    source = part_of({key: value for key, value in part_section.items() if key != "fuse"})
     guide = guide_of((values.get("strategy") or {}).get("guide"), part_section)
     if guide is not None and getattr(strategy, "layers", "") != "along":
         raise InputError(
@@ -102,8 +104,8 @@ def one_feature(values: dict[str, Any], name: str) -> JobFeature:
     ground, scanned = split(values.get("substrate"))
     return JobFeature(
         name,
-        part,
-        substrate_of(ground, strategy, part),
+        source,
+        substrate_of(ground, strategy, source),
         fixtures_of(values.get("fixtures")),
         strategy,
         build_direction,
@@ -115,14 +117,14 @@ def one_feature(values: dict[str, Any], name: str) -> JobFeature:
 
 
 def _left_open(values: dict[str, Any], section: dict[str, Any], name: str) -> JobFeature:
-    """A feature whose family is chosen once its part is known; keys may be those of any family."""
+    """A feature whose family is chosen once its part is known; keys of any family are allowed."""
     fields.known_keys(
         section,
         ("kind", *sorted({key for family in KINDS.values() for key in _keys(family)})),
         "strategy",
     )
     common = {key: value for key, value in section.items() if key in _keys(AUTO)}
-    part = {
+    part_section = {
         key: value for key, value in fields.mapping(values["part"], "part").items() if key != "fuse"
     }
     ground, _ = split(values.get("substrate"))
@@ -131,7 +133,7 @@ def _left_open(values: dict[str, Any], section: dict[str, Any], name: str) -> Jo
     )
     return JobFeature(
         name,
-        part_of(part),
+        part_of(part_section),
         substrate,
         fixtures_of(values.get("fixtures")),
         fields.build(LayerParameters, common, "strategy"),
@@ -154,9 +156,10 @@ def leans(feature: JobFeature, strategy: LayerParameters) -> bool:
 
 
 def chosen(feature: JobFeature, kind: str, layers: str, mend: float, mode: str = "") -> JobFeature:
-    """The feature with the family that was left open: of its keys those that the family has. mend: mm across of the largest
-    hole that is closed where the job does not say, 0 for what is usual. mode: of the build direction, where it is not as
-    the job says. Raises InputError as any."""
+    """The feature with its open family chosen and the keys of that family. mend: width, mm, of the
+    largest hole that is closed without a job setting, 0 for the default. mode: of the build
+    direction, if it differs from the job's. Raises InputError like other features.
+    """
     values, family = dict(feature.sections), KINDS[kind]
     section = {key: value for key, value in values["strategy"].items() if key in _keys(family)}
     proposed = {
@@ -175,9 +178,9 @@ def chosen(feature: JobFeature, kind: str, layers: str, mend: float, mode: str =
 
 def planes_of(feature: JobFeature) -> SolidParameters:
     """The direction in which planes would be stacked and how far apart, of a feature whose family is left open."""
-    section = with_direction(feature.sections["strategy"])
-    given = {key: section[key] for key in ("direction", "layer_height") if key in section}
-    return fields.build(SolidParameters, given, "strategy")
+    section = direction_as_text(feature.sections["strategy"])
+    plane_keys = {key: section[key] for key in ("direction", "layer_height") if key in section}
+    return fields.build(SolidParameters, plane_keys, "strategy")
 
 
 def _keys(family: Family) -> tuple[str, ...]:
@@ -193,28 +196,28 @@ def several(values: dict[str, Any], lines: tree.Tree) -> tuple[JobFeature, ...]:
             "features",
             "features are a list; write features: [{name: hub, part: {file: hub.step}}, ...]",
         )
-    made: list[JobFeature] = []
+    features: list[JobFeature] = []
     for number, entry in enumerate(entries):
-        here = f"features[{number}]"
-        own = fields.mapping(entry, here)
-        fields.known_keys(own, KEYS, here)
+        where = f"features[{number}]"
+        feature_section = fields.mapping(entry, where)
+        fields.known_keys(feature_section, KEYS, where)
         name = (
-            fields.text(own["name"], f"{here}.name").strip()
-            if own.get("name") is not None
+            fields.text(feature_section["name"], f"{where}.name").strip()
+            if feature_section.get("name") is not None
             else f"feature {number + 1}"
         )
-        if name in [one.name for one in made]:
+        if name in [feature.name for feature in features]:
             raise InputError(
                 "BAD_VALUE",
-                f"{here}.name",
+                f"{where}.name",
                 "{!r} is the name of another feature; give each its own",
                 name,
             )
         try:
-            made.append(one_feature(_with_defaults(own, values), name))
+            features.append(one_feature(_merge_defaults(feature_section, values), name))
         except InputError as error:
             raise about_feature(error, number, name, lines) from None
-    return tuple(made)
+    return tuple(features)
 
 
 def in_words_of_job(error: InputError, label: str = "Feature") -> InputError:
@@ -239,14 +242,24 @@ def about_feature(error: InputError, number: int, name: str, lines: tree.Tree) -
     return InputError(error.code, where, "feature {}: {}", name, error.message)
 
 
-def _with_defaults(own: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
-    """The sections of a feature over those of the top level; of these that is left out which its family does not have."""
-    found = {key: top[key] for key in KEYS[1:] if top.get(key) is not None}
-    if isinstance(own.get("part"), dict) and "file" in own["part"]:
-        found.pop("part", None)  # faces and objects are those of a file
-    if isinstance(own.get("substrate"), dict) and "file" in own["substrate"]:
-        found.pop("substrate", None)
-    mixed = {**found, **{key: _over(found.get(key), own[key]) for key in KEYS[1:] if key in own}}
+def _merge_defaults(feature_section: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
+    """The sections of a feature over the top level's, without top-level keys that its family lacks."""
+    defaults = {key: top[key] for key in KEYS[1:] if top.get(key) is not None}
+    if isinstance(feature_section.get("part"), dict) and "file" in feature_section["part"]:
+        defaults.pop("part", None)  # faces and objects belong to a file
+    if (
+        isinstance(feature_section.get("substrate"), dict)
+        and "file" in feature_section["substrate"]
+    ):
+        defaults.pop("substrate", None)
+    mixed = {
+        **defaults,
+        **{
+            key: _over(defaults.get(key), feature_section[key])
+            for key in KEYS[1:]
+            if key in feature_section
+        },
+    }
     strategy = mixed.get("strategy")
     kind = strategy.get("kind", "revolution") if isinstance(strategy, dict) else None
     if not isinstance(kind, str) or kind not in KINDS:
@@ -255,17 +268,19 @@ def _with_defaults(own: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
     if kind == "solid" and strategy.get("layers") == "developable":
         kind = "developable"
     family = KINDS[kind]
-    given = own.get("strategy") if isinstance(own.get("strategy"), dict) else {}
-    known = (*kept_clear(kind), *_keys(family))
+    own_strategy = (
+        feature_section.get("strategy") if isinstance(feature_section.get("strategy"), dict) else {}
+    )
+    allowed_keys = (*kept_clear(kind), *_keys(family))
     mixed["strategy"] = {
-        key: value for key, value in strategy.items() if key in known or key in given
+        key: value for key, value in strategy.items() if key in allowed_keys or key in own_strategy
     }
-    if "substrate" not in own and family.substrate == NONE:
+    if "substrate" not in feature_section and family.substrate == NONE:
         mixed.pop("substrate", None)
     direction = mixed.get("build_direction")
     if (
         isinstance(direction, dict)
-        and "mode" not in (own.get("build_direction") or {})
+        and "mode" not in (feature_section.get("build_direction") or {})
         and (direction.get("mode") not in family.modes)
     ):
         mixed["build_direction"] = {key: value for key, value in direction.items() if key != "mode"}
@@ -273,25 +288,25 @@ def _with_defaults(own: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
     if (
         isinstance(process, dict)
         and not family.filled
-        and "bead_model" not in (own.get("process") or {})
+        and "bead_model" not in (feature_section.get("process") or {})
     ):
         mixed["process"] = {key: value for key, value in process.items() if key != "bead_model"}
     return mixed
 
 
-def _over(base: Any, own: Any) -> Any:
+def _over(base: Any, override: Any) -> Any:
     """A section over another, key by key."""
-    if not isinstance(base, dict) or not isinstance(own, dict):
-        return own
-    return {**base, **{key: _over(base.get(key), value) for key, value in own.items()}}
+    if not isinstance(base, dict) or not isinstance(override, dict):
+        return override
+    return {**base, **{key: _over(base.get(key), value) for key, value in override.items()}}
 
 
-def _with_fuse(section: Any, part: dict[str, Any]) -> Any:
+def _add_fuse(section: Any, part_section: dict[str, Any]) -> Any:
     """The section of the strategy with what the part says about solids that touch."""
-    if "fuse" not in part:
+    if "fuse" not in part_section:
         return section
     if fields.mapping(section, "strategy").get("kind") != "solid":
         raise InputError(
             "NOT_FOR_FAMILY", "part.fuse", "only strategy.kind solid fuses solids; leave it out"
         )
-    return {**section, "fuse": part["fuse"]}
+    return {**section, "fuse": part_section["fuse"]}

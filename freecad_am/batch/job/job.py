@@ -47,9 +47,10 @@ _LONGEST_NAME = 200  # bytes, so that <name>.FCStd fits every file system
 
 @dataclass(frozen=True)
 class Job:
-    """A checked job. features: one or more, in the order of the file; sequence: in which they are deposited. process: of the
-    program; features may differ from it. `cell` or `program` None: the stages that need them are left out.
-    place: where the command of that name tries to put the part."""
+    """A checked job. features: one or more, in the order of the file; sequence: the order of
+    deposition. process: of the program; features may differ. `cell` or `program` None: the stages
+    that need them are left out. place: poses that the command `place` tries.
+    """
 
     path: str
     name: str
@@ -100,7 +101,7 @@ def read_job(path: str) -> Job:
 
 @dataclass(frozen=True)
 class WithoutPart:
-    """What a job file without a part tells: where and how a program runs."""
+    """The content of a job file without a part: cell, joints and program."""
 
     cell: CellParameters
     joints: JointParameters
@@ -108,7 +109,8 @@ class WithoutPart:
 
 
 def read_without_part(path: str) -> WithoutPart:
-    """The cell, joints and program of a job file that has no part yet; its other sections are checked by their keys alone.
+    """The cell, joints and program of a job file that has no part yet; of its other sections only
+    the keys are checked.
 
     Raises InputError that names file, key and what to do; NO_CELL without a cell.
     """
@@ -162,7 +164,7 @@ def _checked(job: tree.Tree, path: str) -> Job:
         features = several(values, job)
     cell = job_cell.read(values.get("cell"), folder)
     program = _program(values.get("program"), cell)
-    scan = next((one.scan for one in features if one.scan is not None), None)
+    scan = next((feature.scan for feature in features if feature.scan is not None), None)
     if scan is not None and len(features) > 1:
         raise InputError(
             "NOT_YET",
@@ -213,16 +215,18 @@ def _name(name: Any, path: str) -> str:
 
 
 def _joints(section: Any) -> JointParameters:
-    one = fields.mapping(section, "joints").get("compare")
+    comparison = fields.mapping(section, "joints").get("compare")
     return fields.build(
         JointParameters,
-        {**section, "compare": [one]} if isinstance(one, str) else section,
+        {**section, "compare": [comparison]} if isinstance(comparison, str) else section,
         "joints",
     )
 
 
 def _resumed(program: ProgramParameters, layer: int) -> ProgramParameters:
-    """The program from this layer on, unless it says itself where it resumes: what lies below is there."""
+    """The program from this layer on, unless it says itself where it resumes: the layers below
+    exist.
+    """
     if program.start_at.layer or program.start_at.bead:
         return program
     return replace(program, start_at=replace(program.start_at, layer=layer))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Material files: what is known of a wire and its beads, which fills in what the section `process` of a job leaves out.
+"""Material files: data of a wire and its beads, which complete the section `process` of a job.
 
-`process.material` names one that is built in, or the path of a YAML file from the job's folder.
+`process.material` names a built-in file, or the path of a YAML file from the job's folder.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ CARRIED = ("density", "temperature", "gas", "stand_off", "travel_speed")  # as t
 KEYS = ("name", "source", *CARRIED, "wire", "speed_range", "schedules", "beads")
 NEEDED = ("source", "density")
 WIRE = ("diameter", "feed")
-ALL = "all"  # in schedules: of beads whose class is not named
+ALL = "all"  # in schedules: beads of any class that is not named
 
 
 def built_in() -> list[str]:
@@ -48,12 +48,12 @@ def filled_in(section: Any) -> Any:
 
 
 def _file(name: str) -> Path:
-    """The file that a name means: one that is there, by its absolute name, else one that is built in."""
+    """The file of a name: an existing one, by its absolute name, else a built-in one."""
     if os.path.isabs(name) and is_there(name):
         return Path(name)
-    known = FOLDER / f"{name.removesuffix(ENDING)}{ENDING}"
+    built_in_file = FOLDER / f"{name.removesuffix(ENDING)}{ENDING}"
     if name.removesuffix(ENDING) in built_in():
-        return known
+        return built_in_file
     raise InputError(
         "NO_FILE",
         KEY,
@@ -120,7 +120,7 @@ def _range(value: Any) -> tuple[float | None, float | None]:
 def _checked(
     stated: dict[str, Any], values: dict[str, Any], slowest: float | None, fastest: float | None
 ) -> dict[str, Any]:
-    """The wire; what numbers there are is looked at, so that it is told with the line of this file."""
+    """The wire; its numbers are checked here, so that errors name the line of the material file."""
     for key, kind in (
         ("density", f.NUMBER),
         ("temperature", f.NUMBER),
@@ -207,33 +207,36 @@ def _beads(values: dict[str, Any], file: Path, slowest: float | None, fastest: f
         )
     feed = (values.get("wire") or {}).get("feed")
     if feed not in (None, "auto"):
-        given = quantity.read(feed, f.SPEED, "wire.feed")
-        least, most = model.feeds or (model.wire_feed, model.wire_feed)
-        if not 0.99 * least <= given <= 1.01 * most:
+        wire_feed = quantity.read(feed, f.SPEED, "wire.feed")
+        min_feed, max_feed = model.feeds or (model.wire_feed, model.wire_feed)
+        if not 0.99 * min_feed <= wire_feed <= 1.01 * max_feed:
             raise InputError(
                 "BAD_VALUE",
                 "wire.feed",
                 "{:.4g} mm/s is not a wire feed of {}, whose beads were laid at {:.4g} to {:.4g} "
                 "mm/s; leave it out, or give one of these",
-                given,
+                wire_feed,
                 os.path.basename(name),
-                least,
-                most,
+                min_feed,
+                max_feed,
             )
     return name
 
 
 def _over(stated: dict[str, Any], section: dict[str, Any]) -> dict[str, Any]:
-    """What a job says over what its material does, key by key; classes that the job has as a text are its own."""
-    found = {**stated, **{key: value for key, value in section.items() if key != "material"}}
+    """The job's values over its material's, key by key; classes given as a text in the job replace
+    the material's.
+    """
+    merged = {**stated, **{key: value for key, value in section.items() if key != "material"}}
     for key in ("wire", "classes"):
-        own = section.get(key)
-        if isinstance(own, dict) and key in stated:
-            found[key] = {**stated[key], **own}
+        job_section = section.get(key)
+        if isinstance(job_section, dict) and key in stated:
+            merged[key] = {**stated[key], **job_section}
             if key == "classes":
-                found[key] |= {
-                    name: {**stated[key][name], **(one or {})}
-                    for name, one in own.items()
-                    if name in stated[key] and (one is None or isinstance(one, dict))
+                merged[key] |= {
+                    name: {**stated[key][name], **(class_values or {})}
+                    for name, class_values in job_section.items()
+                    if name in stated[key]
+                    and (class_values is None or isinstance(class_values, dict))
                 }
-    return found
+    return merged

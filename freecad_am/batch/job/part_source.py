@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where the shapes of a job come from: files, and what of them is meant."""
+"""Sources of the shapes of a job: files, and selections of their content."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ _SOLID = re.compile(r"Solid[1-9]\d*", re.ASCII)
 
 @dataclass(frozen=True)
 class PartSource:
-    """Where a shape comes from. `settings` are (object, property, text) set in an FCStd part before it is used. scale: mm
-    of one unit of a mesh file that does not tell it. solids: those of the shape that are meant, all where none is named.
-    edges: those of a guide, likewise."""
+    """The source of a shape. `settings` are (object, property, text) set in an FCStd part before it
+    is used. scale: mm of one unit of a mesh file that does not state it. solids: selected solids of
+    the shape, empty for all. edges: selected edges of a guide, likewise.
+    """
 
     file: str
     object: str | None = None
@@ -42,7 +43,7 @@ def fixtures_of(section: Any) -> tuple[PartSource, ...]:
         raise InputError(
             "BAD_VALUE", "fixtures", "fixtures are a list; write fixtures: [{file: clamp.step}]"
         )
-    found = []
+    fixtures = []
     for number, entry in enumerate(entries):
         key = f"fixtures[{number}]"
         fixture = part_of(fields.mapping(entry, key), key)
@@ -50,8 +51,8 @@ def fixtures_of(section: Any) -> tuple[PartSource, ...]:
             raise InputError(
                 "BAD_VALUE", f"{key}.faces", "a fixture counts as a whole; leave out its faces"
             )
-        found.append(fixture)
-    return tuple(found)
+        fixtures.append(fixture)
+    return tuple(fixtures)
 
 
 def part_of(section: dict[str, Any], key: str = "part") -> PartSource:
@@ -97,25 +98,35 @@ def part_of(section: dict[str, Any], key: str = "part") -> PartSource:
     )
 
 
-def guide_of(given: Any, part: dict[str, Any]) -> PartSource | None:
-    """Where the guide of a strategy comes from: the file and object of the section `part`, unless it tells its own; None for
-    auto. InputError naming key and what to do."""
+def guide_of(value: Any, part_section: dict[str, Any]) -> PartSource | None:
+    """The source of a strategy's guide: the file and object of the section `part_section`, unless it names
+    its own; None for auto. InputError naming key and what to do.
+    """
     key = "strategy.guide"
-    if given is None or given == "auto":
+    if value is None or value == "auto":
         return None
-    if not isinstance(given, dict):
+    if not isinstance(value, dict):
         raise InputError(
             "BAD_VALUE",
             key,
             "{} is not a guide; write {{edges: [Edge1]}}, {{object: Spine}}, {{file: spine.step}}, or "
             "auto",
-            quantity.shown(given),
+            quantity.shown(value),
         )
-    fields.known_keys(given, ("file", "object", "edges", "set"), key)
-    own = {name: given[name] for name in ("file", "object", "set") if name in given}
-    if "file" not in own:
-        own = {**{name: part[name] for name in ("file", "object", "set") if name in part}, **own}
-    return replace(part_of(own, key), edges=_names(given.get("edges"), f"{key}.edges", _EDGE))
+    fields.known_keys(value, ("file", "object", "edges", "set"), key)
+    guide_section = {name: value[name] for name in ("file", "object", "set") if name in value}
+    if "file" not in guide_section:
+        guide_section = {
+            **{
+                name: part_section[name]
+                for name in ("file", "object", "set")
+                if name in part_section
+            },
+            **guide_section,
+        }
+    return replace(
+        part_of(guide_section, key), edges=_names(value.get("edges"), f"{key}.edges", _EDGE)
+    )
 
 
 def faces_of(value: Any, key: str) -> tuple[str, ...]:
@@ -132,13 +143,13 @@ def _scale(value: Any, file: str, key: str) -> float:
     return scale
 
 
-def _names(value: Any, key: str, wanted: re.Pattern[str]) -> tuple[str, ...]:
+def _names(value: Any, key: str, pattern: re.Pattern[str]) -> tuple[str, ...]:
     """Names of faces, edges or solids."""
     names = [value] if isinstance(value, str) else value or []
     if not isinstance(names, list) or not all(
-        isinstance(name, str) and wanted.fullmatch(name) for name in names
+        isinstance(name, str) and pattern.fullmatch(name) for name in names
     ):
-        kind = wanted.pattern.partition("[")[0]
+        kind = pattern.pattern.partition("[")[0]
         raise InputError(
             "BAD_VALUE",
             key,
@@ -151,13 +162,13 @@ def _names(value: Any, key: str, wanted: re.Pattern[str]) -> tuple[str, ...]:
     return tuple(names)
 
 
-def _settings(section: Any, part: str) -> list[tuple[str, str, str]]:
+def _settings(section: Any, key_of_part: str) -> list[tuple[str, str, str]]:
     settings = []
-    for name, properties in fields.mapping(section, f"{part}.set").items():
-        for key, value in fields.mapping(properties, f"{part}.set.{name}").items():
+    for name, properties in fields.mapping(section, f"{key_of_part}.set").items():
+        for key, value in fields.mapping(properties, f"{key_of_part}.set.{name}").items():
             if isinstance(value, (dict, list)) or value is None:
                 raise InputError(
-                    "BAD_VALUE", f"{part}.set.{name}.{key}", "give one value such as 45 mm"
+                    "BAD_VALUE", f"{key_of_part}.set.{name}.{key}", "give one value such as 45 mm"
                 )
             settings.append(
                 (name, key, quantity.shown(value) if isinstance(value, bool) else str(value))

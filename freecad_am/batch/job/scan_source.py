@@ -14,14 +14,15 @@ from freecad_am.core.parameters.scan import PREFIX, ScanParameters
 from freecad_am.sections import fields as job_fields
 
 FITS = (AUTO, BEST, NONE)
-OWN = ("scan", "scan_unit", "scan_fit", "scan_pairs")
-KEYS = (*OWN, *(entry.name for entry in fields(ScanParameters)))
+SOURCE_KEYS = ("scan", "scan_unit", "scan_fit", "scan_pairs")
+KEYS = (*SOURCE_KEYS, *(entry.name for entry in fields(ScanParameters)))
 
 
 @dataclass(frozen=True)
 class ScanSource:
-    """file: of the points. unit, fit, pairs: as an inspection has them; fit auto takes them as they were measured where they
-    lie on the substrate so."""
+    """file: of the points. unit, fit, pairs: as in an inspection; fit auto takes the points as
+    measured if they match the substrate.
+    """
 
     file: str
     unit: str
@@ -40,19 +41,19 @@ def split(section: Any) -> tuple[Any, dict[str, Any]]:
     )
 
 
-def scan_of(given: dict[str, Any], strategy: Any) -> ScanSource | None:
-    """The scan of these keys of a substrate; None without any. InputError naming the key."""
-    if not given:
+def scan_of(scan_keys: dict[str, Any], strategy: Any) -> ScanSource | None:
+    """The scan from keys of a substrate; None without any. InputError naming the key."""
+    if not scan_keys:
         return None
-    if "scan" not in given:
-        key = next(iter(given))
+    if "scan" not in scan_keys:
+        key = next(iter(scan_keys))
         raise InputError(
             "BAD_VALUE",
             f"{PREFIX}.{key}",
             "there is no scan; give its file as {}.scan, or leave it",
             PREFIX,
         )
-    file = job_fields.text(given["scan"], f"{PREFIX}.scan")
+    file = job_fields.text(scan_keys["scan"], f"{PREFIX}.scan")
     if not is_there(file):
         raise InputError(
             "NO_FILE",
@@ -61,12 +62,14 @@ def scan_of(given: dict[str, Any], strategy: Any) -> ScanSource | None:
             file,
         )
     for key, choices in (("scan_unit", (AUTO, *UNITS)), ("scan_fit", FITS)):
-        if given.get(key, AUTO) not in choices:
-            raise f.unknown_choice(f"{PREFIX}.{key}", given[key], choices)
+        if scan_keys.get(key, AUTO) not in choices:
+            raise f.unknown_choice(f"{PREFIX}.{key}", scan_keys[key], choices)
     parameters = job_fields.build(
-        ScanParameters, {key: value for key, value in given.items() if key not in OWN}, PREFIX
+        ScanParameters,
+        {key: value for key, value in scan_keys.items() if key not in SOURCE_KEYS},
+        PREFIX,
     )
-    fit, pairs = given.get("scan_fit", AUTO), str(given.get("scan_pairs", ""))
+    fit, pairs = scan_keys.get("scan_fit", AUTO), str(scan_keys.get("scan_pairs", ""))
     try:
         InspectionParameters(pairs=pairs)
     except InputError as error:
@@ -89,4 +92,4 @@ def scan_of(given: dict[str, Any], strategy: Any) -> ScanSource | None:
             "are: leave it out",
             kind if kind != "solid" else f"layers: {layers}",
         )
-    return ScanSource(file, given.get("scan_unit", AUTO), fit, pairs, parameters)
+    return ScanSource(file, scan_keys.get("scan_unit", AUTO), fit, pairs, parameters)

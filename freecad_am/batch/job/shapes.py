@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The shapes of a feature of a job in a document, and the feature that is made of them."""
+"""The shapes of a feature of a job in a document, and the feature made from them."""
 
 from __future__ import annotations
 
@@ -50,13 +50,14 @@ class Shapes:
             if len(job.features) > 1:
                 self._set_apart()
             self.fixtures = [
-                bring(document, one, f"fixtures[{k}]") for k, one in enumerate(self.of.fixtures)
+                bring(document, fixture, f"fixtures[{k}]")
+                for k, fixture in enumerate(self.of.fixtures)
             ]
         except InputError as error:
-            raise self.placed(error) from None
+            raise self.name_feature(error) from None
 
-    def placed(self, error: InputError) -> InputError:
-        """An error about this feature, naming it where there are several."""
+    def name_feature(self, error: InputError) -> InputError:
+        """An error about the feature; it names the feature if the job has several."""
         if len(self.job.features) == 1:
             return error
         return about_feature(error, self.number, self.of.name, self.job.tree)
@@ -67,15 +68,17 @@ class Shapes:
             return None
         from freecad_am.core.parameters.filled import GEODESIC, PLANES
         from freecad_am.objects.planned.proposed_family import (
-            proposed,  # what it imports takes long
+            proposed,  # its imports take long
         )
 
         ground = (
-            next(iter(self._touched(earlier)), None) if self.substrate is None else self.substrate
+            next(iter(self._touching_parts(earlier)), None)
+            if self.substrate is None
+            else self.substrate
         )
         try:
             planes = planes_of(self.of)
-            found = proposed(
+            proposal = proposed(
                 snapshot_of(self.part),
                 self.faces,
                 None if ground is None else snapshot_of(ground),
@@ -86,22 +89,25 @@ class Shapes:
                 direction=planes.stacking(),
                 layer_height=planes.layer_height,
             )
-            if found.layers == GEODESIC and self.fails:
-                found = replace(
-                    found, layers=PLANES, reason=found.reason + INSTEAD.format(self.fails)
+            if proposal.layers == GEODESIC and self.fails:
+                proposal = replace(
+                    proposal, layers=PLANES, reason=proposal.reason + INSTEAD.format(self.fails)
                 )
-            of = chosen(self.of, found.kind, found.layers, found.mend)
-            if self.fails and leans(self.of, of.strategy):
-                found = replace(found, reason=found.reason + FIXED.format(self.fails))
-                of = chosen(self.of, found.kind, found.layers, found.mend, UPRIGHT)
-            self.of = of
+            chosen_feature = chosen(self.of, proposal.kind, proposal.layers, proposal.mend)
+            if self.fails and leans(self.of, chosen_feature.strategy):
+                proposal = replace(proposal, reason=proposal.reason + FIXED.format(self.fails))
+                chosen_feature = chosen(
+                    self.of, proposal.kind, proposal.layers, proposal.mend, UPRIGHT
+                )
+            self.of = chosen_feature
         except InputError as error:
-            raise self.placed(error) from None
-        return Issue(NOTE, "PROPOSED", found.text())
+            raise self.name_feature(error) from None
+        return Issue(NOTE, "PROPOSED", proposal.text())
 
     def make_feature(self, earlier: Sequence[Any]) -> Any:
-        """The feature, of the family of its strategy. earlier: parts that are deposited before; those that it touches are
-        substrate too. Raises InputError."""
+        """The feature, of the family of its strategy. earlier: parts that are deposited before;
+        touching ones are substrate too. Raises InputError.
+        """
         several = len(self.job.features) > 1
         substrate = self._standing(earlier)
         bases = () if self.of.substrate is None else self.of.substrate.faces
@@ -114,7 +120,7 @@ class Shapes:
             "StartFaces": list(self.of.start_faces),
         }
         try:
-            made = api.make_feature_of(
+            feature = api.make_feature_of(
                 self.document,
                 family_of(self.of.strategy).kind,
                 self.part,
@@ -123,18 +129,20 @@ class Shapes:
                 links=links,
                 parameters=[self.of.strategy, self.of.build_direction],
             )
-            chord_error = float(made.ChordError)
+            chord_error = float(feature.ChordError)
             if chord_error != self.of.strategy.chord_error:
                 self.of = replace(
                     self.of, strategy=replace(self.of.strategy, chord_error=chord_error)
                 )
             self.scan = None if self.of.scan is None else self._scan(self.of.scan)
-            return made
+            return feature
         except InputError as error:
-            raise self.placed(error) from None
+            raise self.name_feature(error) from None
 
     def _scan(self, source: ScanSource) -> Any:
-        """The points of a scan laid onto the substrate; after a layer onto nothing, for what has grown is not drawn."""
+        """The points of a scan fitted to the substrate; after a layer not fitted, as the deposit is
+        not modelled.
+        """
         if source.parameters.after_layer is not None:
             return api.inspect(
                 self.document, self.part, source.file, "Scan", unit=source.unit, fit=AS_MEASURED
@@ -150,13 +158,17 @@ class Shapes:
         )
 
     def _guide(self, source: PartSource) -> tuple[Any, list[str]]:
-        """The object that layers are guided by, of the part itself or brought into the document, and edges of it."""
-        own = replace(source, edges=()) == replace(self.of.part, scale=1.0, solids=())
-        owner = self.part if own else bring(self.document, source, "strategy.guide")
+        """The object that guides layers, the part itself or one brought into the document, and its
+        edges.
+        """
+        is_of_part = replace(source, edges=()) == replace(self.of.part, scale=1.0, solids=())
+        owner = self.part if is_of_part else bring(self.document, source, "strategy.guide")
         return owner, list(source.edges) or [""]
 
     def _set_apart(self) -> None:
-        """Take of the file what is this feature's, so that others may be of the same; the feature gets its name alone."""
+        """Copy the feature's own shape out of the file, so that other features may use the file
+        too; only the feature gets its name.
+        """
         self.part.Label = os.path.basename(self.of.part.file)
         if self.faces and _has_shape(self.part):
             self.part.Shape, self.faces = owners_of(self.part.Shape, self.faces)
@@ -166,31 +178,39 @@ class Shapes:
 
     @property
     def solid(self) -> bool:
-        """Whether what is deposited is known as a solid, which others may stand on: not where faces of one are chosen."""
+        """Whether the deposit is known as a solid that can carry others: not if only faces are
+        chosen.
+        """
         return _has_shape(self.part) and bool(self.part.Shape.Solids) and not self.faces
 
-    def _touched(self, earlier: Sequence[Any]) -> list[Any]:
+    def _touching_parts(self, earlier: Sequence[Any]) -> list[Any]:
         if not _has_shape(self.part):
             return []
-        return [one for one in earlier if touching(self.part.Shape, one.Shape, TOUCHING)]
+        return [
+            earlier_part
+            for earlier_part in earlier
+            if touching(self.part.Shape, earlier_part.Shape, TOUCHING)
+        ]
 
     def _standing(self, earlier: Sequence[Any]) -> Any:
-        """What it grows on: its substrate and the earlier parts that it touches, as one object; None without any."""
-        own = [] if self.substrate is None else [self.substrate]
+        """The carrier of the feature: its substrate and the touching earlier parts, as one object;
+        None without any.
+        """
+        substrates = [] if self.substrate is None else [self.substrate]
         if not earlier or family_of(self.of.strategy).substrate == NONE:
             return self.substrate
-        touched = self._touched(earlier)
-        if len(own + touched) < 2:
-            return next(iter(own + touched), None)
-        whole = self.document.addObject("Part::Compound", "Standing")
-        whole.Label, whole.Links = f"What {self.of.name} stands on", own + touched
-        whole.recompute()
-        whole.purgeTouched()
-        return whole
+        touched = self._touching_parts(earlier)
+        if len(substrates + touched) < 2:
+            return next(iter(substrates + touched), None)
+        compound = self.document.addObject("Part::Compound", "Standing")
+        compound.Label, compound.Links = f"What {self.of.name} stands on", substrates + touched
+        compound.recompute()
+        compound.purgeTouched()
+        return compound
 
 
 def toolpath_of(job: Job, document: Any, features: Sequence[Any], cell: Any, scan: Any) -> Any:
-    """The toolpath of the features of a job, of one fitted to its scan where there is one."""
+    """The toolpath of the features of a job; for one feature fitted to its scan, if any."""
     if len(features) == 1:
         fitting = (
             None
@@ -206,7 +226,7 @@ def toolpath_of(job: Job, document: Any, features: Sequence[Any], cell: Any, sca
         cell,
         sequence=job.sequence,
         process=job.process,
-        processes=[one.process for one in job.features],
+        processes=[feature.process for feature in job.features],
     )
 
 

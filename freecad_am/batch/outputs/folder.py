@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The folder of outputs: files appear whole or not at all, inside it alone, and only our own are ever removed."""
+"""The folder of outputs: files appear completely or not at all, only inside it, and only our own
+are ever removed.
+"""
 
 from __future__ import annotations
 
@@ -28,9 +30,10 @@ LARGEST_REPORT = 1 << 28  # bytes of a report that is looked into for what an ea
 class Outputs:
     """Collects the files of a run in a hidden folder of the target and moves them into place at the end.
 
-    Use as a context: leaving it without `publish` removes everything that was collected, and the target folder is as it
-    was. Raises InputError UNWRITABLE at once where the target cannot be written, or a link leads out of it. `session` is
-    told of other runs in the same folder, and that the files are there.
+    Use as a context: leaving it without `publish` removes everything that was collected, and the
+    target folder is as it was. Raises InputError UNWRITABLE at once where the target cannot be
+    written, or a link leads outside. `session` receives messages about other runs in the same
+    folder, and about the files.
     """
 
     def __init__(self, folder: str, session: Any = None) -> None:
@@ -62,17 +65,17 @@ class Outputs:
         self._remove_made()
 
     def path(self, name: str) -> str:
-        """Where to write the file `name` (slashes for folders) of this run."""
+        """The path for writing the file `name` (slashes for folders) of the run."""
         path = os.path.join(self._staging.files, *name.split("/"))
         os.makedirs(os.path.dirname(path), exist_ok=True)
         return path
 
     def write(self, name: str, data: bytes | Iterable[str]) -> None:
-        """Write a file of this run; text in pieces, as UTF-8 with the line ends it has."""
+        """Write a file of the run; text in chunks, as UTF-8 with unchanged line ends."""
         try:
             with open(self.path(name), "wb") as stream:
                 stream.writelines(
-                    [data] if isinstance(data, bytes) else (piece.encode() for piece in data)
+                    [data] if isinstance(data, bytes) else (chunk.encode() for chunk in data)
                 )
         except OSError as error:
             raise self._unwritable(os.path.join(self.folder, *name.split("/")), error) from None
@@ -80,8 +83,8 @@ class Outputs:
     def publish(self, earlier: set[str]) -> list[str]:
         """Move every file into place; the names, sorted. Ctrl-C and requests to end wait meanwhile.
 
-        What of `earlier` this run has not is removed first: no program must stay beside a report that does not know it. The
-        report comes last.
+        Files in `earlier` without a successor are removed first: no program must stay next to a
+        report that does not list it. The report comes last.
         """
         names = sorted(_files(self._staging.files))
         with staging.uninterrupted():
@@ -129,12 +132,14 @@ def earlier_programs(folder: str) -> set[str]:
     """Names of the programs and applications of ours in program/ with their parts."""
     if os.path.islink(os.path.join(folder, PROGRAMS)):
         return set()
-    found = earlier_posts.programs(os.path.join(folder, PROGRAMS)).values()
-    return {f"{PROGRAMS}/{name}" for names in found for name in names}
+    programs_by_post = earlier_posts.programs(os.path.join(folder, PROGRAMS)).values()
+    return {f"{PROGRAMS}/{name}" for names in programs_by_post for name in names}
 
 
 def earlier_outputs(folder: str) -> set[str]:
-    """Names of the outputs of an earlier run: those its report tells of, and programs of ours in program/."""
+    """Names of the outputs of an earlier run: the files listed in its report, and programs of ours
+    in program/.
+    """
     names = earlier_programs(folder)
     report = _earlier_report(folder)
     if report is None:
@@ -144,8 +149,8 @@ def earlier_outputs(folder: str) -> set[str]:
         for name in report["programs"]
         if staging.is_inside(name) and name.startswith(PROGRAMS + "/")
     }
-    whole = {name for name in listed if not _is_behind_link(folder, name)}
-    return names | whole | {WAYPOINTS, REPORT, PAGE, report["name"] + DOCUMENT_ENDING}
+    present = {name for name in listed if not _is_behind_link(folder, name)}
+    return names | present | {WAYPOINTS, REPORT, PAGE, report["name"] + DOCUMENT_ENDING}
 
 
 def _is_behind_link(folder: str, name: str) -> bool:
@@ -170,7 +175,7 @@ def _earlier_report(folder: str) -> dict[str, Any] | None:
         or not isinstance(report.get("programs"), list)
         or "issues" not in report
     ):
-        return None  # somebody else's
+        return None  # not ours
     name = report.get("name")
     return report if staging.is_inside(name) and "/" not in str(name) else None
 

@@ -29,21 +29,21 @@ def results(stages: Any, programs: Sequence[str]) -> Any:
     )
 
 
-def job(of: Job, stages: Any) -> Any:
-    """The job as its report tells of it."""
+def job(read_job: Job, stages: Any) -> Any:
+    """The job in the form of its report."""
     from freecad_am.report import asked
 
     features = tuple(
         asked.Feature(
-            one.name,
-            one.strategy,
-            one.build_direction,
-            one.process,
+            feature_read.name,
+            feature_read.strategy,
+            feature_read.build_direction,
+            feature_read.process,
             functools.partial(_result, feature),
         )
-        for one, feature in zip(of.features, stages.features, strict=True)
+        for feature_read, feature in zip(read_job.features, stages.features, strict=True)
     )
-    return asked.Job(of.name, features, of.process, of.joints, of.cell)
+    return asked.Job(read_job.name, features, read_job.process, read_job.joints, read_job.cell)
 
 
 def _result(obj: Any) -> Any:

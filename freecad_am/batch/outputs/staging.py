@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The hidden folder that a run collects its files in, inside the folder of outputs, and how they come out of it.
+"""The hidden folder inside the folder of outputs in which a run collects its files before it moves
+them out.
 
-`.unfinished-*/` holds a mark, which its run keeps locked as long as it lives, the files, and from the moment on at which
-they are all there a note of what is to be moved and removed. The next run in the folder carries out what a killed one has
-noted, and removes what it left. Nothing is written, moved or removed through a link.
+`.unfinished-*/` holds a mark, which its run keeps locked as long as it lives, the files, and, once
+these are complete, a list of files to move and remove. The next run in the folder carries out the
+list of a killed run and removes its remains. Nothing is written, moved or removed through a link.
 """
 
 from __future__ import annotations
@@ -26,15 +27,17 @@ except ImportError:  # Windows: runs do not know of one another there
 
 PREFIX, MARK, FILES, NOTE = ".unfinished-", "run-of-freecad-am", "files", "to-publish.json"
 WAIT = 10.0  # s for another run that is moving its files, which takes milliseconds
-HELD = ("SIGINT", "SIGTERM", "SIGHUP")
+HELD_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
 
 
 class Linked(OSError):
-    """A link stands where a folder of ours belongs."""
+    """A link in place of a folder of ours."""
 
 
 class Staging:
-    """The hidden folder of this run. `others`: whether other runs are at work in the same folder of outputs."""
+    """The hidden folder of the run. `others`: whether other runs are at work in the same folder of
+    outputs.
+    """
 
     def __init__(self, folder: str) -> None:
         """Make it. What runs that were killed have left is finished and removed first."""
@@ -74,8 +77,9 @@ class Staging:
 
 
 def refuse(folder: str, names: Sequence[str]) -> None:
-    """Raise OSError where files of these names cannot be written or removed inside the folder: links, files where folders
-    belong, folders where files belong, closed folders."""
+    """Raise OSError if files with the given names cannot be written or removed inside the folder:
+    links, files where folders belong, folders where files belong, closed folders.
+    """
     for name in names:
         target = os.path.join(folder, *name.split("/"))
         if os.path.isdir(target) and not os.path.islink(target):
@@ -109,7 +113,7 @@ def clear(folder: str) -> None:
 
 def _cleared(folder: str) -> bool:
     """Finish and remove what killed runs have left; whether others are at work."""
-    others = False
+    has_others = False
     for entry in sorted(os.listdir(folder)):
         path = os.path.join(folder, entry)
         if not entry.startswith(PREFIX) or os.path.islink(path) or not os.path.isdir(path):
@@ -117,18 +121,18 @@ def _cleared(folder: str) -> bool:
         try:
             mark = os.open(os.path.join(path, MARK), os.O_RDWR | getattr(os, "O_NOFOLLOW", 0))
         except OSError:
-            with contextlib.suppress(OSError):  # killed before it had its mark, or somebody else's
+            with contextlib.suppress(OSError):  # killed before it had its mark, or not ours
                 os.rmdir(path)
             continue
         try:
             if not _lock(mark):
-                others = True
+                has_others = True
                 continue
             _finish(folder, path)
             _discard(path)
         finally:
             os.close(mark)
-    return others
+    return has_others
 
 
 def _finish(folder: str, path: str) -> None:
@@ -142,8 +146,10 @@ def _finish(folder: str, path: str) -> None:
         refuse(folder, [*names, *old])
     except (OSError, ValueError, TypeError, KeyError, RecursionError):
         return
-    left = [name for name in names if os.path.isfile(os.path.join(path, FILES, *name.split("/")))]
-    _carry_out(folder, path, left, old)
+    remaining = [
+        name for name in names if os.path.isfile(os.path.join(path, FILES, *name.split("/")))
+    ]
+    _carry_out(folder, path, remaining, old)
 
 
 def _carry_out(folder: str, path: str, names: Sequence[str], old: Sequence[str]) -> None:
@@ -167,7 +173,7 @@ def _remove(folder: str, name: str) -> None:
 
 
 def _discard(path: str) -> None:
-    """Remove a hidden folder, its mark last: without it nobody would know it for ours."""
+    """Remove a hidden folder, its mark last: it identifies the folder as ours."""
     with contextlib.suppress(OSError):
         for entry in os.listdir(path):
             if entry != MARK:
@@ -217,15 +223,15 @@ def uninterrupted() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    numbers = [getattr(signal, name) for name in HELD if hasattr(signal, name)]
+    numbers = [getattr(signal, name) for name in HELD_SIGNALS if hasattr(signal, name)]
     came: list[int] = []
-    before = {
+    old_handlers = {
         number: signal.signal(number, lambda number, _: came.append(number)) for number in numbers
     }
     try:
         yield
     finally:
-        for number, handler in before.items():
+        for number, handler in old_handlers.items():
             signal.signal(number, handler if handler is not None else signal.SIG_DFL)
         for number in dict.fromkeys(came):
             os.kill(os.getpid(), number)

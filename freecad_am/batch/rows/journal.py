@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What rows of a batch have come to, a line for each as it ends, so that a batch that was interrupted goes on.
+"""The results of a batch's rows, one line for each as it ends, so that an interrupted batch can
+resume.
 
-A row counts as done where its job, the files that this names, our code and FreeCAD are what they were, and its outputs are
-still there.
+A row counts as done if its job, the job's files, our code and FreeCAD are unchanged and its outputs
+still exist.
 """
 
 from __future__ import annotations
@@ -18,11 +19,11 @@ from .process import CHECKED
 from .table import Row
 
 NAME = ".rows.jsonl"
-KEPT = (0, 3)  # how rows end that there is nothing to try again of
+FINAL_STATUSES = (0, 3)  # exit statuses of rows that are not tried again
 
 
 class Journal:
-    """The journal of a folder. resume: whether what it knows counts; else it begins anew."""
+    """The journal of a folder. resume: whether its entries count; else it starts empty."""
 
     def __init__(self, folder: str, made_by: str, resume: bool) -> None:
         """made_by: what the results depend on besides jobs and their files."""
@@ -35,27 +36,27 @@ class Journal:
 
     def known(self, row: Row, dry: bool) -> dict[str, Any] | None:
         """The result of a row that was done before; None without one."""
-        found = self._known.get(self._digest(row, dry))
+        entry = self._known.get(self._digest(row, dry))
         if (
-            found is None
-            or found["folder"] != row.folder
-            or (not dry and found["report"] != self._report(row))
+            entry is None
+            or entry["folder"] != row.folder
+            or (not dry and entry["report"] != self._report(row))
         ):
             return None
-        result: dict[str, Any] = found["result"]
+        result: dict[str, Any] = entry["result"]
         return result
 
     def keep(self, row: Row, dry: bool, result: dict[str, Any]) -> None:
         """Write down what a row has come to, whose outputs are in place."""
-        if result["exit"] not in KEPT:
+        if result["exit"] not in FINAL_STATUSES:
             return
-        kept = {name: value for name, value in result.items() if name != "lines"}
+        stored = {name: value for name, value in result.items() if name != "lines"}
         line = json.dumps(
             {
                 "digest": self._digest(row, dry),
                 "folder": row.folder,
                 "report": "" if result.get("status") == CHECKED else self._report(row),
-                "result": kept,
+                "result": stored,
             }
         )
         with contextlib.suppress(OSError):  # then the row is done again
@@ -65,8 +66,8 @@ class Journal:
                 stream.write(line + "\n")
 
     def _lines(self) -> list[tuple[str, dict[str, Any]]]:
-        """What stands in the file; a line that a killed batch has not ended is left out."""
-        found = []
+        """The entries of the file; an unfinished line of a killed batch is left out."""
+        entries = []
         try:
             with open(self._path, encoding="utf-8", errors="replace") as stream:
                 for text in stream:
@@ -78,10 +79,10 @@ class Journal:
                             line["folder"],
                             line["report"],
                         )
-                        found.append((str(line["digest"]), line))
+                        entries.append((str(line["digest"]), line))
         except OSError:
             return []
-        return found
+        return entries
 
     def _digest(self, row: Row, dry: bool) -> str:
         files = {name: self._file(name) for name in sorted(row.files)}
@@ -92,7 +93,7 @@ class Journal:
         return hashlib.sha256(content.encode()).hexdigest()
 
     def _file(self, name: str) -> str:
-        """The digest of a file, looked at once in a batch; '' where there is none."""
+        """The digest of a file, computed once per batch; '' without a file."""
         if name not in self._files:
             self._files[name] = digest(name)
         return self._files[name]
@@ -103,7 +104,7 @@ class Journal:
 
 
 def digest(path: str) -> str:
-    """The SHA-256 of a file; '' where there is none to be read."""
+    """The SHA-256 of a file; '' if it cannot be read."""
     if not os.path.isfile(path):
         return ""
     try:

@@ -22,14 +22,15 @@ from ..console import Session
 from ..job import job
 from ..outputs import staging
 
-GRACE = 1.0  # s that a process has to end by itself
+GRACE = 1.0  # s that a process has to end on request
 CHECKED = "checked"  # status of a row that was not planned
 
 
 @dataclass(frozen=True)
 class Order:
-    """What a process is to do: plan the job of these `values`, read from the file `path`, into a folder, or only look
-    whether there is anything to refuse (`dry`). label: what messages call the job."""
+    """The task of a process: plan the job with the `values` read from the file `path` into a
+    folder, or only check it for errors (`dry`). label: the job's name in messages.
+    """
 
     label: str
     values: dict[str, Any]
@@ -38,8 +39,10 @@ class Order:
     dry: bool
 
 
-def started(order: Order) -> tuple[Any, Any]:
-    """The end of a pipe that its result comes out of, and the process."""
+def start_row(order: Order) -> tuple[Any, Any]:
+    """Start the process of a row; return the receiving end of the pipe for its result, and the
+    process.
+    """
     context: Any = multiprocessing.get_context(
         "fork" if sys.platform.startswith("linux") else "spawn"
     )
@@ -52,7 +55,7 @@ def started(order: Order) -> tuple[Any, Any]:
 
 
 def received(receiver: Any, process: Any) -> dict[str, Any]:
-    """The result of a row whose process has ended: exit, message, lines that it told, and `figures`."""
+    """The result of a row whose process has ended: exit, message, output lines, and `figures`."""
     try:
         result: dict[str, Any] = receiver.recv()
     except EOFError:
@@ -64,8 +67,8 @@ def received(receiver: Any, process: Any) -> dict[str, Any]:
     return result
 
 
-def left_by(receiver: Any) -> dict[str, Any] | None:
-    """The result of a process that has been stopped; None where it had come to none."""
+def last_result(receiver: Any) -> dict[str, Any] | None:
+    """The result of a process that has been stopped; None if it had none yet."""
     try:
         return receiver.recv() if not receiver.closed and receiver.poll() else None
     except EOFError:
@@ -75,13 +78,13 @@ def left_by(receiver: Any) -> dict[str, Any] | None:
 
 
 def ask_to_stop(process: Any) -> None:
-    """Tell a process to end, without waiting for that."""
+    """Ask a process to end, without waiting."""
     if process.is_alive():
         os.kill(process.pid, signal.SIGINT)
 
 
 def stop(process: Any) -> None:
-    """End a process; it removes what is unfinished, and where the geometry kernel keeps it from that this does."""
+    """End a process and remove its unfinished files, if the geometry kernel keeps it from doing so."""
     ask_to_stop(process)
     process.join(GRACE)
     if process.is_alive():
@@ -118,17 +121,17 @@ def _carry_out(order: Order, sender: Any) -> None:
 
 def _planned(order: Order, quiet: Session) -> tuple[int, dict[str, Any]]:
     """The exit status and the figures."""
-    asked = job.from_tree(tree.Tree(order.label, order.values), order.path)
+    job_read = job.from_tree(tree.Tree(order.label, order.values), order.path)
     if order.dry:
-        with planning.named_by_keys(asked):
-            planning.check(asked)
+        with planning.named_by_keys(job_read):
+            planning.check(job_read)
         return 0, {"status": CHECKED}
-    result = planning.run(asked, order.folder, quiet)
+    result = planning.run(job_read, order.folder, quiet)
     return result.exit_status, figures(result.report)
 
 
 def figures(report: dict[str, Any]) -> dict[str, Any]:
-    """What the summary of a batch tells of a report."""
+    """The figures of a report for the summary of a batch."""
     joints = report["joints"] or {}
     return {
         "status": report["status"],
@@ -142,7 +145,7 @@ def figures(report: dict[str, Any]) -> dict[str, Any]:
 
 
 class _Quiet(Session):
-    """Collects the messages of a row, to be told in one piece when it is done."""
+    """Collects the messages of a row, to be written together when it is done."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -157,8 +160,8 @@ class _Quiet(Session):
     def progress(self, text: str) -> None:
         self.check()
 
-    def issues(self, found: Iterable[Issue]) -> None:
-        known = list(found)
-        if has_errors(known):
-            self.first = next(issue.message for issue in known if issue.level == "error")
-        super().issues(known)
+    def issues(self, findings: Iterable[Issue]) -> None:
+        all_findings = list(findings)
+        if has_errors(all_findings):
+            self.first = next(issue.message for issue in all_findings if issue.level == "error")
+        super().issues(all_findings)

@@ -34,8 +34,10 @@ _WORST_FIRST = (1, 130, 2, 3, 0)
 
 @dataclass(frozen=True)
 class How:
-    """How a batch is carried out. processes: rows at the same time on this machine; scheduler: address of that of a cluster
-    in its place. resume: rows that an earlier run has done are kept. dry: rows are looked at, not planned."""
+    """How a batch is carried out. processes: rows at the same time on the local machine; scheduler:
+    address of a cluster's scheduler instead. resume: rows that an earlier run has done are kept.
+    dry: rows are only checked.
+    """
 
     processes: int = 1
     scheduler: str = ""
@@ -61,8 +63,8 @@ def run(path: str, job_path: str, output: str | None, how: How, session: Session
         if row.error is not None:
             session.say(row.error.line())
             results[row.number] = {"exit": row.error.exit_status, "message": row.error.message}
-        elif (known := journal.known(row, how.dry) if how.resume else None) is not None:
-            results[row.number] = known
+        elif (earlier_result := journal.known(row, how.dry) if how.resume else None) is not None:
+            results[row.number] = earlier_result
         else:
             waiting.append(row)
     if how.resume:
@@ -72,13 +74,15 @@ def run(path: str, job_path: str, output: str | None, how: How, session: Session
     session.outcome = (
         "rows that were done are whole, of the others nothing was written; --resume plans those"
     )
-    began, before = time.monotonic(), len(results)
+    began, resumed_count = time.monotonic(), len(results)
     for row, result in _planned(waiting, folder, how, session, journal):
         for line in result.pop("lines", []):
             session.say(f"row {row.number}: {line}")
         results[row.number] = result
         session.progress(
-            _progress(len(results), len(rows), len(results) - before, time.monotonic() - began)
+            _progress(
+                len(results), len(rows), len(results) - resumed_count, time.monotonic() - began
+            )
         )
     session.out(_summary(columns, rows, results))
     ends = {result["exit"] for result in results.values()}
@@ -88,7 +92,7 @@ def run(path: str, job_path: str, output: str | None, how: How, session: Session
 def _planned(
     rows: list[table.Row], folder: str, how: How, session: Session, journal: row_journal.Journal
 ) -> Iterable[tuple[table.Row, dict[str, Any]]]:
-    """Rows with their results, as they end; those that are done are written down."""
+    """Rows with their results, as they end; finished rows are written to the journal."""
     if not how.scheduler or not rows:
         return _planned_here(rows, folder, how, session, journal)
     return _planned_there(rows, folder, how, session, journal)
@@ -112,7 +116,7 @@ def _planned_here(
         while waiting or running:
             while waiting and len(running) < how.processes:
                 row = waiting.pop()
-                receiver, process = row_process.started(
+                receiver, process = row_process.start_row(
                     row_process.Order(
                         row.label,
                         row.tree().values,
@@ -134,21 +138,23 @@ def _planned_here(
             row_process.ask_to_stop(process)
         for receiver, (row, process) in running.items():
             row_process.stop(process)
-            if (last := row_process.left_by(receiver)) is not None:  # it was done in this moment
-                journal.keep(row, how.dry, last)
+            if (
+                last_outcome := row_process.last_result(receiver)
+            ) is not None:  # it was done in this moment
+                journal.keep(row, how.dry, last_outcome)
 
 
-def _progress(done: int, rows: int, now: int, seconds: float) -> str:
-    """How far it is, and how long the rest will take at the pace so far."""
-    left = (rows - done) * seconds / max(now, 1)
+def _progress(finished: int, rows: int, now: int, seconds: float) -> str:
+    """The progress, and an estimate of the remaining time."""
+    remaining_s = (rows - finished) * seconds / max(now, 1)
     text = (
-        f"{left / 3600:.1f} h"
-        if left > 5400
-        else f"{left / 60:.0f} min"
-        if left > 90
-        else f"{left:.0f} s"
+        f"{remaining_s / 3600:.1f} h"
+        if remaining_s > 5400
+        else f"{remaining_s / 60:.0f} min"
+        if remaining_s > 90
+        else f"{remaining_s:.0f} s"
     )
-    return f"{done} of {rows} rows done" + (f", about {text} left" if done < rows else "")
+    return f"{finished} of {rows} rows done" + (f", about {text} left" if finished < rows else "")
 
 
 def _summary(columns: list[str], rows: list[table.Row], results: dict[int, dict[str, Any]]) -> str:

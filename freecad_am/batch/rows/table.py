@@ -23,8 +23,10 @@ SETTING = "part.set."
 
 @dataclass(frozen=True)
 class Row:
-    """One row: its number (from 1), the cells by column, its folder's name, why there is no job if there is none, and
-    `files`, the absolute names of the files that the job names. The job itself is made anew where it is planned."""
+    """One row: its number (from 1), the cells by column, its folder's name, the error if it has no
+    job, and `files`, the absolute names of the files that the job names. The job itself is read
+    again when it is planned.
+    """
 
     number: int
     cells: dict[str, str]
@@ -50,9 +52,12 @@ def read(table: str, job_path: str) -> tuple[list[str], list[Row]]:
     base = tree.read(job_path)
     columns, cells = _cells(tree.text_of(table, label), label)
     folders = _folders(columns, cells)
-    known: dict[Any, frozenset[str]] = {}
+    files_by_cell: dict[Any, frozenset[str]] = {}
     return columns, [
-        _checked(Row(n, dict(zip(columns, row)), folder, base, job_path, f"{label} row {n}"), known)
+        _checked(
+            Row(n, dict(zip(columns, row)), folder, base, job_path, f"{label} row {n}"),
+            files_by_cell,
+        )
         for n, (row, folder) in enumerate(zip(cells, folders), 1)
     ]
 
@@ -110,25 +115,25 @@ def _folders(columns: list[str], cells: list[list[str]]) -> list[str]:
     return names if usable else numbers
 
 
-def _checked(row: Row, known: dict[Any, frozenset[str]]) -> Row:
-    """The row with its error or files; `known`: files of cells met before."""
+def _checked(row: Row, files_by_cell: dict[Any, frozenset[str]]) -> Row:
+    """The row with its error or files; `files_by_cell`: files of cells met before."""
     try:
         with located.record_names() as named:
-            found = job.from_tree(row.tree(), row.path)
+            job_read = job.from_tree(row.tree(), row.path)
     except InputError as error:
         return replace(row, error=error)
-    if found.cell not in known:
-        known[found.cell] = _files_of_cell(found)
-    files = named | known[found.cell]
+    if job_read.cell not in files_by_cell:
+        files_by_cell[job_read.cell] = _files_of_cell(job_read)
+    files = named | files_by_cell[job_read.cell]
     return replace(
-        row, files=known.setdefault(frozenset(files), frozenset(files))
+        row, files=files_by_cell.setdefault(frozenset(files), frozenset(files))
     )  # one set for all rows alike
 
 
-def _files_of_cell(found: job.Job) -> frozenset[str]:
-    """Of its machines, with the shapes of their links. What is wrong with them is told as the row is planned."""
+def _files_of_cell(job_read: job.Job) -> frozenset[str]:
+    """Files of the machines, with the shapes of their links. Planning the row reports their errors."""
     with located.record_names() as named, contextlib.suppress(InputError):
-        cell = run.resolved_cell(found)
+        cell = run.resolved_cell(job_read)
         for shape in () if cell is None else cell.machine.shapes:
             if shape is not None:
                 located.locate(shape.path)
