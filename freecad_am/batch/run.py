@@ -201,8 +201,10 @@ def as_far_as_toolpath(job: Job, document: Any, session: Any, fails: str = "") -
     from freecad_am.core.strategies.size import LARGE
 
     from .job.shapes import Shapes, toolpath_of
+    from .job.unused import unused_key_issues
 
     stages = Stages(document)
+    stages.issues += unused_key_issues(job)
     with stages.timed("part", session):
         shapes = [Shapes(document, job, number, fails) for number in range(len(job.features))]
     if job.cell is not None:

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Keys of a job file that have no effect beside its other keys."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from ...core.issues import NOTE, WARNING, Issue, Text
+from ...core.parameters.external import NONE
+from .job import Job
+
+NO_EFFECT = "NO_EFFECT"
+PART_ON_ROBOT, TOOL_ON_ROBOT = "part-on-robot", "tool-on-robot"
+
+
+def unused_key_issues(job: Job) -> list[Issue]:
+    """Name the keys that the job file gives and that change nothing."""
+    if job.cell is None:
+        return list(_issues_without_cell(job))
+    return list(_issues_of_cell(job))
+
+
+def _issues_without_cell(job: Job) -> Iterator[Issue]:
+    if job.program is not None:
+        message = Text(
+            "program: no program is written, as the job has no cell; add the section cell, or leave the program out"
+        )
+        yield Issue(WARNING, NO_EFFECT, message)
+    if job.tree.values.get("joints"):
+        message = Text(
+            "joints: no joint path is planned, as the job has no cell; add the section cell, or leave the joints out"
+        )
+        yield Issue(NOTE, NO_EFFECT, message)
+
+
+def _issues_of_cell(job: Job) -> Iterator[Issue]:
+    assert job.cell is not None
+    joints, cell = (job.tree.values.get(section) for section in ("joints", "cell"))
+    if _gives(joints, "rz") and "constant" not in (job.joints.method, *job.joints.compare):
+        message = Text(
+            "joints.rz has no effect with joints.method: {}; leave it out, or use the method constant",
+            job.joints.method,
+        )
+        yield Issue(WARNING, NO_EFFECT, message)
+    if job.cell.setup == TOOL_ON_ROBOT and job.cell.external == NONE and _gives(cell, "platform"):
+        message = Text(
+            "cell.platform has no effect with cell.setup: {}: cell.deposition_point is the platform's pose; leave it out",
+            job.cell.setup,
+        )
+        yield Issue(WARNING, NO_EFFECT, message)
+    nozzle = cell.get("nozzle") if isinstance(cell, dict) else None
+    if job.cell.setup == PART_ON_ROBOT and _gives(nozzle, "tool"):
+        message = Text(
+            "cell.nozzle.tool has no effect with cell.setup: {}: cell.deposition_point is where the nozzle stands; leave it out",
+            job.cell.setup,
+        )
+        yield Issue(WARNING, NO_EFFECT, message)
+
+
+def _gives(section: Any, key: str) -> bool:
+    """Whether a section of the file has a value for a key."""
+    return isinstance(section, dict) and section.get(key) is not None
