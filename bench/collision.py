@@ -29,7 +29,7 @@ from freecad_am.core.collision.obstacles import Obstacles
 from freecad_am.core.collision.scene import Scene, scene
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
-from freecad_am.core.strategies.clearance.tilt_back import kept_clear
+from freecad_am.core.strategies.clearance.tilt_back import keep_clear
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 from rows import Row
@@ -198,7 +198,7 @@ def _kept_clear(count: int) -> tuple[float, float, int]:
         bead_width=8.0,
     )
     start = process_time()
-    found = kept_clear(path, [], NozzleParameters(), BuildDirectionParameters())
+    found = keep_clear(path, [], NozzleParameters(), BuildDirectionParameters())
     took = process_time() - start
     tilted = int((found.layers[-1].beads[0].tool[:, 2] < 1.0 - 1e-9).sum())
     return took, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0, tilted

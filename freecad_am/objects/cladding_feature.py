@@ -69,7 +69,7 @@ class CladdingFeature(FeatureStage):
                 clad = clad_faces(
                     source_body.shape.copy(False), faces, spacing, back, high, source_body.label
                 )
-            large = size.judged(size.of_cladding(clad, strategy), strategy)
+            large = size.size_issues(size.cladding_size(clad, strategy), strategy)
             feature = dataclasses.replace(
                 clad, surroundings=bodies((*own_body, *ground, *fixtures))
             )

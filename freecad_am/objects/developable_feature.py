@@ -78,7 +78,7 @@ class DevelopableFeature(FeatureStage):
 
         def work() -> Outcome:
             solids = _solids(inputs, strategy)
-            large = size.judged(size.of_solids(solids, strategy), strategy)
+            large = size.size_issues(size.solids_size(solids, strategy), strategy)
             substrate = () if inputs.substrate is None else (inputs.substrate.body(),)
             solids = dataclasses.replace(
                 solids, surroundings=(*substrate, *solids.surroundings, *bodies(fixtures))

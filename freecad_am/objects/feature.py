@@ -68,7 +68,7 @@ class RevolutionFeature(FeatureStage):
 
         def work() -> Outcome:
             wall = find_wall(shape, faces, strategy.wall, axis, label)
-            large = size.judged(size.of_revolution(wall, strategy), strategy)
+            large = size.size_issues(size.revolution_size(wall, strategy), strategy)
             figures = (("WallFaces", list(wall.faces)), ("WallLength", wall.meridian.length))
             depths = revolved_depths(shape, wall, label)
             completed_wall = dataclasses.replace(wall, surroundings=bodies(fixtures), depths=depths)

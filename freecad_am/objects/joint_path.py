@@ -244,7 +244,9 @@ def _report_search_time(
     """
     from ..core.strategies import size
 
-    for issue in size.of_remedies(most_points(toolpath, issues), seconds_per_point, LONGEST_SEARCH):
+    for issue in size.remedy_issues(
+        most_points(toolpath, issues), seconds_per_point, LONGEST_SEARCH
+    ):
         progress.report_issue(issue)
 
 

@@ -134,7 +134,7 @@ class SolidFeature(FeatureStage):
                         dataclasses.replace(group, start=corners) for group in solids.groups
                     ),
                 )
-            large = size.judged(size.of_solids(solids, strategy), strategy)
+            large = size.size_issues(size.solids_size(solids, strategy), strategy)
             solids = dataclasses.replace(solids, surroundings=bodies((*ground, *fixtures)))
             base = solids.groups[0].base
             height = max(

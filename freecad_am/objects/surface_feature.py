@@ -101,7 +101,7 @@ class SurfaceFeature(FeatureStage):
                 strategy.mend,
                 strategy.method == FRONTS,
             )
-            large = size.judged(size.of_wall(wall, strategy), strategy)
+            large = size.size_issues(size.wall_size(wall, strategy), strategy)
             depths = (
                 None
                 if source_body.shape is None

@@ -160,9 +160,9 @@ def _row(one: Compared | Refused) -> dict[str, Any]:
         return _empty(one.method) | {"reason": one.reason}
     return _empty(one.method) | {
         "layers": one.layers,
-        "min_mm": one.least,
+        "min_mm": one.smallest,
         "mean_mm": one.mean,
-        "max_mm": one.most,
+        "max_mm": one.largest,
         "length_mm": one.length,
         "turn_max_deg_mm": float(np.degrees(one.turn)),
         "cornered_layers": one.corners,

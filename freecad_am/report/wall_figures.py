@@ -28,13 +28,13 @@ _BEFORE, _AFTER = "#d9633b", "#3b6fd4"
 
 def distance_plots(compared: Sequence[Compared], asked: float) -> list[str]:
     """Local distance around the wall, a plot per method, all on one scale; each curve is a layer (figures 6 and 8)."""
-    low = min(one.least for one in compared)
-    high = max(one.most for one in compared)
+    low = min(one.smallest for one in compared)
+    high = max(one.largest for one in compared)
     pad = 0.08 * max(high - low, 0.01 * asked)
     plots = []
     for one in compared:
         plot = svg.Plot(
-            f"{TITLES[one.method]}: {one.least:.4g} to {one.most:.4g} mm",
+            f"{TITLES[one.method]}: {one.smallest:.4g} to {one.largest:.4g} mm",
             _SPAN,
             (low - pad, high + pad),
             _AROUND,

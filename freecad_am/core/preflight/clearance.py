@@ -35,7 +35,9 @@ def nozzle(issues: Sequence[Issue], looked: Looked | None) -> Promise:
         "high as they count",
         looked.count,
     )
-    place = issue_place(found) if found or looked.place is None else Place(*looked.place)
+    place = (
+        issue_place(found) if found or looked.first_touch is None else Place(*looked.first_touch)
+    )
     return Promise(
         what, how, not found and not looked.touched, float(looked.touched), "points", 0.0, place
     )

@@ -19,48 +19,51 @@ from .progress import Progress, silent
 from .solids.beads import MadeBead, bead_of
 from .solids.filling import Pictures, bead_width, over_fed, spaced
 from .solids.notes import notes
-from .solids.volumes import of_layers, twice
+from .solids.volumes import layer_volumes, twice_volume
 
-REPORTED_DISTORTION = 0.02  # distortion that is told
+REPORTED_DISTORTION = 0.02  # distortion that is reported
 
 
 def plan(
-    given: CladFaces,
+    clad_faces: CladFaces,
     strategy: CladdingParameters,
     build: BuildDirectionParameters,
     process: ProcessParameters,
     model: BeadModel | None,
     progress: Progress = silent,
 ) -> Toolpath:
-    """The toolpath of cladding, in part coordinates: layer i lies i layer heights above the faces.
+    """The toolpath of cladding, in part coordinates: layer i is i layer heights above the faces.
 
-    model: sets the speeds, None for the travel speed everywhere. InputError FOLDED, BEAD_SPACING, NOTHING_TO_DEPOSIT,
+    model: sets the speeds; with None the travel speed applies everywhere. InputError FOLDED, BEAD_SPACING, NOTHING_TO_DEPOSIT,
     InfeasibleError THIN_REGION.
     """
     strategy = spaced(strategy, process)
     width = bead_width(strategy, process, model)
     pictures = Pictures(strategy, process, width)
-    found = [(sheet, piece) for sheet in given.sheets for piece in pieces(sheet, strategy)]
+    sheet_pieces = [
+        (sheet, piece) for sheet in clad_faces.sheets for piece in pieces(sheet, strategy)
+    ]
     ranked: list[RankedBead] = []
-    made: list[MadeBead] = []
+    made_beads: list[MadeBead] = []
     issues: list[Issue] = []
     covers: list[Cover] = []
     stretch = 0.0
-    for number, (sheet, piece) in enumerate(found):
+    for number, (sheet, piece) in enumerate(sheet_pieces):
         order = IslandOrder()
         for layer in slices(sheet, piece, strategy):
             progress(
-                (number + layer.number / strategy.layers) / len(found), f"layer {layer.number}"
+                (number + layer.number / strategy.layers) / len(sheet_pieces),
+                f"layer {layer.number}",
             )
-            picture = pictures.filled(layer, given.label)
+            picture = pictures.filled(layer, clad_faces.label)
             issues += picture.issues
             assert isinstance(layer.surface, FaceLayer)
             stretch = max(stretch, layer.surface.stretch)
             covers.append(picture.cover)
             beads: list[Bead] = []
             for curve in picture.curves:
-                made.append(bead_of(curve, layer, strategy, build, process, model))
-                beads.append(made[-1].bead)
+                made_beads.append(bead_of(curve, layer, strategy, build, process, model))
+                beads.append(made_beads[-1].bead)
             beads = order.order_islands(beads, picture.islands)
             ranked += [
                 RankedBead(0, number, layer.number, -rank, bead) for rank, bead in enumerate(beads)
@@ -68,7 +71,7 @@ def plan(
     if not ranked:
         raise InputError(
             "NOTHING_TO_DEPOSIT",
-            given.label,
+            clad_faces.label,
             "no bead of {:g} mm or more finds room on its faces; use a smaller bead "
             "spacing, or thin = single",
             strategy.least_bead,
@@ -80,12 +83,12 @@ def plan(
         strategy.min_layer_time,
     )
     noted = [
-        one
-        for one in notes(made, layers, strategy, build, process, model)
-        if one.code != "SINGLE_LAYER"
+        note
+        for note in notes(made_beads, layers, strategy, build, process, model)
+        if note.code != "SINGLE_LAYER"
     ]  # as asked
     fed = over_fed(strategy, process, model, width)
-    issues = [*given.issues, *_stretched(stretch), *issues, *fed, *noted]
+    issues = [*clad_faces.issues, *_stretched(stretch), *issues, *fed, *noted]
     return Toolpath(
         layers,
         np.eye(4),
@@ -94,11 +97,11 @@ def plan(
         tuple(issues),
         process.overlap,
         "cladding",
-        given.surroundings,
+        clad_faces.surroundings,
         None if model is None else model.law(process.acceleration),
         width,
-        volumes=of_layers(strategy, covers),
-        twice=twice(made, strategy, covers, width),
+        volumes=layer_volumes(strategy, covers),
+        twice=twice_volume(made_beads, strategy, covers, width),
     )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves laid as beads as they are, once or several times one over the other."""
+"""Curves deposited as beads unchanged, once or several times on top of each other."""
 
 from __future__ import annotations
 
@@ -22,24 +22,26 @@ from .progress import Progress, silent
 
 ALONG = np.cos(
     np.radians(5.0)
-)  # a bead runs along the direction in which it is laid if the angle between them is less
+)  # a bead runs along its deposit direction if the angle between them is less
 
 
-STEP = 1.01  # layer heights that a bead may climb straight up, but for what slicers round
+STEP = 1.01  # layer heights that a bead may climb straight up, plus the rounding of slicers
 TURNED_BACK = 0.05  # of the shorter segment: a mean of two segments that is less says nothing
 
 
 def plan(
-    given: Curves,
+    curves_: Curves,
     strategy: CurvesParameters,
     build: BuildDirectionParameters,
     process: ProcessParameters,
     progress: Progress = silent,
 ) -> Toolpath:
-    """The toolpath of curves, in part coordinates: layer k is that of the curves k layer heights further along the
-    directions in which they are laid. InputError ALONG_DIRECTION."""
+    """The toolpath of curves, in part coordinates: layer k has the curves k layer heights further along their deposit directions.
+
+    InputError ALONG_DIRECTION.
+    """
     fixed = np.array(strategy.way())
-    numbers = sorted({curve.layer for curve in given.curves})
+    numbers = sorted({curve.layer for curve in curves_.curves})
     layers: list[Layer] = []
     for again in range(strategy.repeat):
         progress(again / strategy.repeat, f"layer {len(layers)}")
@@ -53,9 +55,9 @@ def plan(
                     (len(layers), k),
                     build,
                     process,
-                    given.label,
+                    curves_.label,
                 )
-                for k, curve in enumerate(given.curves)
+                for k, curve in enumerate(curves_.curves)
                 if curve.layer == number
             ]
             layers.append(Layer(tuple(beads)))
@@ -64,10 +66,10 @@ def plan(
         np.eye(4),
         strategy.layer_height,
         strategy.chord_error,
-        given.issues,
+        curves_.issues,
         process.overlap,
         "curves",
-        given.surroundings,
+        curves_.surroundings,
         bead_width=process.bead_width,
     )
 
@@ -77,20 +79,23 @@ def _classed(
     fixed: Array,
     height: float,
     again: int,
-    place: tuple[int, int],
+    key: tuple[int, int],
     build: BuildDirectionParameters,
     process: ProcessParameters,
     label: str,
 ) -> Bead:
-    """The bead at a place, layer and number in it, as its class is laid."""
-    name = classes.wall_bead_class(place[0])
-    own = classes.leaning(build, process, name), process.for_class(name)
-    return replace(_bead(curve, fixed, height, again, sum(place), *own, label), bead_class=name)
+    """The bead at a key (layer, number in the layer), with the settings of its class."""
+    name = classes.wall_bead_class(key[0])
+    class_settings = classes.leaning(build, process, name), process.for_class(name)
+    return replace(
+        _bead(curve, fixed, height, again, sum(key), *class_settings, label), bead_class=name
+    )
 
 
-def _tangents(points: Array, away: Array) -> Array:
+def _tangents(points: Array, directions: Array) -> Array:
     """Unit vectors (n, 3) along a bead at its points. Where it turns back, so that the mean of the segments before and after a
-    point vanishes or runs along the direction (n, 3) in which the bead is laid, the segment after the point counts."""
+    point vanishes or runs along the deposit direction (n, 3), the segment after the point counts.
+    """
     segments = np.diff(points, axis=0)
     segments /= np.linalg.norm(segments, axis=1, keepdims=True)
     if len(points) == 2:
@@ -100,17 +105,18 @@ def _tangents(points: Array, away: Array) -> Array:
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     turned = size[:, 0] < TURNED_BACK * np.minimum(np.r_[steps, steps[-1]], np.r_[steps[0], steps])
     forward = mean / np.where(size > 0.0, size, 1.0)
-    turned |= np.abs((forward * away).sum(axis=1)) > ALONG
+    turned |= np.abs((forward * directions).sum(axis=1)) > ALONG
     forward[turned] = np.vstack([segments, segments[-1:]])[turned]
     return np.asarray(forward)
 
 
-def _steps_along(points: Array, away: Array, height: float) -> Array:
-    """Cosine (n - 1,) between each segment and the direction in which it is laid; 0 of steps of up to a layer height, with which
-    a bead climbs onto itself."""
+def _steps_along(points: Array, directions: Array, height: float) -> Array:
+    """Cosine (n - 1,) between each segment and its deposit direction; 0 for steps of up to a layer height, with which a bead climbs
+    onto itself.
+    """
     segments = np.diff(points, axis=0)
     lengths = np.linalg.norm(segments, axis=1)
-    cosines = np.abs((segments * away[:-1]).sum(axis=1)) / lengths
+    cosines = np.abs((segments * directions[:-1]).sum(axis=1)) / lengths
     return np.where(lengths > STEP * height, cosines, 0.0)
 
 
@@ -124,15 +130,15 @@ def _bead(
     process: ProcessParameters,
     label: str,
 ) -> Bead:
-    away = np.tile(fixed, (len(curve.points), 1))
+    directions = np.tile(fixed, (len(curve.points), 1))
     if curve.directions is not None and build.mode == "local":
-        away = curve.directions
-    points = curve.points + again * height * away
+        directions = curve.directions
+    points = curve.points + again * height * directions
     if process.direction == "alternate" and index % 2:
-        points, away = points[::-1], away[::-1]
-    forward = _tangents(points, away)
-    along = np.abs((forward * away).sum(axis=1))
-    along[:-1] = np.maximum(along[:-1], _steps_along(points, away, height))
+        points, directions = points[::-1], directions[::-1]
+    forward = _tangents(points, directions)
+    along = np.abs((forward * directions).sum(axis=1))
+    along[:-1] = np.maximum(along[:-1], _steps_along(points, directions, height))
     worst = int(along.argmax())
     if along[worst] > ALONG:
         raise InputError(
@@ -142,17 +148,19 @@ def _bead(
             "its own way; give another strategy.direction, faces, or directions in the table",
             place(points[worst]),
         )
-    across = np.cross(forward, away)
+    across = np.cross(forward, directions)
     across /= np.linalg.norm(across, axis=1, keepdims=True)
-    tool = lean_tool(away, np.cross(away, across), across, build.lead, build.tilt)
-    way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    tool = lean_tool(directions, np.cross(directions, across), across, build.lead, build.tilt)
+    arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     if curve.closed:
-        points, away, tool = (np.vstack([rows[:-1], rows[:1]]) for rows in (points, away, tool))
+        points, directions, tool = (
+            np.vstack([rows[:-1], rows[:1]]) for rows in (points, directions, tool)
+        )
     return Bead(
         points,
-        away,
+        directions,
         tool,
-        TURN * way / way[-1],
+        TURN * arc / arc[-1],
         np.full(len(points), process.travel_speed),
         curve.closed,
     )

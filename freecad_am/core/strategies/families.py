@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The families of features that can be planned: what each is called, and what it takes. The one place to register one.
+"""The families of features that can be planned: their names and options. The one place to register one.
 
-What plans it is found by what its feature has found (`objects.toolpath`), how it is drawn by its proxy.
+The result of the feature selects the planner (`objects.toolpath`), and its proxy the view.
 """
 
 from __future__ import annotations
@@ -22,10 +22,12 @@ NEEDED, OPTIONAL, NONE = "needed", "optional", "none"
 
 @dataclass(frozen=True)
 class Family:
-    """kind: `strategy.kind` of a job. parameters: the dataclass of `strategy`. substrate: whether it grows on an existing
-    part: NEEDED (or edges to start from, or that stand on the platform), OPTIONAL, NONE. meshes: a mesh may be the part.
-    filled: solids are filled, so that the width and the speed of beads are settings of their own. modes: those of
-    `build_direction` that it knows, and why not others. edges, faces: the part may name edges to start from, and faces.
+    """A family of features.
+
+    kind: `strategy.kind` of a job. parameters: the dataclass of `strategy`. substrate: whether it grows on an existing part:
+    NEEDED (or edges to start from, or edges on the platform), OPTIONAL, NONE. meshes: a mesh may be the part. filled: solids are
+    filled, so that the width and the speed of beads are separate settings. modes: the supported `build_direction` modes; why: the
+    reason against the others. edges, faces: the part may name edges to start from, and faces.
     """
 
     kind: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How far a strategy is: a function told the share that is done, 0..1, and what is being done; it may raise to cancel."""
+"""Progress of a strategy: a function that receives the share done, 0..1, and the current step; it may raise to cancel."""
 
 from __future__ import annotations
 
@@ -10,20 +10,21 @@ Progress = Callable[[float, str], None]
 
 
 def silent(fraction: float, text: str) -> None:
-    """Tells nobody."""
+    """Ignore the progress."""
 
 
 class Watch(NamedTuple):
-    """Who is told of a search: before it at how many points, how many times at most, and on the way the share that is done,
-    0..1; both may raise to cancel."""
+    """Receivers of a search's progress: before it the number of points and the maximum number of passes, during it the share done,
+    0..1; both may raise to cancel.
+    """
 
     points: Callable[[int, int], None] = lambda points, times: None
     share: Callable[[float], None] = lambda share: None
 
-    def within(self, low: float, high: float) -> Watch:
-        """Of a part of the search, which begins and ends at these shares of it."""
+    def section(self, low: float, high: float) -> Watch:
+        """The watch of a section of the search between two shares."""
         return self._replace(share=lambda share: self.share(low + share * (high - low)))
 
     def at_end(self) -> Watch:
-        """Of what is looked at when the search is through: told that it goes on alone."""
+        """The watch of checks after the search, whose progress stays at its end."""
         return Watch(share=lambda share: self.share(1.0))

@@ -14,37 +14,46 @@ from ..toolpath import Layer, Toolpath
 from ..types import Array, Index
 
 BY_FEATURE, BY_HEIGHT = "feature", "height"
-FLOATS = 0.9  # of the length of a first layer; with so much of it over nothing a feature floats
+FLOATS = (
+    0.9  # of the length of a first layer; a feature with at least this share unsupported floats
+)
 
 
-def joined(
+def join_toolpaths(
     toolpaths: Sequence[Toolpath], sequence: str, up: Array, bodies: Sequence[Body]
 ) -> Toolpath:
-    """One toolpath of those of several features, each with its label, in the order of deposit.
+    """Join the toolpaths of several features, each with its label, in the order of deposit.
 
-    sequence: BY_FEATURE, one after the other, or BY_HEIGHT: of the next layers of all features the one whose lowest point is
-    lowest along up (3,), of equal ones that of the feature named first; layers of one feature keep their order. bodies: what
-    stands around all of them from the beginning. The frame is that of the first feature. Layers are numbered through, in
-    issues too.
+    The frame is the frame of the first feature. Layers are numbered through, in issues too.
+
+    Parameters
+    ----------
+    sequence
+        BY_FEATURE, one after the other, or BY_HEIGHT: the next layer is always the one with the lowest point along up (3,), in a
+        tie the one of the feature named first; layers of one feature keep their order.
+    bodies
+        Bodies that surround all features from the beginning.
     """
-    order = [(k, i) for k, one in enumerate(toolpaths) for i in range(len(one.layers))]
+    order = [(k, i) for k, toolpath in enumerate(toolpaths) for i in range(len(toolpath.layers))]
     if sequence == BY_HEIGHT:
-        order = _lowest_first([_lowest(one.layers, up) for one in toolpaths])
-    numbers = [np.zeros(len(one.layers), dtype=np.intp) for one in toolpaths]
+        order = _lowest_first([_lowest(toolpath.layers, up) for toolpath in toolpaths])
+    numbers = [np.zeros(len(toolpath.layers), dtype=np.intp) for toolpath in toolpaths]
     for number, (k, i) in enumerate(order):
         numbers[k][i] = number
-    first = toolpaths[0]
-    parts = [_telling_widths(one, first) for one in toolpaths]
-    feeds = {one.wire_feed for one in toolpaths}
+    first_path = toolpaths[0]
+    sized = [_with_bead_sizes(toolpath, first_path) for toolpath in toolpaths]
+    feeds = {toolpath.wire_feed for toolpath in toolpaths}
     return replace(
-        first,
+        first_path,
         layers=tuple(
-            replace(parts[k].layers[i], feature=k, first=i == 0 or parts[k].layers[i].first)
+            replace(sized[k].layers[i], feature=k, first=i == 0 or sized[k].layers[i].first)
             for k, i in order
         ),
-        chord_error=min(one.chord_error for one in toolpaths),
+        chord_error=min(toolpath.chord_error for toolpath in toolpaths),
         issues=tuple(
-            issue for one, some in zip(toolpaths, numbers) for issue in renumbered(one.issues, some)
+            issue
+            for toolpath, layer_numbers in zip(toolpaths, numbers)
+            for issue in renumbered(toolpath.issues, layer_numbers)
         ),
         surroundings=tuple(bodies),
         law=None,
@@ -53,50 +62,55 @@ def joined(
         volumes=None,
         twice=None,
         feature_label="",
-        wire_feed=first.wire_feed if len(feeds) == 1 else None,
-        features=tuple(replace(one, layers=(), issues=(), surroundings=()) for one in toolpaths),
+        wire_feed=first_path.wire_feed if len(feeds) == 1 else None,
+        features=tuple(
+            replace(toolpath, layers=(), issues=(), surroundings=()) for toolpath in toolpaths
+        ),
         uneven=_uneven(toolpaths, numbers),
     )
 
 
 def _uneven(toolpaths: Sequence[Toolpath], numbers: Sequence[Index]) -> Array | None:
-    """Numbers, least and largest heights (k, 3) of the layers of all features that are not as high everywhere."""
-    found = [
-        np.column_stack([some[one.uneven[:, 0].astype(np.intp)], one.uneven[:, 1:]])
-        for one, some in zip(toolpaths, numbers)
-        if one.uneven is not None
+    """Numbers, least and largest heights (k, 3) of the features' layers with uneven height."""
+    rows = [
+        np.column_stack(
+            [layer_numbers[toolpath.uneven[:, 0].astype(np.intp)], toolpath.uneven[:, 1:]]
+        )
+        for toolpath, layer_numbers in zip(toolpaths, numbers)
+        if toolpath.uneven is not None
     ]
-    return np.vstack(found) if found else None
+    return np.vstack(rows) if rows else None
 
 
 def renumbered(issues: Sequence[Issue], numbers: Index) -> tuple[Issue, ...]:
-    """Issues of a feature as ones of a job with several, of which its layers have those numbers (n,)."""
+    """The issues of a feature with the layer numbers (n,) of a job with several features."""
     return tuple(
         issue if issue.layer is None else replace(issue, layer=int(numbers[issue.layer]))
         for issue in issues
     )
 
 
-def with_feature(
+def update_feature(
     toolpath: Toolpath, number: int, feature: Toolpath, issues: Sequence[Issue]
 ) -> Toolpath:
-    """The toolpath with what is now known of one of its features, and issues more, numbered through."""
+    """The toolpath with an updated feature and further issues, numbered through."""
     features = list(toolpath.features)
     features[number] = replace(feature, layers=(), issues=(), surroundings=())
     return replace(toolpath, features=tuple(features), issues=(*toolpath.issues, *issues))
 
 
 def refuse_floating(toolpath: Toolpath, number: int, lengths: dict[int, float]) -> None:
-    """Raise InputError FLOATS where nothing carries a feature: nearly all of its first layer lies over nothing. lengths: mm
-    of beads over nothing, by layer."""
-    part, numbers = toolpath.parts[number]
-    length = sum(bead.length for bead in part.layers[0].beads)
+    """Raise InputError FLOATS if nothing supports a feature: nearly its whole first layer is unsupported. lengths: mm of
+    unsupported beads, by layer.
+    """
+    feature, numbers = toolpath.parts[number]
+    length = sum(bead.length for bead in feature.layers[0].beads)
     open_ = lengths.get(int(numbers[0]), 0.0)
     if open_ < FLOATS * length:
         return
     raise InputError(
         "FLOATS",
-        part.feature_label,
+        feature.feature_label,
         "nothing carries it: {:.4g} of {:.4g} mm of its first layer lie over nothing when "
         "they are deposited; move it onto what is there, give its substrate, or deposit first what it stands on",
         open_,
@@ -106,14 +120,14 @@ def refuse_floating(toolpath: Toolpath, number: int, lengths: dict[int, float]) 
 
 def _lowest_first(heights: Sequence[Sequence[float]]) -> list[tuple[int, int]]:
     order: list[tuple[int, int]] = []
-    at = [0] * len(heights)
-    while any(at[k] < len(one) for k, one in enumerate(heights)):
+    next_index = [0] * len(heights)
+    while any(next_index[k] < len(layer_heights) for k, layer_heights in enumerate(heights)):
         k = min(
-            (k for k, one in enumerate(heights) if at[k] < len(one)),
-            key=lambda k: (heights[k][at[k]], k),
+            (k for k, layer_heights in enumerate(heights) if next_index[k] < len(layer_heights)),
+            key=lambda k: (heights[k][next_index[k]], k),
         )
-        order.append((k, at[k]))
-        at[k] += 1
+        order.append((k, next_index[k]))
+        next_index[k] += 1
     return order
 
 
@@ -129,10 +143,11 @@ def _lowest(layers: Sequence[Layer], up: Array) -> list[float]:
     return lowest[::-1]
 
 
-def _telling_widths(toolpath: Toolpath, first: Toolpath) -> Toolpath:
-    """The toolpath with beads that tell their width and height, where they are not those of the first feature."""
+def _with_bead_sizes(toolpath: Toolpath, first_path: Toolpath) -> Toolpath:
+    """The toolpath with bead width and height in each bead, if they differ from the first feature."""
     if toolpath.bead_width is None or (
-        (toolpath.bead_width, toolpath.layer_height) == (first.bead_width, first.layer_height)
+        (toolpath.bead_width, toolpath.layer_height)
+        == (first_path.bead_width, first_path.layer_height)
     ):
         return toolpath
     wide, high = toolpath.bead_width, toolpath.layer_height

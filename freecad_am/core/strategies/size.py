@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How large a toolpath would be, told from wall and parameters before the work begins: large ones are told, absurd refused.
+"""Estimated size of a toolpath, from wall and parameters before planning: large ones are reported, absurd ones rejected.
 
-Counts are right within a third on what is round and even; where beads differ a lot they are rather too low.
+Counts are right within a third for round and even parts; if bead lengths differ a lot they are rather too low.
 """
 
 from __future__ import annotations
@@ -42,17 +42,19 @@ LARGE = "LARGE"
 LARGE_SECONDS, LARGE_GIGABYTES = (
     30.0,
     1.0,
-)  # from which a job is told to be large; half of what anybody waits for untold
+)  # s from which a job is reported as large; half of an acceptable wait
 GIGABYTES_A_POINT = 1.5e-6  # at the peak, all stages
 GIGABYTES_A_VERTEX = (
     9e-6  # at the peak, of the mesh of a wall; measured 8.7 to 9.6 on walls of 9,000 to 35,000
 )
 # of a bead on a wall that is a mesh, whatever the chord error; measured are 1.5 on smooth walls to 4.4 on one with folds
 POINTS_AN_EDGE = 2.5
-SECONDS_A_MESH_POINT = 7e-4  # s of the processor that a point of these takes; measured 0.41 to 0.56 ms for the toolpath
-FEWEST = 24  # points of a bead on a wall
-PLACES = 181  # at which meridians and tubes are looked at
-ASKED = 20_000  # vertices that tell how far a wall reaches
+SECONDS_A_MESH_POINT = (
+    7e-4  # s of the processor for a point on a mesh; measured 0.41 to 0.56 ms for the toolpath
+)
+MIN_CHORDS = 24  # points of a bead on a wall
+PLACES = 181  # samples along meridians and tubes
+MAX_SAMPLES = 20_000  # sampled vertices for the reach of a wall
 SECONDS_A_LAYER = (
     0.05  # s of the processor through all stages, however few points its beads have, measured at 25
 )
@@ -63,7 +65,7 @@ SECONDS_A_TILT = 9e-3  # s of the processor that finding a tilt takes at a point
 SECONDS_A_FOLD = 5e-3
 SECONDS_A_NODE = 5e-5  # s of the processor that curved layers take by the node of their grid, measured: flat ones a third
 # s of the processor that a point takes through all stages, measured; walls on parts march from layer to
-# layer, and layers of cladding are laid flat to be filled
+# layer, and layers of cladding are flattened for filling
 _SECONDS_A_POINT: dict[type, float] = {
     RevolutionParameters: 5.5e-5,
     SurfaceParameters: 2e-3,
@@ -74,9 +76,11 @@ _SECONDS_A_POINT: dict[type, float] = {
 
 @dataclass(frozen=True)
 class Size:
-    """About how many layers and points a toolpath would have. squares: with sides of the bead spacing, as many as there are
-    in all layers, where each of these is filled by itself. nodes: of the grids on which curved layers are looked for. folds:
-    of the mesh of a wall, mm of their length. vertices: of that mesh, 0 for exact walls."""
+    """Estimated numbers of layers and points of a toolpath.
+
+    squares: number of squares of bead spacing in all layers, if each layer is filled separately. nodes: of the grids for curved
+    layers. folds: of the mesh of a wall, mm of their length. vertices: of that mesh, 0 for exact walls.
+    """
 
     layers: float
     points: float
@@ -87,12 +91,12 @@ class Size:
 
     @property
     def gigabytes(self) -> float:
-        """Memory at the peak of all stages."""
+        """Memory at the peak over the stages."""
         return self.points * GIGABYTES_A_POINT + self.vertices * GIGABYTES_A_VERTEX
 
 
-def of_revolution(wall: RevolvedWall, strategy: RevolutionParameters) -> Size:
-    """That of a part of revolution; the turns of a spiral count as layers."""
+def revolution_size(wall: RevolvedWall, strategy: RevolutionParameters) -> Size:
+    """The size of a part of revolution; the turns of a spiral count as layers."""
     meridian, turn = wall.meridian, wall.end - wall.start
     radius, height, tangent = meridian.at(np.linspace(0.0, meridian.length, PLACES))
     step = 4.0 * np.arcsin(
@@ -107,23 +111,25 @@ def of_revolution(wall: RevolvedWall, strategy: RevolutionParameters) -> Size:
     )
 
 
-def of_wall(wall: SurfaceWall | PatchWall, strategy: SurfaceParameters) -> Size:
-    """That of a wall on an existing part."""
+def wall_size(wall: SurfaceWall | PatchWall, strategy: SurfaceParameters) -> Size:
+    """The size of a wall on an existing part."""
     from ..geometry.walls.patch_wall import (
-        PatchWall,  # no part of revolution needs it, and what it imports takes long
+        PatchWall,  # imported late: parts of revolution do not need it, and its imports are slow
     )
 
-    return of_fronts(wall, strategy) if isinstance(wall, PatchWall) else of_tube(wall, strategy)
+    return fronts_size(wall, strategy) if isinstance(wall, PatchWall) else tube_size(wall, strategy)
 
 
-def of_tube(wall: SurfaceWall, strategy: SurfaceParameters) -> Size:
-    """That of a wall around a closed direction."""
+def tube_size(wall: SurfaceWall, strategy: SurfaceParameters) -> Size:
+    """The size of a wall around a closed direction."""
     surface = wall.surface()
     v = np.linspace(0.0, wall.period, PLACES)
     top = surface.point(np.full(PLACES, wall.end), v)[:-1]
-    low, at = surface.inverse(wall.first[:: max(1, len(wall.first) // PLACES)])
+    low, angle = surface.inverse(wall.first[:: max(1, len(wall.first) // PLACES)])
     share = np.linspace(0.0, 1.0, PLACES)[:, None]
-    lines = surface.point(low + share * (wall.end - low), np.broadcast_to(at, (PLACES, len(at))))
+    lines = surface.point(
+        low + share * (wall.end - low), np.broadcast_to(angle, (PLACES, len(angle)))
+    )
     layers = (
         float(np.linalg.norm(np.diff(lines, axis=0), axis=2).sum(axis=0).mean())
         / strategy.layer_height
@@ -132,16 +138,16 @@ def of_tube(wall: SurfaceWall, strategy: SurfaceParameters) -> Size:
         _chords(wall.first, True, strategy.chord_error)[0]
         + _chords(top, True, strategy.chord_error)[0]
     )
-    return Size(layers, layers * max(FEWEST, chords))
+    return Size(layers, layers * max(MIN_CHORDS, chords))
 
 
-def of_fronts(wall: PatchWall, strategy: SurfaceParameters) -> Size:
-    """That of a wall of any connected pieces."""
+def fronts_size(wall: PatchWall, strategy: SurfaceParameters) -> Size:
+    """The size of a wall of any connected pieces."""
     corners = wall.vertices[wall.triangles[~wall.behind[wall.triangles].any(axis=1)]]
     area = 0.5 * float(np.linalg.norm(doubled_areas(corners), axis=1).sum())
     points = wall.vertices[~wall.behind]
     tree = cKDTree(np.vstack([curve.points for curve in wall.first]))
-    distance = np.max(tree.query(points[:: max(1, len(points) // ASKED)])[0], initial=0.0)
+    distance = np.max(tree.query(points[:: max(1, len(points) // MAX_SAMPLES)])[0], initial=0.0)
     layers = float(distance) / strategy.layer_height
     # beads are bent as the first ones are, or as a circle through the whole wall would be, whichever is less
     chords = [_chords(curve.points, curve.closed, strategy.chord_error) for curve in wall.first]
@@ -154,17 +160,18 @@ def of_fronts(wall: PatchWall, strategy: SurfaceParameters) -> Size:
         per_mm = max(per_mm, POINTS_AN_EDGE / wall.mesh.typical_edge)
     return Size(
         layers,
-        max(FEWEST * layers, per_mm * area / strategy.layer_height),
+        max(MIN_CHORDS * layers, per_mm * area / strategy.layer_height),
         folds=wall.folds,
         vertices=wall.mesh_vertices,
     )
 
 
-def of_solids(
+def solids_size(
     solids: SolidsOnHub, strategy: FilledParameters, spacing: float | None = None
 ) -> Size:
-    """That of solids on a hub. spacing: mm between beads; None: as the parameter says, and nothing is told of points where
-    an overlap takes its place."""
+    """The size of solids on a hub. spacing: mm between beads; None: from the parameter, and without points if an overlap replaces
+    it.
+    """
     if spacing is None:
         spacing = strategy.bead_spacing if strategy.bead_overlap is None else math.inf
     layers = points = squares = nodes = 0.0
@@ -203,25 +210,26 @@ def of_solids(
     return Size(layers, points, squares, nodes)
 
 
-def of_cladding(faces: CladFaces, strategy: CladdingParameters) -> Size:
-    """That of layers on faces; nothing is told of points where an overlap takes the place of the bead spacing."""
+def cladding_size(faces: CladFaces, strategy: CladdingParameters) -> Size:
+    """The size of layers on faces; without points if an overlap replaces the bead spacing."""
     spacing = strategy.bead_spacing if strategy.bead_overlap is None else math.inf
     high = strategy.layers * strategy.layer_height
     points = sum(
-        weight * _on_sheet(sheet, share * high, strategy.chord_error)
+        weight * _sheet_points(sheet, share * high, strategy.chord_error)
         for sheet in faces.sheets
         for share, weight in ((0.0, 1 / 6), (0.5, 2 / 3), (1.0, 1 / 6))  # Simpson's rule
     )
     return Size(strategy.layers, strategy.layers * points / spacing)
 
 
-def _on_sheet(sheet: PatchWall, high: float, chord_error: float) -> float:
-    """About how many points, times mm of bead spacing, a layer has that lies so much above a sheet: around a rod it
-    is larger, in a trough smaller. Beads bend as the edges of triangles do, and a quarter of the chord error is theirs."""
+def _sheet_points(sheet: PatchWall, high: float, chord_error: float) -> float:
+    """Estimated points, times mm of bead spacing, of a layer at a height above a sheet: larger around a rod, smaller in a trough.
+    Beads bend as the edges of triangles do, and a quarter of the chord error is theirs.
+    """
     feet, normals = sheet.project(sheet.vertices)
-    corner, way = (feet + high * normals)[sheet.triangles], normals[sheet.triangles]
+    corner, normal = (feet + high * normals)[sheet.triangles], normals[sheet.triangles]
     sides = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2)
-    turned = np.linalg.norm(way - np.roll(way, 1, axis=1), axis=2)
+    turned = np.linalg.norm(normal - np.roll(normal, 1, axis=1), axis=2)
     dense = np.sqrt(turned / np.maximum(sides, 1e-300) / (2.0 * chord_error)).mean(axis=1)
     area = 0.5 * np.linalg.norm(doubled_areas(corner), axis=1)
     extent = float(np.ptp(corner, axis=(0, 1)).max())
@@ -229,8 +237,10 @@ def _on_sheet(sheet: PatchWall, high: float, chord_error: float) -> float:
 
 
 def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = None) -> None:
-    """InputError TOO_MANY for more than MOST_LAYERS or MOST_POINTS, naming the parameter that is farthest below what is
-    usual. width: mm of the beads, where it and an overlap give their spacing."""
+    """InputError TOO_MANY for more than MOST_LAYERS or MOST_POINTS, naming the parameter farthest below its usual value.
+
+    width: mm of the beads, if it and an overlap give their spacing.
+    """
     height = strategy.layer_height
     if size.layers > MOST_LAYERS:
         raise InputError(
@@ -245,7 +255,10 @@ def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = N
         )
     over = size.points / MOST_POINTS
     if over > 1.0:
-        cause = max(_causes(strategy, width), key=lambda one: (one.usual / one.value) ** one.power)
+        cause = max(
+            _causes(strategy, width),
+            key=lambda candidate: (candidate.usual / candidate.value) ** candidate.power,
+        )
         enough = at_least(cause.value * over ** (1.0 / cause.power))
         raise InputError(
             "TOO_MANY",
@@ -259,7 +272,7 @@ def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = N
         )
 
 
-def judged(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
+def size_issues(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
     """A note LARGE where planning takes more than LARGE_SECONDS or LARGE_GIGABYTES; one more where the grids of curved
     layers or the folds of a mesh take longer than all points, and these take LARGE_GIGABYTES. Raises InputError as
     `refuse_absurd`."""
@@ -272,7 +285,7 @@ def judged(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
         size.points * a_point, size.layers * SECONDS_A_LAYER, size.squares * SECONDS_A_SQUARE
     )
     gigabytes = size.gigabytes
-    shapes = _of_shape(size, max(seconds, LARGE_SECONDS))
+    shapes = _shape_issues(size, max(seconds, LARGE_SECONDS))
     if gigabytes < LARGE_GIGABYTES and (shapes or seconds < LARGE_SECONDS):
         return shapes
     return (
@@ -292,8 +305,8 @@ def judged(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
     )
 
 
-def _of_shape(size: Size, seconds: float) -> tuple[Issue, ...]:
-    """A note LARGE where it is the shape that takes longer than so many seconds, however few points its beads have."""
+def _shape_issues(size: Size, seconds: float) -> tuple[Issue, ...]:
+    """A note LARGE if the shape takes longer than a time, s, however few points its beads have."""
     grids, folds = size.nodes * SECONDS_A_NODE, size.folds * SECONDS_A_FOLD
     if grids > seconds:
         return (
@@ -324,9 +337,8 @@ def _of_shape(size: Size, seconds: float) -> tuple[Issue, ...]:
     return ()
 
 
-def of_tilting(points: int, times: int = 1) -> tuple[Issue, ...]:
-    """A note LARGE where tilts of the nozzle are searched for at so many points of beads that it takes long. times: that
-    they are searched for at most, where the tool turns too fast with those found first."""
+def tilting_issues(points: int, times: int = 1) -> tuple[Issue, ...]:
+    """A note LARGE if the search for nozzle tilts at a number of points takes long. times: maximum number of searches if the tool turns too fast."""
     seconds = points * times * SECONDS_A_TILT
     if seconds < LARGE_SECONDS:
         return ()
@@ -360,10 +372,14 @@ def of_tilting(points: int, times: int = 1) -> tuple[Issue, ...]:
     )
 
 
-def of_remedies(points: int, each: float, longest: float = math.inf) -> tuple[Issue, ...]:
-    """A note LARGE where a job cannot be carried out, and planning so many points at most anew, to find what would make it
-    feasible, takes long. each: s that a point takes; longest: s, after which the search stops."""
-    seconds = min(points * each, longest)
+def remedy_issues(
+    points: int, seconds_per_point: float, longest: float = math.inf
+) -> tuple[Issue, ...]:
+    """A note LARGE if the search for a remedy of an infeasible job, by planning a number of points again, takes long.
+
+    seconds_per_point: s; longest: s, after which the search stops.
+    """
+    seconds = min(points * seconds_per_point, longest)
     if seconds < LARGE_SECONDS:
         return ()
     return (
@@ -380,7 +396,7 @@ def of_remedies(points: int, each: float, longest: float = math.inf) -> tuple[Is
 
 
 class _Cause(NamedTuple):
-    """A parameter in mm, what it usually is, and by which power of it the points become fewer."""
+    """A parameter in mm, its usual value, and the power by which the number of points decreases with it."""
 
     key: str
     value: float
@@ -390,17 +406,17 @@ class _Cause(NamedTuple):
 
 def _causes(strategy: LayerParameters, width: float | None) -> list[_Cause]:
     usual = type(strategy)()
-    found = [
+    causes = [
         _Cause("strategy.layer_height", strategy.layer_height, usual.layer_height),
         _Cause("strategy.chord_error", strategy.chord_error, usual.chord_error, 0.5),
     ]
     if width is not None:
-        found.append(_Cause("process.bead_width", width, ProcessParameters().bead_width))
+        causes.append(_Cause("process.bead_width", width, ProcessParameters().bead_width))
     elif isinstance(strategy, FilledParameters):
-        found.append(
+        causes.append(
             _Cause("strategy.bead_spacing", strategy.bead_spacing, FilledParameters().bead_spacing)
         )
-    return found
+    return causes
 
 
 def _chords(points: Array, closed: bool, chord_error: float) -> tuple[float, float]:

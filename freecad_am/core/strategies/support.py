@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What carries beads besides deposit: the platform or plane that a part stands on, the hub, the substrate, fixtures."""
+"""Support of beads besides deposit: the platform or plane under a part, the hub, the substrate, fixtures."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from ..toolpath import Toolpath
 from ..types import Array, Mask
 
 STEPS = 7  # places on the way down at which a body is looked for
-ON = 0.5  # layer heights; what is no farther from a body lies on it, whichever way it is
+CONTACT_HEIGHTS = 0.5  # layer heights; a point no farther from a body is on it, in any direction
 FLUSH = 1e-6  # mm
 OVER_PLATFORM, ABOVE_PLATFORM = "OVER_PLATFORM", "ABOVE_PLATFORM"
 ABOVE_SUBSTRATE = "ABOVE_SUBSTRATE"
@@ -31,17 +31,17 @@ BY_ITSELF = (
     "surface",
     CURVES,
     "cladding",
-)  # families whose first layer lies where it begins by its making
+)  # families whose first layer starts on its base by construction
 
 
-def with_support(
+def check_support(
     toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]
 ) -> Toolpath:
-    """The toolpath with how much of it lies over nothing, and issues where.
+    """The toolpath with its unsupported length, and issues.
 
-    planes: frames (4, 4) in part coordinates, what lies on the plane z = 0 of
-    one, or below it, is carried. bases: hubs, which count where most of the first layer is on none of the bodies: then the
-    hub is known by its surface alone. The first layer of a wall lies by its making where the wall begins, and is carried.
+    planes: frames (4, 4) in part coordinates; points on or below the plane z = 0 of one are supported. bases: hubs, which count if
+    most of the first layer is on none of the bodies: then only the hub's surface is known. The first layer of a wall starts on the
+    wall's base by construction, and is supported.
     """
     ground = _Ground(toolpath, planes, bodies, bases)
     open_, issues = support.find_unsupported(
@@ -52,33 +52,36 @@ def with_support(
     )
 
 
-def of_feature(
+def feature_support(
     toolpath: Toolpath,
     number: int,
     planes: Sequence[Array],
     bodies: Sequence[Body],
     bases: Sequence[Base],
 ) -> tuple[dict[int, float], list[Issue]]:
-    """How much of the layers of one of the features of a toolpath lies over nothing, mm by layer, and issues where; deposit
-    of the other features carries what comes after it. planes, bodies, bases: as of `with_support`."""
-    part, numbers = toolpath.parts[number]
-    ground = _Ground(part, planes, bodies, bases)
-    whole = replace(toolpath, layer_height=part.layer_height)
+    """Unsupported length of one feature's layers, mm by layer, and issues; deposit of other features supports later layers.
+
+    planes, bodies, bases: as in `check_support`.
+    """
+    feature, numbers = toolpath.parts[number]
+    ground = _Ground(feature, planes, bodies, bases)
+    scaled = replace(toolpath, layer_height=feature.layer_height)
     return support.find_unsupported(
-        whole,
+        scaled,
         ground,
-        part.family in BY_ITSELF,
-        _lowest(whole, part.family, int(numbers[0])),
+        feature.family in BY_ITSELF,
+        _lowest(scaled, feature.family, int(numbers[0])),
         numbers,
     )
 
 
-def _lowest(toolpath: Toolpath, family: str, first: int) -> Mask:
-    """Which layers (l,) are laid on ground, a layer height above it at most: the first one, those that begin another solid,
-    and of curves, several of which may be laid one after the other, all."""
-    found = np.array([layer.first or family == CURVES for layer in toolpath.layers], dtype=bool)
-    found[first] = True
-    return found
+def _lowest(toolpath: Toolpath, family: str, first_layer: int) -> Mask:
+    """Mask (l,) of the layers deposited on ground, at most a layer height above it: the first one, layers that begin another solid,
+    and all layers of curves, whose curves may be deposited one after the other.
+    """
+    mask = np.array([layer.first or family == CURVES for layer in toolpath.layers], dtype=bool)
+    mask[first_layer] = True
+    return mask
 
 
 def over_edge(
@@ -88,20 +91,27 @@ def over_edge(
     bodies: Sequence[Body],
     feature: Array | None = None,
 ) -> list[Issue]:
-    """A warning where beads of the first layer lie on the plane of the platform, a disc of `diameter` mm about the origin of
-    the frame (4, 4) in part coordinates, or of solids below it, and beyond its edge by more than half of their width, on
-    none of the bodies. feature: the frame that `cell.mount: feature` would have instead, which is tried."""
-    first = cut_beads(replace(toolpath, layers=toolpath.layers[:1]), support.PIECE)
-    beyond = _beyond(toolpath, first, frame, diameter)
-    out = np.flatnonzero(beyond > 0.5 * first.width)
-    out = out[~_Ground(toolpath, (), bodies, ())(first.middle[out], first.build[out])]
+    """A warning if beads of the first layer on the plane of the platform, or of solids below it, are beyond its edge by more than
+    half of their width, and on none of the bodies.
+
+    The platform is a disc of `diameter` mm about the origin of the frame (4, 4) in part coordinates. feature: the alternative frame
+    of `cell.mount: feature`, which is tried.
+    """
+    first_pieces = cut_beads(replace(toolpath, layers=toolpath.layers[:1]), support.PIECE)
+    beyond = _beyond_edge(toolpath, first_pieces, frame, diameter)
+    out = np.flatnonzero(beyond > 0.5 * first_pieces.width)
+    out = out[~_Ground(toolpath, (), bodies, ())(first_pieces.middle[out], first_pieces.build[out])]
     if not len(out):
         return []
     worst = out[beyond[out].argmax()]
     mounted = (
         feature is not None
         and stands_on(toolpath, feature, bodies)
-        and bool((_beyond(toolpath, first, feature, diameter) <= 0.5 * first.width).all())
+        and bool(
+            (
+                _beyond_edge(toolpath, first_pieces, feature, diameter) <= 0.5 * first_pieces.width
+            ).all()
+        )
     )
     return [
         Issue(
@@ -110,7 +120,7 @@ def over_edge(
             Text(
                 "{:.4g} mm of the first layer lie over the edge of the platform, up to {:.4g} mm "
                 "beyond it; {}, or set cell.platform_diameter to what there is (0 for none)",
-                math.fsum(first.length[out]),
+                math.fsum(first_pieces.length[out]),
                 beyond[worst],
                 Word(
                     "put the part on its middle by cell.mount: feature, move it"
@@ -119,19 +129,20 @@ def over_edge(
                 ),
             ),
             0,
-            int(first.bead[worst]),
-            int(first.point[worst]),
+            int(first_pieces.bead[worst]),
+            int(first_pieces.point[worst]),
         )
     ]
 
 
-def _beyond(toolpath: Toolpath, first: Pieces, frame: Array, diameter: float) -> Array:
-    """How far (n,) mm pieces of the first layer on the plane of a platform, or of solids below it, are beyond its edge; -inf
-    of all others. The first layers of walls, hubs and curves may lie on what is not in the file."""
-    local = (first.middle - frame[:3, 3]) @ frame[:3, :3]
+def _beyond_edge(toolpath: Toolpath, first_pieces: Pieces, frame: Array, diameter: float) -> Array:
+    """Distance (n,) mm beyond the platform's edge of pieces of the first layer on its plane, or of solids below it; -inf for others.
+    The first layers of walls, hubs and curves may be on objects that are not in the file.
+    """
+    local = (first_pieces.middle - frame[:3, 3]) @ frame[:3, :3]
     on_plane = (
         np.abs(local[:, 2]) if toolpath.family != "solid" else local[:, 2]
-    ) <= ON * toolpath.layer_height
+    ) <= CONTACT_HEIGHTS * toolpath.layer_height
     return np.where(on_plane, np.hypot(local[:, 0], local[:, 1]) - 0.5 * diameter, -np.inf)
 
 
@@ -140,23 +151,24 @@ def stands_on(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> bool:
     comes."""
     points = [bead.points for _, _, bead in toolpath]
     heights = [
-        (some - frame[:3, 3]) @ frame[:3, 2]
-        for some in (*points, *(body.vertices for body in bodies))
+        (points_ - frame[:3, 3]) @ frame[:3, 2]
+        for points_ in (*points, *(body.vertices for body in bodies))
     ]
-    first = np.concatenate(heights[: len(toolpath.layers[0].beads)])
-    return min(map(np.min, heights)) >= -ON * toolpath.layer_height and bool(
-        (first <= ON * toolpath.layer_height).any()
+    first_heights = np.concatenate(heights[: len(toolpath.layers[0].beads)])
+    return min(map(np.min, heights)) >= -CONTACT_HEIGHTS * toolpath.layer_height and bool(
+        (first_heights <= CONTACT_HEIGHTS * toolpath.layer_height).any()
     )
 
 
 def above(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> list[Issue]:
-    """A warning where most of the first layer lies above the plane of the platform, z = 0 of the frame (4, 4) in part
-    coordinates, and on none of the bodies."""
-    first = cut_beads(replace(toolpath, layers=toolpath.layers[:1]), support.PIECE)
-    height = (first.middle - frame[:3, 3]) @ frame[:3, 2]
+    """A warning if most of the first layer is above the plane of the platform, z = 0 of the frame (4, 4) in part coordinates, and on
+    none of the bodies.
+    """
+    first_pieces = cut_beads(replace(toolpath, layers=toolpath.layers[:1]), support.PIECE)
+    height = (first_pieces.middle - frame[:3, 3]) @ frame[:3, 2]
     up = np.flatnonzero(height > support.REACH * toolpath.layer_height)
-    up = up[~_Ground(toolpath, (), bodies, ())(first.middle[up], first.build[up])]
-    if 2.0 * first.length[up].sum() <= first.length.sum():
+    up = up[~_Ground(toolpath, (), bodies, ())(first_pieces.middle[up], first_pieces.build[up])]
+    if 2.0 * first_pieces.length[up].sum() <= first_pieces.length.sum():
         return []
     highest = up[height[up].argmax()]
     return [
@@ -166,33 +178,35 @@ def above(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> list[Issu
             Text(
                 "{:.4g} mm of the first layer lie up to {:.4g} mm above the platform, over nothing; "
                 "put the part on it by cell.mount: feature, move it in its file, or name what it grows on as its substrate",
-                math.fsum(first.length[up]),
+                math.fsum(first_pieces.length[up]),
                 height[highest],
             ),
             0,
-            int(first.bead[highest]),
-            int(first.point[highest]),
+            int(first_pieces.bead[highest]),
+            int(first_pieces.point[highest]),
         )
     ]
 
 
 def surely_above(solids: SolidsOnHub, layer_height: float) -> bool:
-    """Whether `above` warns of the toolpath of solids on the plane z = 0, whatever its layers are: they stand on planes and
-    on no body, and all of them lies too far above that one."""
-    if solids.surroundings or not on_planes([group.base for group in solids.groups]):
+    """Whether `above` warns of the toolpath of solids on the plane z = 0, whatever its layers are: they are based on planes and on no
+    body, all too far above that plane.
+    """
+    if solids.surroundings or not is_on_planes([group.base for group in solids.groups]):
         return False
     low = min(float(body.vertices[:, 2].min()) for group in solids.groups for body in group.bodies)
     return low > support.REACH * layer_height
 
 
-def on_planes(bases: Sequence[Base]) -> bool:
-    """Whether solids stand on planes alone, those of guides among them."""
+def is_on_planes(bases: Sequence[Base]) -> bool:
+    """Whether every solid is based on a plane, or on a guide's plane."""
     return bool(bases) and all(isinstance(base.surface, (Plane, Guide)) for base in bases)
 
 
 class _Ground:
-    """Whether something other than deposit carries points (n, 3) with build directions (n, 3), of the first layer or, where
-    `first` (n,) is not true, of those after it."""
+    """Whether something other than deposit supports points (n, 3) with build directions (n, 3), in the first layer or, where `first`
+    (n,) is false, in later ones.
+    """
 
     def __init__(
         self,
@@ -208,48 +222,51 @@ class _Ground:
             if (search := _search(body, toolpath.layer_height)) is not None
         ]
         if bases and self._searches:
-            first = toolpath.layers[0].beads
+            first_beads = toolpath.layers[0].beads
             points, build = (
-                np.vstack([getattr(bead, name) for bead in first]) for name in ("points", "build")
+                np.vstack([getattr(bead, name) for bead in first_beads])
+                for name in ("points", "build")
             )
-            some = slice(None, None, max(1, len(points) // 1000))
+            sample = slice(None, None, max(1, len(points) // 1000))
             reach = np.full(len(points), support.REACH * self._height)
-            if self._on_bodies(points[some], build[some], reach[some]).mean() > 0.5:
+            if self._is_on_bodies(points[sample], build[sample], reach[sample]).mean() > 0.5:
                 self._bases = ()
 
-    def __call__(self, points: Array, build: Array, first: Mask | None = None) -> Mask:
-        first = np.ones(len(points), dtype=bool) if first is None else first
-        down = np.where(first, support.REACH, support.DOWN) * self._height
+    def __call__(self, points: Array, build: Array, is_first: Mask | None = None) -> Mask:
+        is_first = np.ones(len(points), dtype=bool) if is_first is None else is_first
+        down = np.where(is_first, support.REACH, support.DOWN) * self._height
         reach = down * (1.0 + FLUSH)
-        found = np.zeros(len(points), dtype=bool)
+        is_supported = np.zeros(len(points), dtype=bool)
         for frame in self._planes:
-            found |= (points - frame[:3, 3]) @ frame[:3, 2] <= reach
+            is_supported |= (points - frame[:3, 3]) @ frame[:3, 2] <= reach
         for base in self._bases:
-            found |= base.surface.distance(base.inside(points)) <= reach
-        rest = np.flatnonzero(~found)
-        found[rest] = self._on_bodies(points[rest], build[rest], down[rest])
-        return found
+            is_supported |= base.surface.distance(base.inside(points)) <= reach
+        rows = np.flatnonzero(~is_supported)
+        is_supported[rows] = self._is_on_bodies(points[rows], build[rows], down[rows])
+        return is_supported
 
-    def _on_bodies(self, points: Array, build: Array, reach: Array) -> Mask:
+    def _is_on_bodies(self, points: Array, build: Array, reach: Array) -> Mask:
         """Whether there is a body below them, no more than `reach` (n,) mm."""
-        found = np.zeros(len(points), dtype=bool)
+        is_supported = np.zeros(len(points), dtype=bool)
         if not len(points):
-            return found
+            return is_supported
         stride = reach / (STEPS - 1)
         for search in self._searches:
-            left = np.flatnonzero(~found)
-            away = _away(search, points[left])
-            found[left[away <= ON * self._height]] = True
-            left = left[(away > ON * self._height) & (away <= (reach + stride)[left])]
+            rows = np.flatnonzero(~is_supported)
+            distance = _body_distances(search, points[rows])
+            is_supported[rows[distance <= CONTACT_HEIGHTS * self._height]] = True
+            rows = rows[
+                (distance > CONTACT_HEIGHTS * self._height) & (distance <= (reach + stride)[rows])
+            ]
             for step in range(1, STEPS):
-                left = left[~found[left]]
-                if len(left):
-                    below = points[left] - step * stride[left, None] * build[left]
-                    found[left] = _away(search, below) <= 0.5 * stride[left]
-        return found
+                rows = rows[~is_supported[rows]]
+                if len(rows):
+                    below = points[rows] - step * stride[rows, None] * build[rows]
+                    is_supported[rows] = _body_distances(search, below) <= 0.5 * stride[rows]
+        return is_supported
 
 
-def _away(search: Search, points: Array) -> Array:
+def _body_distances(search: Search, points: Array) -> Array:
     """Distances (k,) mm of points from a body, negative inside; below a flat one, as a platform is, there is no inside."""
     return search.distance(points) if search.flat else search.signed(points)[0]
 

@@ -183,9 +183,9 @@ def _nozzle_looked(
     """What the nozzle touches on the features that ask for clearance."""
     bodies = (*toolpath.surroundings, *platforms(cell, toolpath)) if any(clearance_asked) else ()
     nozzle = NozzleParameters() if cell is None else cell.nozzle
-    return clearance_look.together(
+    return clearance_look.join_checks(
         [
-            clearance_look.looked_at(
+            clearance_look.check_nozzle(
                 toolpath, bodies, nozzle, NOZZLE_PLACES // len(clearance_asked), number
             )
             for number, clear in enumerate(clearance_asked)

@@ -130,7 +130,7 @@ def planned_in_sequence(
             stands = mounted(cell or CellParameters(), layers.frame, layers.family)
     assert stands is not None
     around = _distinct([body for entry in members for body in entry.surroundings()])
-    toolpath = sequence.joined(planned_parts, order, stands[:3, 2], around)
+    toolpath = sequence.join_toolpaths(planned_parts, order, stands[:3, 2], around)
     plates = platforms(cell, toolpath)
     progress.report(STRATEGY, CLEARING)
     for number, entry in enumerate(members):
@@ -166,7 +166,7 @@ def _judge_feature(
     if feature_part.family == "solid" and not _lowest(toolpath, feature_part):
         bases = []
     ground = (*entry.inputs.wall.surroundings, *plates)
-    lengths, support_issues = support.of_feature(toolpath, number, planes, ground, bases)
+    lengths, support_issues = support.feature_support(toolpath, number, planes, ground, bases)
     sequence.refuse_floating(toolpath, number, lengths)
     inputs = dataclasses.replace(entry.inputs, stands=stands)
     checked = check_on_part(
@@ -182,7 +182,7 @@ def _judge_feature(
         *support_issues,
         *sequence.renumbered(feature_issues, numbers),
     )
-    return sequence.with_feature(toolpath, number, checked, further_issues)
+    return sequence.update_feature(toolpath, number, checked, further_issues)
 
 
 def _lowest(toolpath: CoreToolpath, feature_part: CoreToolpath) -> bool:

@@ -95,10 +95,10 @@ def planned(
             if inputs.cell is not None and plates
             else toolpath.frame
         )
-        return support.with_support(toolpath, (stands,), toolpath.surroundings, ())
+        return support.check_support(toolpath, (stands,), toolpath.surroundings, ())
     aloft = above_platform(toolpath, inputs)
     toolpath = dataclasses.replace(toolpath, issues=(*toolpath.issues, *aloft))
-    toolpath = support.with_support(
+    toolpath = support.check_support(
         toolpath, (), (*toolpath.surroundings, *plates), () if aloft else bases_of(inputs)
     )
     return over_edge(toolpath, inputs)
@@ -126,7 +126,7 @@ def above_platform(toolpath: CoreToolpath, inputs: Given) -> list[Issue]:
     if (
         inputs.cell is None
         or inputs.cell.platform_diameter <= 0.0
-        or not support.on_planes(bases_of(inputs))
+        or not support.is_on_planes(bases_of(inputs))
     ):
         return []
     return support.above(toolpath, _stands(toolpath, inputs, inputs.cell), toolpath.surroundings)
@@ -309,7 +309,7 @@ def _tilted_clear(
     build: BuildDirectionParameters | None = None,
     plane: Array | None = None,
 ) -> CoreToolpath:
-    """As `tilt_back.kept_clear`; reports its progress, and once that it takes long. build: in place
+    """As `tilt_back.keep_clear`; reports its progress, and once that it takes long. build: in place
     of the feature's.
     """
     from ...core.strategies import size
@@ -319,14 +319,14 @@ def _tilted_clear(
     issues: list[Issue] = []
 
     def report_points(points: int, times: int) -> None:
-        for issue in () if issues else size.of_tilting(points, times):
+        for issue in () if issues else size.tilting_issues(points, times):
             issues.append(issue)
             progress.report_issue(issue)
 
     def share(fraction: float) -> None:
         progress.report(STRATEGY + fraction * (CHECKED - STRATEGY), CLEARING)
 
-    return tilt_back.kept_clear(
+    return tilt_back.keep_clear(
         toolpath,
         bodies,
         inputs.nozzle,
@@ -350,12 +350,14 @@ def _revolution_cleared(
     other features.
     """
     if feature is None:
-        touch_issues = clearance_look.touched_at(toolpath, inputs.wall.surroundings, inputs.nozzle)
+        touch_issues = clearance_look.nozzle_issues(
+            toolpath, inputs.wall.surroundings, inputs.nozzle
+        )
         return dataclasses.replace(toolpath, issues=(*toolpath.issues, *touch_issues))
     feature_part = toolpath.parts[feature][0]
     count = feature_part.point_count
-    alone = clearance_look.looked_at(feature_part, bodies, inputs.nozzle, count)
-    among = clearance_look.looked_at(toolpath, bodies, inputs.nozzle, count, feature)
+    alone = clearance_look.check_nozzle(feature_part, bodies, inputs.nozzle, count)
+    among = clearance_look.check_nozzle(toolpath, bodies, inputs.nozzle, count, feature)
     if among.touched <= alone.touched:
         return toolpath
     return _tilted_clear(toolpath, inputs, bodies, feature)
@@ -379,7 +381,7 @@ def _solids_cleared(
 
     if not inputs.wall.has_plane_layers():
         return _tilted_clear(
-            toolpath, inputs, bodies, feature, solids_plan.without_axis_limits(inputs.build)
+            toolpath, inputs, bodies, feature, solids_plan.lift_axis_limits(inputs.build)
         )
     if feature is None and solids_plan.clear_by_itself(toolpath, inputs.wall):
         return toolpath

@@ -13,7 +13,7 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.slicing.directions import wall as wall_direction
-from freecad_am.core.strategies.clearance.least_turn import least
+from freecad_am.core.strategies.clearance.least_turn import least_cost_states
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 TURN = 2.0 * np.pi
@@ -143,5 +143,7 @@ def test_of_two_ways_round_alike_the_first_is_taken():
     weight, change = np.ones((1, 30)), np.full((1, 29), 3.0)
     for _ in range(20):
         states = (ring * (1.0 + 1e-15 * rng.uniform(-1, 1, ring.shape)))[None, None]
-        chosen = least(np.broadcast_to(states, (1, 1, 5, 2)), allowed, weight, change)[0]
+        chosen = least_cost_states(np.broadcast_to(states, (1, 1, 5, 2)), allowed, weight, change)[
+            0
+        ]
         assert set(chosen[10:20]) == {1} and set(chosen[:5]) == {0}

@@ -47,7 +47,7 @@ def toolpath(*layers, family="surface", height=HEIGHT, width=WIDTH):
 
 def told(path, planes=(), bodies=(), bases=()):
     """Length over nothing, and the issues."""
-    found = support.with_support(path, planes, bodies, bases)
+    found = support.check_support(path, planes, bodies, bases)
     return found.unsupported, [issue for issue in found.issues if issue.code == "UNSUPPORTED"]
 
 
@@ -260,7 +260,7 @@ def mushroom_path():
         ProcessParameters(),
         None,
     )
-    return support.with_support(made, (), (), (base,))
+    return support.check_support(made, (), (), (base,))
 
 
 def test_the_mushroom_is_told_with_its_length(mushroom_path):

@@ -8,7 +8,7 @@ import pytest
 
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.strategies.clearance import tilt_back
-from freecad_am.core.strategies.clearance.tilt_back import kept_clear
+from freecad_am.core.strategies.clearance.tilt_back import keep_clear
 from tests.core.strategies.test_wall_clearance import LOCAL, NOZZLE, bead, box, codes, toolpath
 
 ALONG = np.linspace(-10.0, 10.0, 5)[:, None] * [1.0, 0.0, 0.0]
@@ -31,18 +31,18 @@ def message(path):
 @pytest.mark.parametrize(("half", "angle"), [(4.0, 5), (7.0, 10)])
 def test_the_half_angle_that_is_named_clears_the_nozzle(half, angle):
     path = toolpath(bead(ALONG))
-    told = message(kept_clear(path, slot(half), NOZZLE, dataclasses.replace(LOCAL, max_tilt=np.pi)))
+    told = message(keep_clear(path, slot(half), NOZZLE, dataclasses.replace(LOCAL, max_tilt=np.pi)))
     assert (
         f"with `cell.nozzle.half_angle: {angle} deg` the nozzle is clear, which was tried" in told
     )
     assert OTHER not in told and "slimmer" not in told
     slim = NozzleParameters(half_angle=np.radians(angle))
-    assert codes(kept_clear(path, slot(half), slim, LOCAL)) in ([], ["TILT_BACK"])
+    assert codes(keep_clear(path, slot(half), slim, LOCAL)) in ([], ["TILT_BACK"])
 
 
 def test_a_slimmer_nozzle_that_does_not_help_is_not_named():
     told = message(
-        kept_clear(
+        keep_clear(
             toolpath(bead(ALONG)),
             slot(1.2, 60.0),
             NOZZLE,
@@ -55,11 +55,11 @@ def test_a_slimmer_nozzle_that_does_not_help_is_not_named():
 def test_a_larger_tilt_is_named_where_that_clears_it():
     ceiling, path = [box([-60, -4, 6], [60, 60, 30], "ceiling")], toolpath(bead(ALONG))
     told = message(
-        kept_clear(path, ceiling, NOZZLE, dataclasses.replace(LOCAL, max_tilt=np.radians(20.0)))
+        keep_clear(path, ceiling, NOZZLE, dataclasses.replace(LOCAL, max_tilt=np.radians(20.0)))
     )
     assert "with `build_direction.max_tilt: 65 deg` the nozzle is clear" in told
     wide = dataclasses.replace(LOCAL, max_tilt=np.radians(65.0))
-    assert codes(kept_clear(path, ceiling, NOZZLE, wide)) == ["TILT_BACK"]
+    assert codes(keep_clear(path, ceiling, NOZZLE, wide)) == ["TILT_BACK"]
 
 
 def test_what_gives_room_at_the_points_and_not_to_the_bead_is_not_named(monkeypatch):
@@ -71,7 +71,7 @@ def test_what_gives_room_at_the_points_and_not_to_the_bead_is_not_named(monkeypa
         asked.append(nozzle.half_angle)
         return dataclasses.replace(path, issues=lost)
 
-    made = kept_clear(
+    made = keep_clear(
         toolpath(bead(ALONG)),
         slot(4.0),
         NOZZLE,
@@ -79,9 +79,9 @@ def test_what_gives_room_at_the_points_and_not_to_the_bead_is_not_named(monkeypa
         remedy=False,
     )
     lost = made.issues
-    monkeypatch.setattr(tilt_back, "kept_clear", in_vain)
+    monkeypatch.setattr(tilt_back, "keep_clear", in_vain)
     told = message(
-        kept_clear(
+        keep_clear(
             toolpath(bead(ALONG)), slot(4.0), NOZZLE, dataclasses.replace(LOCAL, max_tilt=np.pi)
         )
     )

@@ -16,7 +16,7 @@ from freecad_am.core.layers.surface import Slice
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.strategies.solids.beads import CLOSE, bead_of, needed
+from freecad_am.core.strategies.solids.beads import MIN_DISTANCE_MM, bead_of, needed
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -32,13 +32,13 @@ def test_points_that_all_but_coincide_are_one(seed):
     got = divide_edges(got, RoundLayer(Developable(60.0, 200.0)).pieces(got, 0.01))[0]
     np.testing.assert_array_equal(got[[0, -1]], line[[0, -1]])
     gaps = np.linalg.norm(np.diff(got, axis=0), axis=1)
-    if line[-1, 0] > 2.0 * CLOSE:
-        assert gaps.min() > 0.5 * CLOSE
-    assert cKDTree(got).query(line)[0].max() < 2.5 * CLOSE or len(got) > 2
+    if line[-1, 0] > 2.0 * MIN_DISTANCE_MM:
+        assert gaps.min() > 0.5 * MIN_DISTANCE_MM
+    assert cKDTree(got).query(line)[0].max() < 2.5 * MIN_DISTANCE_MM or len(got) > 2
     # nothing of the line is left out: every point of it is near the new one
     share = np.linspace(0.0, 1.0, 50)[:, None, None]
     fine = ((1.0 - share) * got[:-1] + share * got[1:]).reshape(-1, 2)
-    assert cKDTree(fine).query(line)[0].max() < 2.5 * CLOSE + gaps.max() / 50.0
+    assert cKDTree(fine).query(line)[0].max() < 2.5 * MIN_DISTANCE_MM + gaps.max() / 50.0
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from freecad_am.core.strategies.clearance.least_turn import BARRED, least
+from freecad_am.core.strategies.clearance.least_turn import BARRED, least_cost_states
 
 
 def cost(states, allowed, weight, change, way):
@@ -29,7 +29,7 @@ def test_no_way_is_better(seed, same):
     states = rng.normal(size=(1, 1, s, 2) if same else (b, n, s, 2))
     allowed = rng.random((b, n, s)) > 0.4
     weight, change = rng.uniform(0.1, 1, (b, n)), rng.uniform(0, 2, (b, n - 1))
-    found = least(states, allowed, weight, change)
+    found = least_cost_states(states, allowed, weight, change)
     for k in range(b):
         own = np.broadcast_to(states[0] if same else states[k], (n, s, 2))
         best = min(

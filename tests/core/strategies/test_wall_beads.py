@@ -6,7 +6,7 @@ import pytest
 
 from freecad_am.core.geometry.walls.patch_wall import FirstCurve
 from freecad_am.core.slicing.curve_points import sample_within_chord
-from freecad_am.core.strategies.walls.beads import NEAREST, traced
+from freecad_am.core.strategies.walls.beads import MIN_DISTANCE_MM, traced
 
 TINY = 3.1e-5
 
@@ -28,7 +28,7 @@ def test_corners_next_to_an_end_are_the_end(ends):
     corners = [(0, low or 5, 0), (0, 0, 0), (7, 0, 0), (7, high or 5, 0)]
     curve = polygon(corners, False)
     line = traced(curve, sample_within_chord(curve, curve.w[0], curve.w[-1], 0.01), False)
-    assert np.linalg.norm(np.diff(line.points, axis=0), axis=1).min() >= NEAREST
+    assert np.linalg.norm(np.diff(line.points, axis=0), axis=1).min() >= MIN_DISTANCE_MM
     assert line.points[[0, -1]] == pytest.approx(np.array(corners, dtype=float)[[0, -1]], abs=1e-12)
     right = np.array([1.0, 0.0, 0.0])
     if low:
@@ -43,7 +43,7 @@ def test_a_seam_next_to_a_corner_keeps_its_place_and_the_turn(shift):
     start = curve.w[1] + shift
     w = sample_within_chord(curve, start, start + curve.period, 0.01)
     line = traced(curve, w, True)
-    assert np.linalg.norm(np.diff(line.points, axis=0), axis=1).min() >= NEAREST
+    assert np.linalg.norm(np.diff(line.points, axis=0), axis=1).min() >= MIN_DISTANCE_MM
     assert (line.points[0] == line.points[-1]).all()
     assert line.points[0] == pytest.approx(curve.at(np.array([start]))[0][0], abs=1e-12)
     assert line.tangents[0, 1] == pytest.approx([0, 1, 0]) and line.tangents[
@@ -54,9 +54,9 @@ def test_a_seam_next_to_a_corner_keeps_its_place_and_the_turn(shift):
 def test_two_corners_side_by_side_are_one_that_turns_by_both():
     curve = polygon([(0, 0, 0), (6, 0, 0), (6 + TINY, TINY, 0), (6 + TINY, 6, 0)], False)
     line = traced(curve, sample_within_chord(curve, curve.w[0], curve.w[-1], 0.01), False)
-    assert np.linalg.norm(np.diff(line.points, axis=0), axis=1).min() >= NEAREST
+    assert np.linalg.norm(np.diff(line.points, axis=0), axis=1).min() >= MIN_DISTANCE_MM
     at = int(np.argmin(np.linalg.norm(line.points - [6, 0, 0], axis=1)))
-    assert line.points[at] == pytest.approx([6, 0, 0], abs=NEAREST)
+    assert line.points[at] == pytest.approx([6, 0, 0], abs=MIN_DISTANCE_MM)
     assert line.tangents[at] == pytest.approx(np.array([[1, 0, 0], [0, 1, 0]], dtype=float))
 
 

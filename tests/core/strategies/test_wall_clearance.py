@@ -28,8 +28,8 @@ from freecad_am.core.strategies.clearance import (
 from freecad_am.core.strategies.clearance import (
     tilt_search,
 )
-from freecad_am.core.strategies.clearance.look import touched_at
-from freecad_am.core.strategies.clearance.tilt_back import kept_clear
+from freecad_am.core.strategies.clearance.look import nozzle_issues
+from freecad_am.core.strategies.clearance.tilt_back import keep_clear
 from freecad_am.core.strategies.progress import Watch
 from freecad_am.core.strategies.walls import plan as surface
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
@@ -159,7 +159,7 @@ def test_a_fat_nozzle_on_the_pipe(mode):
     wall, asked = bend_on_pipe(mode)
     build = BuildDirectionParameters(mode=mode, max_tilt=np.pi)
     plane = wall.symmetry_normal if mode == "symmetry-plane" else None
-    found = kept_clear(asked, [pipe()], FAT, build, plane)
+    found = keep_clear(asked, [pipe()], FAT, build, plane)
 
     def deepest(path):
         low = left_out(FAT) + ABOVE_FACES
@@ -192,7 +192,7 @@ def test_beside_a_tall_face_the_tilt_is_the_least_that_clears_it():
     path = toolpath(bead(np.stack([np.zeros(41), np.linspace(0, 80, 41), np.zeros(41)], axis=1)))
     face = box([10, -200, -50], [30, 300, 150])
     told = []
-    found = kept_clear(path, [face], NOZZLE, LOCAL, watch=Watch(lambda *work: told.append(work)))
+    found = keep_clear(path, [face], NOZZLE, LOCAL, watch=Watch(lambda *work: told.append(work)))
     assert told == [(41, 1)]  # before the work, which may be long
     slope = np.tan(NOZZLE.half_angle)
     needed = brentq(lambda e: (0.5 + 60 * slope) * np.cos(e) - 60 * np.sin(e) - 10.0, 0.0, 1.0)
@@ -209,7 +209,7 @@ def test_a_post_beside_the_way_is_passed_smoothly():
     ring[-1] = ring[0]
     post = box([38, -3, -20], [44, 3, 90], "post")
     path = toolpath(bead(ring, closed=True))
-    found = kept_clear(path, [post], NOZZLE, LOCAL)
+    found = keep_clear(path, [post], NOZZLE, LOCAL)
     tool = found.layers[0].beads[0].tool
     tilt = turned(path, found)
     solid = sampled(NOZZLE, left_out(NOZZLE) + ABOVE_FACES, ring, tool)
@@ -228,7 +228,7 @@ def test_where_nothing_helps_the_place_is_named():
         bead([[0, -10, 1], [0, 10, 1], [0, 30, 1]]),
     )
     lid = box([-90, 5, 8], [90, 90, 9], "lid")  # the nozzle does not fit under it
-    found = kept_clear(
+    found = keep_clear(
         path, [lid, disc(113.0, np.eye(4))], NOZZLE, BuildDirectionParameters(max_tilt=np.pi / 3)
     )
     error = next(issue for issue in found.issues if issue.code == "CLEARANCE")
@@ -238,9 +238,9 @@ def test_where_nothing_helps_the_place_is_named():
 def test_max_tilt_holds():
     path = toolpath(bead(np.stack([np.zeros(11), np.linspace(0, 80, 11), np.zeros(11)], axis=1)))
     face = box([10, -200, -50], [30, 300, 150])
-    tight = kept_clear(path, [face], NOZZLE, BuildDirectionParameters(max_tilt=np.radians(8.0)))
+    tight = keep_clear(path, [face], NOZZLE, BuildDirectionParameters(max_tilt=np.radians(8.0)))
     assert "CLEARANCE" in codes(tight)
-    wide = kept_clear(path, [face], NOZZLE, BuildDirectionParameters(max_tilt=np.radians(25.0)))
+    wide = keep_clear(path, [face], NOZZLE, BuildDirectionParameters(max_tilt=np.radians(25.0)))
     assert codes(wide) == ["TILT_BACK"]
     assert np.degrees(np.arccos(wide.layers[0].beads[0].tool[:, 2])).max() <= 25.0
 
@@ -248,11 +248,11 @@ def test_max_tilt_holds():
 def test_only_what_is_laid_already_counts():
     wall = np.stack([np.full(5, 4.0), np.linspace(-20, 20, 5), np.full(5, 15.0)], axis=1)
     low = np.stack([np.zeros(9), np.linspace(-20, 20, 9), np.zeros(9)], axis=1)
-    first = kept_clear(toolpath(bead(low), bead(wall)), [], NOZZLE, LOCAL)
+    first = keep_clear(toolpath(bead(low), bead(wall)), [], NOZZLE, LOCAL)
     assert codes(first) == [] and touches_deposit(first, NOZZLE) == []
     after = toolpath(bead(wall), bead(low))
     assert touches_deposit(after, NOZZLE)
-    found = kept_clear(after, [], NOZZLE, LOCAL)
+    found = keep_clear(after, [], NOZZLE, LOCAL)
     assert codes(found) == ["TILT_BACK"] and touches_deposit(found, NOZZLE) == []
 
 
@@ -261,12 +261,12 @@ def test_what_is_clear_stays_as_it_is_to_the_bit():
     told = []
     clear = box([40, 40, 0], [50, 50, 50])
     assert (
-        kept_clear(path, [clear], NOZZLE, LOCAL, watch=Watch(lambda *work: told.append(work)))
+        keep_clear(path, [clear], NOZZLE, LOCAL, watch=Watch(lambda *work: told.append(work)))
         is path
         and told == []
     )
     flat = box([-100, -100, -10], [100, 100, 0])
-    assert kept_clear(path, [flat], NOZZLE, LOCAL) is path
+    assert keep_clear(path, [flat], NOZZLE, LOCAL) is path
 
 
 def test_left_out_is_where_the_side_is_one_diameter_away():
@@ -280,14 +280,14 @@ def test_left_out_is_where_the_side_is_one_diameter_away():
 def test_a_look_at_fixtures_names_the_first_place():
     path = toolpath(bead([[0, 0, 0], [20, 0, 0]]), bead([[0, 0, 1], [20, 0, 1]]))
     clamp = box([24, -5, 5], [40, 5, 30], "clamp")
-    (issue,) = touched_at(path, [clamp], NOZZLE)
+    (issue,) = nozzle_issues(path, [clamp], NOZZLE)
     assert (issue.code, issue.layer, issue.bead, issue.point) == (
         "CLEARANCE",
         0,
         0,
         1,
     ) and "clamp" in issue.message
-    assert touched_at(path, [box([60, -5, 5], [70, 5, 30])], NOZZLE) == []
+    assert nozzle_issues(path, [box([60, -5, 5], [70, 5, 30])], NOZZLE) == []
 
 
 def between(path, count=40):
@@ -315,16 +315,16 @@ def test_a_thin_plate_that_reaches_in_between_two_points_is_seen():
         NOZZLE, left_out(NOZZLE), *(path.layers[0].beads[0].points, path.layers[0].beads[0].tool)
     )
     assert not ((solid > low) & (solid < high)).all(axis=2).any()
-    (issue,) = touched_at(path, [plate], NOZZLE)
+    (issue,) = nozzle_issues(path, [plate], NOZZLE)
     assert (issue.code, issue.point) == ("CLEARANCE", 5)
-    found = kept_clear(path, [plate], NOZZLE, LOCAL)
+    found = keep_clear(path, [plate], NOZZLE, LOCAL)
     one = found.layers[0].beads[0]
     assert (
         codes(found) == ["TILT_BACK"]
         and 12 <= len(one) <= 16
         and np.isin(along, one.points[:, 0]).all()
     )
-    assert (one.points[:, 1:] == 0).all() and touched_at(found, [plate], NOZZLE) == []
+    assert (one.points[:, 1:] == 0).all() and nozzle_issues(found, [plate], NOZZLE) == []
     height = np.linspace(left_out(NOZZLE) + ABOVE_FACES, 4.0, 60)
     tip, axis = between(found)
     x, y = np.stack([np.linspace(low[0], high[0], 9), np.full(9, low[1])])
@@ -341,7 +341,7 @@ def test_a_thin_plate_that_reaches_in_between_two_points_is_seen():
 def test_a_plate_between_two_points_that_no_tilt_clears_is_an_error():
     path = toolpath(bead([[-4, 0, 0], [0, 0, 0], [4, 0, 0]]))
     ring = [box([1.9, low, 1.3], [2.1, low + 1.2, 1.7]) for low in (-1.5, 0.3)]
-    found = kept_clear(path, ring, NOZZLE, BuildDirectionParameters(max_tilt=np.radians(5.0)))
+    found = keep_clear(path, ring, NOZZLE, BuildDirectionParameters(max_tilt=np.radians(5.0)))
     error = next(issue for issue in found.issues if issue.code == "CLEARANCE")
     assert (error.level, error.layer, error.bead) == ("error", 0, 0)
 
@@ -359,7 +359,7 @@ def test_tools_that_turn_as_fast_as_they_may_stay_below_that_where_they_are_tilt
 
     def fastest(build):
         work.clear()
-        found = kept_clear(
+        found = keep_clear(
             path, [post], NOZZLE, build, watch=Watch(lambda *some: work.append(some))
         )
         axes = found.layers[0].beads[0].tool
@@ -398,11 +398,11 @@ def deepest_in_wall(path, tall, width):
 def test_a_bead_beside_a_finished_wall_keeps_clear_of_its_flank():
     """8 mm beads to a height of 40 mm, the next one 16 mm from their middle: lines without width were clear."""
     asked = flank(40, 16.0, 8.0)
-    assert kept_clear(dataclasses.replace(asked, bead_width=0.0), [], NOZZLE, LOCAL).issues == ()
+    assert keep_clear(dataclasses.replace(asked, bead_width=0.0), [], NOZZLE, LOCAL).issues == ()
     assert deepest_in_wall(asked, 40, 8.0) > 2.0
-    found = kept_clear(asked, [], NOZZLE, LOCAL)
+    found = keep_clear(asked, [], NOZZLE, LOCAL)
     assert codes(found) == ["TILT_BACK"] and deepest_in_wall(found, 40, 8.0) < 0.2
-    assert kept_clear(flank(40, 30.0, 8.0), [], NOZZLE, LOCAL).issues == ()
+    assert keep_clear(flank(40, 30.0, 8.0), [], NOZZLE, LOCAL).issues == ()
 
 
 def test_a_bead_of_many_points_is_tilted_at_some_and_is_clear_at_all(monkeypatch):
@@ -418,7 +418,7 @@ def test_a_bead_of_many_points_is_tilted_at_some_and_is_clear_at_all(monkeypatch
         "coarse",
         lambda self, watch: searched.append(len(self.flat)) or cones(self, watch),
     )
-    found = kept_clear(asked, [], NOZZLE, LOCAL)
+    found = keep_clear(asked, [], NOZZLE, LOCAL)
     assert codes(found) == ["TILT_BACK"] and set(searched) == {41}
     assert deepest_in_wall(asked, 40, 8.0) > 2.0 and deepest_in_wall(found, 40, 8.0) < 0.3
     tool = found.layers[-1].beads[0].tool
@@ -436,7 +436,7 @@ def test_beads_of_one_layer_that_overlap_hinder_no_one():
         path = Toolpath(
             (Layer(tuple(beads)),), np.eye(4), 2.0, 0.01, family="surface", bead_width=8.0
         )
-        assert kept_clear(path, [], NOZZLE, LOCAL) is path
+        assert keep_clear(path, [], NOZZLE, LOCAL) is path
 
 
 def test_where_some_points_of_a_bead_have_no_way_the_rest_is_not_searched_for_ever():
@@ -455,7 +455,7 @@ def test_where_some_points_of_a_bead_have_no_way_the_rest_is_not_searched_for_ev
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(clearance_room.Scene, "touched", counted)
-        found = kept_clear(path, roof, NOZZLE, LOCAL, remedy=False)
+        found = keep_clear(path, roof, NOZZLE, LOCAL, remedy=False)
     assert codes(found) == ["CLEARANCE"] and sum(looks) < 110 * count
 
 
@@ -484,7 +484,7 @@ def test_only_beads_that_get_points_are_tilted_anew(monkeypatch):
     the others keep their axes to the bit, and all are clear."""
     asked = bend_on_pipe("local")[1]
     build = BuildDirectionParameters(mode="local", max_tilt=np.pi)
-    plain = kept_clear(asked, [pipe()], FAT, build)
+    plain = keep_clear(asked, [pipe()], FAT, build)
     searched, looks, (between, cleared) = (
         [],
         [],
@@ -506,7 +506,7 @@ def test_only_beads_that_get_points_are_tilted_anew(monkeypatch):
 
     monkeypatch.setattr(wall_clearance, "touched_between", looked)
     monkeypatch.setattr(wall_clearance, "_cleared", noted)
-    found = kept_clear(asked, [pipe()], FAT, build)
+    found = keep_clear(asked, [pipe()], FAT, build)
     assert len(searched[0]) > 2 and searched[1:] == [[begin]] and looks[2] == looks[1] + 1
     for number, ((_, _, one), (_, _, two)) in enumerate(zip(plain, found)):
         assert len(two) == len(one) + (number == 2)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What would give the nozzle room where no tilt does: changes that are tried at the points it has none, one at a time."""
+"""Remedies for a touching nozzle that no tilt clears: changes tried one at a time at the points concerned."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from ...parameters.cell import NozzleParameters
 from ...toolpath import Toolpath
 from ...types import Array, Index
 from .places import CAP, Space, space_of
-from .tilt_search import AZIMUTHS, LARGEST, RING
+from .tilt_search import AZIMUTHS, MAX_TILT_RAD, RING
 
 LOOKED_AT = 240  # points, at most
-TOGETHER = 24  # of them; where one has no room the others are not looked at
-SHARES = (0.75, 0.5, 0.25)  # of the half angle of the nozzle, which are looked at
+BATCH_POINTS = 24  # points in a batch; if one has no room, later batches are skipped
+SHARES = (0.75, 0.5, 0.25)  # half angles of the nozzle that are tried
 FARTHER = np.radians(15.0)  # by which the largest tilt is raised
-WHOLE = 4  # changes with which all beads are tilted anew, at most
-LONGEST = 20_000  # points of a toolpath that is
+MAX_TRIALS = 4  # changes with which every bead is tilted again, at most
+MAX_TRIAL_POINTS = 20_000  # points of a toolpath that is
 
 
 class Change(NamedTuple):
@@ -38,7 +38,7 @@ class Change(NamedTuple):
 
 class Touching(NamedTuple):
     """A toolpath with the axes asked for, and the points (k,) that no tilt clears. plane, feature: as of
-    `tilt_back.kept_clear`."""
+    `tilt_back.keep_clear`."""
 
     toolpath: Toolpath
     rows: Index
@@ -46,8 +46,7 @@ class Touching(NamedTuple):
     feature: int | None
 
     def clear_at(self, change: Change) -> bool:
-        """Whether each of the points has a clear tilt, by up to LARGEST, after a change; of very many points, of so many
-        evenly chosen."""
+        """Whether each of the points has a clear tilt, by up to LARGEST, after a change; of many points, a regular sample is checked."""
         space = space_of(
             self.toolpath,
             change.bodies,
@@ -56,20 +55,20 @@ class Touching(NamedTuple):
             False,
             self.feature or 0,
         )
-        chosen = self.rows[
+        sample = self.rows[
             np.unique(
                 np.linspace(0, len(self.rows) - 1, min(LOOKED_AT, len(self.rows))).astype(np.intp)
             )
         ]
-        asked = np.concatenate([bead.tool for _, _, bead in self.toolpath])
+        tool = np.concatenate([bead.tool for _, _, bead in self.toolpath])
         return all(
-            self._clear_at(space, asked, chosen[first : first + TOGETHER])
-            for first in range(0, len(chosen), TOGETHER)
+            self._clear_at(space, tool, sample[start : start + BATCH_POINTS])
+            for start in range(0, len(sample), BATCH_POINTS)
         )
 
-    def _clear_at(self, space: Space, asked: Array, rows: Index) -> bool:
-        for number in range(round(LARGEST / RING) + 1):
-            axes = self._cone(asked[rows], number * RING)
+    def _clear_at(self, space: Space, tool: Array, rows: Index) -> bool:
+        for number in range(round(MAX_TILT_RAD / RING) + 1):
+            axes = self._cone(tool[rows], number * RING)
             free = (
                 space.clear(np.repeat(rows, axes.shape[1]), axes.reshape(-1, 3))
                 .reshape(len(rows), -1)
@@ -80,58 +79,65 @@ class Touching(NamedTuple):
                 return True
         return False
 
-    def _cone(self, asked: Array, angle: float) -> Array:
+    def _cone(self, tool: Array, angle: float) -> Array:
         """Axes (k, s, 3) at an angle, rad, from those asked for (k, 3)."""
         if self.plane is not None:
-            sides = np.cross(self.plane, asked)[:, None] * np.array([1.0, -1.0])[:, None]
+            sides = np.cross(self.plane, tool)[:, None] * np.array([1.0, -1.0])[:, None]
         else:
             turn = 2.0 * np.pi * np.arange(AZIMUTHS) / AZIMUTHS
             level = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(AZIMUTHS)])
             sides = np.einsum(
-                "sj,kij->ksi", level, frames.smallest_rotation(np.array([0.0, 0.0, 1.0]), asked)
+                "sj,kij->ksi", level, frames.smallest_rotation(np.array([0.0, 0.0, 1.0]), tool)
             )
-        axes: Array = np.cos(angle) * asked[:, None] + np.sin(angle) * sides
+        axes: Array = np.cos(angle) * tool[:, None] + np.sin(angle) * sides
         return axes
 
 
 def what_helps(touching: Touching, now: Change, clears: Callable[[Change], bool]) -> Text:
-    """What to do, in words that end a message: the first change with which the nozzle is clear, or that none is known.
-    clears: tilts all beads anew."""
-    tried: list[Text] = []
-    whole = WHOLE
+    """The remedy as the end of a message: the first change with which the nozzle is clear, or that none is known. clears: tilts
+    every bead again.
+    """
+    trials: list[Text] = []
+    trials_left = MAX_TRIALS
     for changes in (_tilts(now), _half_angles(now), _cleared_away(now)):
-        for change in _of_use(touching, changes):
-            if touching.toolpath.point_count > LONGEST:
+        for change in _useful_changes(touching, changes):
+            if touching.toolpath.point_count > MAX_TRIAL_POINTS:
                 return Text(
                     "these points would have room with {}, which was not tried for the others",
                     change.words,
                 )
-            whole -= 1
-            if whole >= 0 and clears(change):
+            trials_left -= 1
+            if trials_left >= 0 and clears(change):
                 return Text("with {} the nozzle is clear, which was tried", change.words)
-        tried += [change.words for change in changes[-1:] if whole >= 0]
-    other = Text("use other layers or another direction, or leave out what these points belong to")
+        trials += [change.words for change in changes[-1:] if trials_left >= 0]
+    fallback = Text(
+        "use other layers or another direction, or leave out what these points belong to"
+    )
     return (
-        Text("it still does with {}, each of which was tried; {}", Text.joined(", ", tried), other)
-        if tried
-        else other
+        Text(
+            "it still does with {}, each of which was tried; {}",
+            Text.joined(", ", trials),
+            fallback,
+        )
+        if trials
+        else fallback
     )
 
 
-def _of_use(touching: Touching, changes: list[Change]) -> list[Change]:
-    """The least of changes with which all points have room, and the largest; none where they have none with that."""
+def _useful_changes(touching: Touching, changes: list[Change]) -> list[Change]:
+    """The smallest change that gives every point room, and the largest; empty if the largest does not."""
     if not changes or not touching.clear_at(changes[-1]):
         return []
-    least = next((change for change in changes[:-1] if touching.clear_at(change)), changes[-1])
-    return [least] if least is changes[-1] else [least, changes[-1]]
+    smallest = next((change for change in changes[:-1] if touching.clear_at(change)), changes[-1])
+    return [smallest] if smallest is changes[-1] else [smallest, changes[-1]]
 
 
 def _tilts(now: Change) -> list[Change]:
     """Larger tilts, the largest last."""
-    most = now.build.max_tilt
+    max_tilt = now.build.max_tilt
     angles = [
-        min(np.pi, most + FARTHER * (k + 1))
-        for k in range(int(np.ceil((np.pi - most) / FARTHER - CAP)))
+        min(np.pi, max_tilt + FARTHER * (k + 1))
+        for k in range(int(np.ceil((np.pi - max_tilt) / FARTHER - CAP)))
     ]
     return [
         now._replace(

@@ -12,51 +12,58 @@ BARRED = 1e9  # cost of a state that is not allowed; finite, so that a chain wit
 AT_ONCE = 1_000_000  # pairs of states worked on at once
 
 
-def least(states: Array, allowed: Mask, weight: Array, change: Array) -> Index:
+def least_cost_states(states: Array, allowed: Mask, weight: Array, change: Array) -> Index:
     """The number (b, n) of the state of each point of b chains for which the sum of two costs is least.
 
-    states: (b, n, s, d), or (1, 1, s, d) when all points have the same. allowed: (b, n, s). weight (b, n): of the square
-    of a state. change (b, n - 1): of the square of the difference of neighbouring states; 0 behind the end of a shorter
-    chain.
+    Parameters
+    ----------
+    states
+        (b, n, s, d), or (1, 1, s, d) if every point has the same.
+    allowed
+        (b, n, s).
+    weight
+        (b, n), of the square of a state.
+    change
+        (b, n - 1), of the square of the difference of neighbouring states; 0 behind the end of a shorter chain.
     """
     b, n, s = allowed.shape
     step = max(1, AT_ONCE // (s * s))
     if b > step:
-        parts = (slice(k, k + step) for k in range(0, b, step))
+        chunks = (slice(k, k + step) for k in range(0, b, step))
         return np.concatenate(
             [
-                least(
-                    states if len(states) == 1 else states[some],
-                    allowed[some],
-                    weight[some],
-                    change[some],
+                least_cost_states(
+                    states if len(states) == 1 else states[chunk],
+                    allowed[chunk],
+                    weight[chunk],
+                    change[chunk],
                 )
-                for some in parts
+                for chunk in chunks
             ]
         )
     same = states.shape[1] == 1
     size = np.broadcast_to((states**2).sum(axis=3), (b, n, s))
-    own = np.where(allowed, weight[:, :, None] * size, BARRED)
+    state_cost = np.where(allowed, weight[:, :, None] * size, BARRED)
     fixed = _between(states[:, 0], states[:, 0]) if same else None
-    total, came = own[:, 0], np.zeros((b, n, s), dtype=np.int32)
+    total, came = state_cost[:, 0], np.zeros((b, n, s), dtype=np.int32)
     for k in range(1, n):
         between = fixed if fixed is not None else _between(states[:, k - 1], states[:, k])
-        ways = total[:, :, None] + change[:, k - 1, None, None] * between
-        best = ways.min(axis=1)
-        came[:, k] = is_tied(ways, best[:, None]).argmax(
+        costs = total[:, :, None] + change[:, k - 1, None, None] * between
+        best = costs.min(axis=1)
+        came[:, k] = is_tied(costs, best[:, None]).argmax(
             axis=1
         )  # what first_least finds, of numbers that are all finite
-        total = best + own[:, k]
-    chosen = np.zeros((b, n), dtype=np.intp)
-    chosen[:, -1] = index_of_minimum(total, axis=1)
+        total = best + state_cost[:, k]
+    states_ = np.zeros((b, n), dtype=np.intp)
+    states_[:, -1] = index_of_minimum(total, axis=1)
     for k in range(n - 1, 0, -1):
-        chosen[:, k - 1] = came[np.arange(b), k, chosen[:, k]]
-    return chosen
+        states_[:, k - 1] = came[np.arange(b), k, states_[:, k]]
+    return states_
 
 
-def _between(one: Array, other: Array) -> Array:
+def _between(a: Array, b: Array) -> Array:
     """Squares (b, s, t) of the differences of states (b, s, d) and (b, t, d), component by component, which is quicker."""
-    total: Array = np.square(one[:, :, None, 0] - other[:, None, :, 0])
-    for component in range(1, one.shape[2]):
-        total += np.square(one[:, :, None, component] - other[:, None, :, component])
+    total: Array = np.square(a[:, :, None, 0] - b[:, None, :, 0])
+    for component in range(1, a.shape[2]):
+        total += np.square(a[:, :, None, component] - b[:, None, :, component])
     return total

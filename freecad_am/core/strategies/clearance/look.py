@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the nozzle touches while it deposits, looked at alone: nothing is tilted."""
+"""Nozzle contacts during deposition, checked without tilting anything."""
 
 from __future__ import annotations
 
@@ -13,35 +13,42 @@ from ...geometry.obstacles import Body
 from ...issues import ERROR, Issue, Text
 from ...parameters.cell import NozzleParameters
 from ...toolpath import Toolpath
-from .notes import CLEARANCE, place
+from .notes import CLEARANCE, locate_row
 from .places import beads_of, halfway, nozzle_of, space_of
 
 
 @dataclass(frozen=True)
 class Looked:
-    """At how many points of a toolpath it was looked, at how many of them the nozzle touches, and the first of these: layer,
-    bead and point, None without any."""
+    """The number of points checked, the number at which the nozzle touches, and the first of the latter: layer, bead and point, None
+    without any.
+    """
 
     count: int
     touched: int
-    place: tuple[int, int, int] | None
+    first_touch: tuple[int, int, int] | None
 
 
-def looked_at(
+def check_nozzle(
     toolpath: Toolpath,
     bodies: Sequence[Body],
     nozzle: NozzleParameters,
-    most: int,
+    max_points: int,
     feature: int | None = None,
 ) -> Looked:
-    """Whether the nozzle touches bodies, the platform one of them, or what is deposited by then, beads as wide and high as
-    they are, at so many points at most, evenly spread. feature: of several features, the one whose points are looked at."""
+    """Check at up to `max_points` evenly spread points whether the nozzle touches bodies or earlier deposit.
+
+    The platform is one of the bodies; beads have their width and height. feature: number of the feature to check, if several.
+    """
     space = space_of(toolpath, bodies, nozzle, np.pi, often=False, feature=feature or 0)
     beads = list(toolpath)
     starts = np.cumsum([0, *(len(bead) for _, _, bead in beads)])
-    mine = np.flatnonzero(np.repeat(beads_of(toolpath, feature), np.diff(starts)))
-    rows = mine[
-        np.unique(np.round(np.linspace(0, len(mine) - 1, min(most, len(mine)))).astype(np.intp))
+    feature_rows = np.flatnonzero(np.repeat(beads_of(toolpath, feature), np.diff(starts)))
+    rows = feature_rows[
+        np.unique(
+            np.round(
+                np.linspace(0, len(feature_rows) - 1, min(max_points, len(feature_rows)))
+            ).astype(np.intp)
+        )
     ]
     tool = np.concatenate([bead.tool for _, _, bead in beads])
     hit = rows[~space.clear(rows, tool[rows])]
@@ -51,15 +58,21 @@ def looked_at(
     return Looked(len(rows), len(hit), (*beads[bead][:2], int(hit[0] - starts[bead])))
 
 
-def together(looks: Sequence[Looked]) -> Looked | None:
-    """Several looks as one; None without any."""
+def join_checks(looks: Sequence[Looked]) -> Looked | None:
+    """Several checks as one; None without any."""
     if not looks:
         return None
-    first = next((one.place for one in looks if one.place is not None), None)
-    return Looked(sum(one.count for one in looks), sum(one.touched for one in looks), first)
+    first_touch = next(
+        (check.first_touch for check in looks if check.first_touch is not None), None
+    )
+    return Looked(
+        sum(check.count for check in looks), sum(check.touched for check in looks), first_touch
+    )
 
 
-def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters) -> list[Issue]:
+def nozzle_issues(
+    toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters
+) -> list[Issue]:
     """An error where the nozzle would touch bodies while depositing, for toolpaths that are not tilted away from them."""
     if not bodies:
         return []
@@ -69,13 +82,13 @@ def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParamet
         np.concatenate([bead.tool for bead in beads]),
     )
     around = nozzle_of(nozzle).bodies
-    near = build_bodies(bodies, points, around.reach)
-    hit = near.touched(around, points, tool) | near.touched(around, *halfway(beads, tool))
+    scene_ = build_bodies(bodies, points, around.reach)
+    hit = scene_.touched(around, points, tool) | scene_.touched(around, *halfway(beads, tool))
     if not hit.any():
         return []
     begin = np.r_[0, np.cumsum([len(bead) for bead in beads])]
-    places = [(i, j) for i, j, _ in toolpath]
-    at, point = place(places, begin, int(np.argmax(hit)))
+    bead_keys = [(i, j) for i, j, _ in toolpath]
+    bead_key, point = locate_row(bead_keys, begin, int(np.argmax(hit)))
     names = Text.joined(" or ", (body.name for body in bodies))
     return [
         Issue(
@@ -88,7 +101,7 @@ def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParamet
                 int(hit.sum()),
                 len(points),
             ),
-            *at,
+            *bead_key,
             point,
         )
     ]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is said of tools that are tilted to keep the nozzle clear."""
+"""Issues about tools tilted to keep the nozzle clear."""
 
 from __future__ import annotations
 
@@ -11,22 +11,23 @@ from ...types import Array, Index, Mask
 CLEARANCE = "CLEARANCE"  # the nozzle touches something while it deposits
 
 
-def place(places: list[tuple[int, int]], begin: Index, row: int) -> tuple[tuple[int, int], int]:
-    """Layer and bead of a row of all points, and the point's number in its bead. places: (layer, bead);
-    begin: first rows."""
+def locate_row(
+    bead_keys: list[tuple[int, int]], begin: Index, row: int
+) -> tuple[tuple[int, int], int]:
+    """Layer and bead of a row of the joined points, and its number in its bead. bead_keys: (layer, bead) pairs; begin: first rows."""
     bead = int(np.searchsorted(begin, row, side="right")) - 1
-    return places[bead], row - int(begin[bead])
+    return bead_keys[bead], row - int(begin[bead])
 
 
 def tilt_issues(
-    places: list[tuple[int, int]], begin: Index, tilt: Array, lost: Mask
+    bead_keys: list[tuple[int, int]], begin: Index, tilt: Array, stuck: Mask
 ) -> list[Issue]:
     """Where tools are tilted, by tilt (n,) rad, and at which points (n,) that does not help."""
-    bead = np.repeat(np.arange(len(places)), np.diff(begin))
-    layer = np.array([place[0] for place in places])[bead]
+    bead = np.repeat(np.arange(len(bead_keys)), np.diff(begin))
+    layer = np.array([key[0] for key in bead_keys])[bead]
     issues = []
-    if lost.any():
-        at, point = place(places, begin, int(np.argmax(lost)))
+    if stuck.any():
+        bead_key, point = locate_row(bead_keys, begin, int(np.argmax(stuck)))
         issues.append(
             Issue(
                 ERROR,
@@ -34,21 +35,23 @@ def tilt_issues(
                 Text(
                     "however the tool is tilted, the nozzle touches substrate, fixture, platform or "
                     "deposit at {} point(s) of layers {} to {}",
-                    int(lost.sum()),
-                    layer[lost].min(),
-                    layer[lost].max(),
+                    int(stuck.sum()),
+                    layer[stuck].min(),
+                    layer[stuck].max(),
                 ),
-                *at,
+                *bead_key,
                 point,
             )
         )
-    moved = ~lost & (tilt > 1e-9)
+    moved = ~stuck & (tilt > 1e-9)
     if moved.any():
         worst = int(np.argmax(np.where(moved, tilt, 0.0)))
-        at, point = place(places, begin, worst)
-        first, last = int(layer[moved].min()), int(layer[moved].max())
+        bead_key, point = locate_row(bead_keys, begin, worst)
+        first_layer, last_layer = int(layer[moved].min()), int(layer[moved].max())
         where = (
-            Text("in layer {}", first) if first == last else Text("in layers {} to {}", first, last)
+            Text("in layer {}", first_layer)
+            if first_layer == last_layer
+            else Text("in layers {} to {}", first_layer, last_layer)
         )
         issues.append(
             Issue(
@@ -59,15 +62,15 @@ def tilt_issues(
                     Word(where),
                     np.degrees(tilt[worst]),
                 ),
-                *at,
+                *bead_key,
                 point,
             )
         )
     return issues
 
 
-def turn_issues(fastest: float, most: float) -> list[Issue]:
-    """That tilted tools turn by `fastest` rad/mm, where that is not 0; most: what they should."""
+def turn_issues(fastest: float, limit: float) -> list[Issue]:
+    """A warning that tilted tools turn by `fastest` rad/mm, if not 0. limit: the maximum turn."""
     if not fastest:
         return []
     return [
@@ -78,7 +81,7 @@ def turn_issues(fastest: float, most: float) -> list[Issue]:
                 "to keep the nozzle clear, tool axes turn by up to {:.3g} deg/mm, faster than "
                 "build_direction.max_turn ({:.3g} deg/mm); use a slimmer nozzle or allow a faster turn",
                 np.degrees(fastest),
-                np.degrees(most),
+                np.degrees(limit),
             ),
         )
     ]

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tilts of the tool axis along beads that keep the nozzle clear at every point, and are small and even along the bead.
 
-Each point has candidate axes on cones about the asked one, in growing angle
-until every point has a clear one, or a few of those without have none on any cone; of all ways through clear candidates
-that is taken for which the integral of tilt^2 + (SPREAD d tilt / ds)^2 along the bead is least. Finer candidates about the
-way found follow, level by level.
+Each point has candidate axes on cones about the original axis, in growing angle until every point has a clear one, or a few of
+the points without have none on any cone. Among the sequences of clear candidates the search takes the one with the least
+integral of tilt^2 + (SPREAD d tilt / ds)^2 along the bead. Finer candidates about it follow, level by level.
 """
 
 from __future__ import annotations
@@ -15,11 +14,11 @@ from ...geometry import frames
 from ...geometry.ties import index_of_minimum
 from ...types import Array, Index, Mask
 from ..progress import Watch
-from .least_turn import least
+from .least_turn import least_cost_states
 from .places import CAP, Space
 
 RING, AZIMUTHS = np.radians(5.0), 16  # between the cones of candidates, and candidates on each
-LARGEST = np.radians(90.0)  # tilt that is tried
+MAX_TILT_RAD = np.radians(90.0)  # tilt that is tried
 PROBED, PROBES = (
     7,
     16,
@@ -33,8 +32,8 @@ RELEASED = 4.0  # times SPREAD, beyond which nothing is left of a tilt
 class TiltSearch:
     """The blocked beads side by side: their points one after the other (m,), and padded to chains (b, n).
 
-    A tilt is a turn from the asked axis, given by two components (rad) along directions that are carried along the bead
-    without twist; one of them is 0 where the tool must stay in a plane.
+    A tilt is a turn from the original axis, given by two components (rad) along directions that are carried along the bead
+    without twist; one of the two is 0 where the tool must stay in a plane.
     """
 
     def __init__(
@@ -42,18 +41,18 @@ class TiltSearch:
         space: Space,
         rows: list[Index],
         closed: Mask,
-        asked: Array,
+        tool: Array,
         plane: Array | None,
         free: Mask,
         spread: float,
     ) -> None:
         self.space, self.closed, self.plane, self.spread = space, closed, plane, spread
         self.flat = np.concatenate(rows)
-        self.asked = asked
+        self.asked = tool
         self.counts = np.array([len(row) for row in rows])
         self.begin = np.r_[0, np.cumsum(self.counts)][:-1]
         self.lost = np.zeros(len(rows), dtype=bool)  # beads that no tilt clears
-        self.sides = np.concatenate([_sides(asked[row], plane) for row in rows])
+        self.sides = np.concatenate([_sides(tool[row], plane) for row in rows])
         points = space.points[self.flat]
         self.step = np.r_[np.linalg.norm(np.diff(points, axis=0), axis=1), 0.0]
         self.step[self.begin + self.counts - 1] = 0.0
@@ -64,30 +63,30 @@ class TiltSearch:
             ]
         )
 
-    def axes(self, at: Index, offset: Array) -> Array:
-        """Tool axes (k, 3) of tilts (k, 2) at points numbered `at`, all of them among those of the blocked beads."""
-        return self._tilted(np.searchsorted(self.flat, at), offset)
+    def axes(self, points: Index, offset: Array) -> Array:
+        """Tool axes (k, 3) of tilts (k, 2) at the points numbered `points` of the blocked beads."""
+        return self._tilted(np.searchsorted(self.flat, points), offset)
 
-    def _tilted(self, place: Index, offset: Array) -> Array:
+    def _tilted(self, row: Index, offset: Array) -> Array:
         angle = np.linalg.norm(offset, axis=1)
         towards = offset / np.where(angle > 0.0, angle, 1.0)[:, None]
-        lean = np.einsum("ki,kij->kj", towards, self.sides[place])
-        axis = np.cos(angle)[:, None] * self.asked[self.flat[place]] + np.sin(angle)[:, None] * lean
+        lean = np.einsum("ki,kij->kj", towards, self.sides[row])
+        axis = np.cos(angle)[:, None] * self.asked[self.flat[row]] + np.sin(angle)[:, None] * lean
         unit: Array = axis / np.linalg.norm(axis, axis=1, keepdims=True)
-        return np.where((angle > 0.0)[:, None], unit, self.asked[self.flat[place]])
+        return np.where((angle > 0.0)[:, None], unit, self.asked[self.flat[row]])
 
-    def _clear(self, place: Index, offsets: Array) -> Mask:
+    def _clear(self, row: Index, offsets: Array) -> Mask:
         """(k, s) whether the tilts (s, 2) or (k, s, 2) are clear at the places (k,)."""
-        offsets = np.broadcast_to(offsets, (len(place), *offsets.shape[-2:]))
+        offsets = np.broadcast_to(offsets, (len(row), *offsets.shape[-2:]))
         s = offsets.shape[1]
-        spread = np.repeat(place, s)
+        spread = np.repeat(row, s)
         return self.space.clear(
             self.flat[spread], self._tilted(spread, offsets.reshape(-1, 2))
         ).reshape(-1, s)
 
-    def found(self, watch: Watch) -> tuple[Array, Mask]:
-        """Tilts (m, 2) of all points, and the points (m,) that have none that is clear."""
-        offset, stuck = self.coarse(watch.within(0.0, COARSE))
+    def search(self, watch: Watch) -> tuple[Array, Mask]:
+        """Tilts (m, 2) of all points, and the points (m,) without a clear one."""
+        offset, stuck = self.coarse(watch.section(0.0, COARSE))
         for level in range(1, LEVELS + 1):
             watch.share(COARSE + (1.0 - COARSE) * (level - 1) / LEVELS)
             offset = self.finer(offset, RING / 2.0**level, level)
@@ -99,23 +98,23 @@ class TiltSearch:
         allowed = self._clear(np.arange(len(self.flat)), states) | ~self.near[:, None]
         bead = np.repeat(np.arange(len(self.counts)), self.counts)
         pending = np.ones(len(self.counts), dtype=bool)
-        last = round(LARGEST / RING)
-        for number in range(1, last + 1):
-            watch.share(number / (last + 1))
+        last_ring = round(MAX_TILT_RAD / RING)
+        for number in range(1, last_ring + 1):
+            watch.share(number / (last_ring + 1))
             if number == PROBED:
                 # where nothing frees some of a bead's points there is no way, however many candidates the others have
-                self.lost[self._hopeless(allowed, pending, range(number, last + 1))] = True
+                self.lost[self._hopeless(allowed, pending, range(number, last_ring + 1))] = True
                 pending &= ~self.lost
                 if not pending.any():
                     break
             ring = self._ring(number)
             states = np.concatenate([states, ring])
-            more = np.zeros((len(self.flat), len(ring)), dtype=bool)
-            some = np.flatnonzero(pending[bead] & self.near)
-            more[some] = self._clear(some, ring)
+            ring_clear = np.zeros((len(self.flat), len(ring)), dtype=bool)
+            rows = np.flatnonzero(pending[bead] & self.near)
+            ring_clear[rows] = self._clear(rows, ring)
             # one ring more than the first that frees every point, so that there is a way round
             had = np.logical_and.reduceat(self._both_ends(allowed).any(axis=1), self.begin)
-            allowed = np.hstack([allowed, more])
+            allowed = np.hstack([allowed, ring_clear])
             pending &= ~had
             if not pending.any():
                 break
@@ -129,24 +128,23 @@ class TiltSearch:
         return states[self._least(states[None], allowed, anchor, index_of_minimum(size))], stuck
 
     def _hopeless(self, allowed: Mask, pending: Mask, numbers: range) -> Index:
-        """The beads among those pending of which one of the points looked at is not free on any cone, of points (m, s) and
-        further cones."""
+        """The pending beads with a sampled point that is not free on any cone, from points (m, s) and further cones."""
         barred = ~self._both_ends(allowed).any(axis=1) & self.near
-        chosen = [np.zeros(0, dtype=np.intp)]
+        samples = [np.zeros(0, dtype=np.intp)]
         for bead in np.flatnonzero(pending):
             rows = self.begin[bead] + np.flatnonzero(
                 barred[self.begin[bead] : self.begin[bead] + self.counts[bead]]
             )
-            chosen.append(
+            samples.append(
                 rows[np.unique(np.linspace(0, len(rows) - 1, PROBES).astype(int))]
                 if len(rows)
                 else rows
             )
-        places = np.concatenate(chosen)
-        free = self._clear(places, np.concatenate([self._ring(number) for number in numbers])).any(
+        rows_ = np.concatenate(samples)
+        free = self._clear(rows_, np.concatenate([self._ring(number) for number in numbers])).any(
             axis=1
         )
-        beads: Index = np.unique(np.searchsorted(self.begin, places[~free], side="right") - 1)
+        beads: Index = np.unique(np.searchsorted(self.begin, rows_[~free], side="right") - 1)
         return beads
 
     def finer(self, offset: Array, step: float, turn: int) -> Array:
@@ -156,17 +154,17 @@ class TiltSearch:
             np.meshgrid(around, around if self.plane is None else [0.0], indexing="ij"), axis=-1
         ).reshape(-1, 2)
         offsets = offset[:, None] + grid
-        here = len(grid) // 2
-        offsets[:, here] = offset
+        centre_state = len(grid) // 2
+        offsets[:, centre_state] = offset
         allowed = np.zeros(offsets.shape[:2], dtype=bool)
-        some = np.flatnonzero(self.near & ~np.repeat(self.lost, self.counts))
-        allowed[some] = self._clear(some, offsets[some])
+        rows = np.flatnonzero(self.near & ~np.repeat(self.lost, self.counts))
+        allowed[rows] = self._clear(rows, offsets[rows])
         allowed = self._both_ends(allowed)
-        allowed[:, here] = True
+        allowed[:, centre_state] = True
         # each time another point of a closed bead stays as it is
         anchor = (self.counts - 1) * (turn % 3) // 3
-        chosen = self._least(offsets, allowed, anchor, np.full(len(offset), here))
-        better: Array = offsets[np.arange(len(offset)), chosen]
+        states_ = self._least(offsets, allowed, anchor, np.full(len(offset), centre_state))
+        better: Array = offsets[np.arange(len(offset)), states_]
         return better
 
     def _ring(self, number: int) -> Array:
@@ -181,44 +179,50 @@ class TiltSearch:
         return ring
 
     def _both_ends(self, allowed: Mask) -> Mask:
-        """The first and last point of a closed bead are one: what is allowed at both."""
+        """The states allowed at both ends of a closed bead, which are one point."""
         allowed = allowed.copy()
-        first = self.begin[self.closed]
-        last = first + self.counts[self.closed] - 1
-        allowed[first] &= allowed[last]
-        allowed[last] = allowed[first]
+        start = self.begin[self.closed]
+        end = start + self.counts[self.closed] - 1
+        allowed[start] &= allowed[end]
+        allowed[end] = allowed[start]
         return allowed
 
     def _anchors(self, size: Array) -> Index:
-        """Of each bead the point that needs least tilt, of several the one farthest from those that need more."""
+        """For each bead the point that needs least tilt; of several, the one farthest from points that need more."""
         anchors = []
         for start, count in zip(self.begin, self.counts, strict=True):
             need = size[start : start + count - 1]
             least_of_all = np.flatnonzero(need <= need.min() + CAP)
-            more = np.flatnonzero(need > need.min() + CAP)
-            away = nearest(more.astype(float), least_of_all.astype(float), float(count - 1))
-            anchors.append(int(least_of_all[np.argmax(away)]))
+            larger = np.flatnonzero(need > need.min() + CAP)
+            distance = nearest(larger.astype(float), least_of_all.astype(float), float(count - 1))
+            anchors.append(int(least_of_all[np.argmax(distance)]))
         return np.array(anchors)
 
     def _least(self, states: Array, allowed: Mask, anchor: Index, fixed: Index) -> Index:
         """(m,) the states of least cost; a closed bead is run from the anchor all around, its state there `fixed`."""
-        chosen = np.zeros(len(self.flat), dtype=np.intp)
-        # chains of like lengths together: as long as the longest, all of them would take memory that one needs
+        states_ = np.zeros(len(self.flat), dtype=np.intp)
+        # chains of similar lengths together, because padding to the longest takes memory
         length = np.ceil(np.log2(self.counts)).astype(int)
-        for beads in (np.flatnonzero(length == some) for some in np.unique(length)):
-            self._least_of(beads, states, allowed, anchor, fixed, chosen)
-        return chosen
+        for beads in (np.flatnonzero(length == size) for size in np.unique(length)):
+            self._least_of(beads, states, allowed, anchor, fixed, states_)
+        return states_
 
     def _least_of(
-        self, beads: Index, states: Array, allowed: Mask, anchor: Index, fixed: Index, chosen: Index
+        self,
+        beads: Index,
+        states: Array,
+        allowed: Mask,
+        anchor: Index,
+        fixed: Index,
+        states_: Index,
     ) -> None:
         """Put the states of least cost of some beads where they belong among those chosen (m,)."""
         n, s = int(self.counts[beads].max()), allowed.shape[1]
-        place = np.zeros(
+        position = np.zeros(
             (len(beads), n), dtype=np.intp
         )  # of the chains' points in the list, the pads at any
-        weight, change = np.zeros(place.shape), np.zeros((len(place), n - 1))
-        free = np.ones((*place.shape, s), dtype=bool)
+        weight, change = np.zeros(position.shape), np.zeros((len(position), n - 1))
+        free = np.ones((*position.shape, s), dtype=bool)
         for k, bead in enumerate(beads):
             start, count = self.begin[bead], self.counts[bead]
             around = np.arange(count)
@@ -226,57 +230,61 @@ class TiltSearch:
                 around = np.r_[
                     np.arange(anchor[bead], count - 1), np.arange(anchor[bead]), anchor[bead]
                 ]
-            place[k, :count] = start + around
-            step = self.step[place[k, : count - 1]]
+            position[k, :count] = start + around
+            step = self.step[position[k, : count - 1]]
             weight[k, :count] = 0.5 * (np.r_[0.0, step] + np.r_[step, 0.0])
             change[k, : count - 1] = self.spread**2 / np.maximum(step, 1e-6)
-            free[k, :count] = allowed[place[k, :count]]
+            free[k, :count] = allowed[position[k, :count]]
             if self.closed[bead]:
                 ends = np.arange(s) == fixed[start + anchor[bead]]
                 free[k, 0], free[k, count - 1] = ends, ends
-        found = least(states[None] if states.shape[0] == 1 else states[place], free, weight, change)
+        best = least_cost_states(
+            states[None] if states.shape[0] == 1 else states[position], free, weight, change
+        )
         for k, bead in enumerate(beads):
             count = self.counts[bead]
-            chosen[place[k, :count]] = found[k, :count]
+            states_[position[k, :count]] = best[k, :count]
             if self.closed[bead]:
-                chosen[self.begin[bead] + count - 1] = chosen[self.begin[bead]]
+                states_[self.begin[bead] + count - 1] = states_[self.begin[bead]]
 
 
 def _near(points: Array, blocked: Mask, closed: bool, reach: float) -> Mask:
     """Which points of a bead are within `reach` mm, along it, of the blocked ones."""
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    near: Mask = nearest(length[blocked], length, float(length[-1]) if closed else None) <= reach
-    return near
+    is_near: Mask = nearest(length[blocked], length, float(length[-1]) if closed else None) <= reach
+    return is_near
 
 
-def nearest(known: Array, places: Array, length: float | None) -> Array:
-    """(n,) how far places (n,) on a line are from the nearest of those known (k,), rising; infinity where there are none.
-    length: of a line that closes, on which they are all."""
-    if not len(known):
-        return np.full(len(places), np.inf)
-    after = np.searchsorted(known, places)
-    apart: Array = np.minimum(
-        np.abs(places - known[np.maximum(after - 1, 0)]),
-        np.abs(known[np.minimum(after, len(known) - 1)] - places),
+def nearest(marks: Array, positions: Array, length: float | None) -> Array:
+    """(n,) distance of positions (n,) on a line from the nearest of the marks (k,), rising; infinity without any.
+
+    length: the length of a closed line.
+    """
+    if not len(marks):
+        return np.full(len(positions), np.inf)
+    right = np.searchsorted(marks, positions)
+    distance: Array = np.minimum(
+        np.abs(positions - marks[np.maximum(right - 1, 0)]),
+        np.abs(marks[np.minimum(right, len(marks) - 1)] - positions),
     )
     if length is None:
-        return apart
+        return distance
     # the other way round the one that is farthest this way is nearest
     around: Array = np.minimum(
-        apart, length - np.maximum(np.abs(places - known[0]), np.abs(places - known[-1]))
+        distance, length - np.maximum(np.abs(positions - marks[0]), np.abs(positions - marks[-1]))
     )
     return around
 
 
-def _sides(asked: Array, plane: Array | None) -> Array:
+def _sides(tool: Array, plane: Array | None) -> Array:
     """(n, 2, 3) unit vectors normal to the asked axes and to each other, carried along a bead; the first in the plane."""
     if plane is not None:
-        side = np.cross(plane, asked)
+        side = np.cross(plane, tool)
         side /= np.linalg.norm(side, axis=1, keepdims=True)
         return np.stack([side, np.broadcast_to(plane, side.shape)], axis=1)
-    middle = asked.mean(axis=0)
+    middle = tool.mean(axis=0)
     size = np.linalg.norm(middle)
-    middle = middle / size if size > 1e-6 else asked[0]
+    middle = middle / size if size > 1e-6 else tool[0]
     level = frames.smallest_rotation(middle, np.array([0.0, 0.0, 1.0]))[:2]
-    sides: Array = np.einsum("nij,kj->nki", frames.smallest_rotation(middle, asked), level)
+    sides: Array = np.einsum("nij,kj->nki", frames.smallest_rotation(middle, tool), level)
     return sides

@@ -20,19 +20,20 @@ class Cases:
     rising: Mask
     chained: bool = False
 
-    def before(self, some: Mask) -> Mask:
-        """(k,) the cases of beads that are deposited before those of some cases, (k,) of which there is one at least."""
-        earlier: Mask = self.bead < self.bead[some.argmax()]
+    def before(self, mask: Mask) -> Mask:
+        """(k,) the cases of beads that are deposited before the beads of some cases, (k,) with at least one."""
+        earlier: Mask = self.bead < self.bead[mask.argmax()]
         return earlier
 
     def together(self, angle: Array) -> Array:
-        """The largest tilt-back (k,) of each bead's cases, or of each and its neighbours, so that those between are never
-        too small; NaN where one of them has none."""
+        """The largest tilt-back (k,) of each bead's cases, or of each and its neighbours, so that interpolated ones are never too small;
+        NaN if one has none.
+        """
         if self.chained:
             larger: Array = np.maximum(
                 angle, np.maximum(np.r_[angle[1:], 0.0], np.r_[0.0, angle[:-1]])
             )
             return larger
-        first = np.diff(self.bead, prepend=-1) > 0
-        worst: Array = np.maximum.reduceat(angle, np.flatnonzero(first))[np.cumsum(first) - 1]
+        is_first = np.diff(self.bead, prepend=-1) > 0
+        worst: Array = np.maximum.reduceat(angle, np.flatnonzero(is_first))[np.cumsum(is_first) - 1]
         return worst

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Is the nozzle clear of what is deposited already, and of the platform? For parts of revolution.
+"""Clearance of the nozzle from earlier deposit and from the platform, for parts of revolution.
 
-The paper tilts the build directions near a closing top back by the nozzle's angle (Chalvin 2020, section 6.1). Here the
-nozzle is asked of `core/collision`, as it is on walls, against beads with their width and height. A bead stands along its
-build direction: to tilt one back changes what the nozzle meets in those after it.
+The paper tilts the build directions near a closing top back by the nozzle's angle (Chalvin 2020, section 6.1). Here
+`core/collision` decides, as on walls, against beads with their width and height. A bead extends along its build direction: a
+tilt-back changes the obstacle for later beads.
 
-A full circle looks the same from each of its points, and an arc that is seen from all of them reaches as far to one side as
-to the other: one place of the tip stands for all of a bead.
+A full circle looks the same from each of its points, and an arc seen from all its points reaches equally far to both sides:
+one tip position represents a whole bead.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from ...parameters.cell import NozzleParameters
 from ...types import Array, Index, Mask
 from .platform import Platform
 
-CHORD = 0.01  # mm; beads are looked at to this chord error, or their own where that is larger
+CHORD = 0.01  # mm; chord error of beads in the check, or their own if larger
 CONVERGED = (
     0.01  # mm that the nozzle moves at most where directions are not settled to the last digit
 )
@@ -36,11 +36,11 @@ CONVERGED = (
 
 @dataclass(frozen=True, eq=False)
 class Deposit:
-    """Points (k,) of all beads in the order of deposit, in the feature frame: radius, height mm, azimuth rad.
+    """Points (k,) of every bead in the order of deposit, in the feature frame: radius, height mm, azimuth rad.
 
-    build: (k, 3) the build directions asked for, along radius, azimuth and axis. moment: (k,) at which each is there.
-    starts: (k,) where a bead begins. case: (k,) the number of the case by whose tilt-back each is tilted; between two of
-    them it runs evenly. size: width and height of the beads, mm.
+    build: (k, 3) the requested build directions, along radius, azimuth and axis. moment: (k,) at which each is there. starts: (k,)
+    where a bead begins. case: (k,) the number of the case whose tilt-back applies, interpolated between two cases. size: width
+    and height of the beads, mm.
     """
 
     radius: Array
@@ -60,47 +60,46 @@ class Deposit:
 
 @dataclass(frozen=True, eq=False)
 class Tips:
-    """Where the nozzle is looked at, case by case: radius, height mm and azimuth rad (c,); the moment before which there is
-    deposit, and the one from which it is of the layer being laid (c,)."""
+    """Tip positions, case by case: radius, height mm and azimuth rad (c,); the moment before which deposit exists, and the moment
+    from which it belongs to the current layer (c,).
+    """
 
     radius: Array
     height: Array
     azimuth: Array
     moment: Index
-    own: Index
+    own_moment: Index
 
     def rows(self, index: Index) -> Tips:
-        """Some of them."""
+        """The rows of an index."""
         return Tips(*(getattr(self, entry.name)[index] for entry in dataclasses.fields(self)))
 
 
 @dataclass(frozen=True)
 class Clearance:
-    """The nozzle as it is looked at, larger than it is by what the deposit may be off, at tips above bodies. foot: mm, how
-    far off it is about the bead being laid."""
+    """The nozzle, enlarged by the tolerance of the deposit, at tips above bodies. foot: mm, the tolerance about the current bead."""
 
     tips: Tips
     deposit: Deposit
     nozzle: Nozzle
     foot: float
     bodies: Bodies
-    between: Tips | None = (
-        None  # the points of the deposit, where the tips do not stand for all of it
-    )
+    between: Tips | None = None  # the points of the deposit, if the tips do not represent it
 
     def standing(self, build: Array, like: Scene | None = None) -> Scene:
-        """All that there is, with beads that stand along directions (k, 3), in components, at the points of the deposit;
-        like: the same with other directions."""
-        own = self.deposit
-        width, tall = own.size
-        directions = _in_space(build, own.azimuth)
+        """The scene with beads along directions (k, 3), in components, at the points of the deposit; like: the scene with other
+        directions.
+        """
+        deposit_ = self.deposit
+        width, tall = deposit_.size
+        directions = _in_space(build, deposit_.azimuth)
         beads = deposit.build_deposit(
-            own.points,
+            deposit_.points,
             directions,
             width,
             tall,
-            own.starts,
-            own.moment,
+            deposit_.starts,
+            deposit_.moment,
             foot=self.foot,
             like=like.deposit if like is not None and isinstance(like.deposit, Obstacles) else None,
         )
@@ -119,11 +118,11 @@ class Clearance:
         azimuth = tips.azimuth[rows]
         tip = _place(tips.radius[rows], azimuth, tips.height[rows])
         return ~among.touched(
-            self.nozzle, tip, _in_space(tool, azimuth), tips.moment[rows], tips.own[rows]
+            self.nozzle, tip, _in_space(tool, azimuth), tips.moment[rows], tips.own_moment[rows]
         )
 
 
-def of_nozzle(
+def nozzle_clearance(
     nozzle: NozzleParameters,
     lean: float,
     platform: Platform,
@@ -134,7 +133,7 @@ def of_nozzle(
 ) -> Clearance:
     """The nozzle, leaning by `lean` rad off the build direction, over a platform and a deposit whose points leave their
     curves by `chord_error` mm at most."""
-    looked = depositing(
+    nozzle_ = depositing(
         0.5 * nozzle.diameter,
         float(np.tan(nozzle.half_angle)),
         nozzle.length,
@@ -144,29 +143,30 @@ def of_nozzle(
     frame = np.eye(4)
     frame[2, 3] = platform.height
     plates = [disc(2.0 * platform.radius, frame)] if platform.radius > 0.0 else []
-    bodies = build_bodies(plates, deposit.points, looked.reach)
+    bodies = build_bodies(plates, deposit.points, nozzle_.reach)
     return Clearance(
-        tips, deposit, looked.larger(chord_error + CONVERGED), looked.foot, bodies, between
+        tips, deposit, nozzle_.larger(chord_error + CONVERGED), nozzle_.foot, bodies, between
     )
 
 
-def around(
-    radius: Array, turn: float, chord_error: float, least: int, one_side: bool
+def arc_points(
+    radius: Array, turn: float, chord_error: float, min_points: int, one_side: bool
 ) -> tuple[Index, Array]:
-    """Bead and azimuth (k,) of the points of arcs of radii (m,) over `turn` rad, as they are seen from any of them at the
-    azimuth 0: to both sides, or to one alone; of full circles half of them.
+    """Bead and azimuth (k,) of the points of arcs of radii (m,) over `turn` rad, seen from any point at azimuth 0: to both sides,
+    or to one side only; of full circles one half.
 
-    They are the points that a bead of that chord error (mm) and fewest points of a full turn has, so that it is cut into the
-    same pieces.
+    The points of a bead of that chord error (mm) and fewest points of a full turn, so that the arc has the same segments.
     """
     full = turn >= 2.0 * np.pi
-    counts = np.array([turn_segments(float(each), chord_error, turn, least) for each in radius])
-    last = -(-counts // 2) if full and one_side else counts
-    first = np.zeros_like(last) if full or one_side else -last
-    sizes = last - first + 1
+    counts = np.array(
+        [turn_segments(float(radius_), chord_error, turn, min_points) for radius_ in radius]
+    )
+    end = -(-counts // 2) if full and one_side else counts
+    start = np.zeros_like(end) if full or one_side else -end
+    sizes = end - start + 1
     bead = np.repeat(np.arange(len(radius)), sizes)
-    place = np.arange(len(bead)) - np.repeat(np.cumsum(sizes) - sizes - first, sizes)
-    return bead, turn * place / counts[bead]
+    position = np.arange(len(bead)) - np.repeat(np.cumsum(sizes) - sizes - start, sizes)
+    return bead, turn * position / counts[bead]
 
 
 def _place(radius: Array, azimuth: Array, height: Array) -> Array:

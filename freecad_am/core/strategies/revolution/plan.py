@@ -30,7 +30,7 @@ SPACING_BAND = 0.2  # of the layer height (Chalvin 2020, section 2.1)
 
 @dataclass(frozen=True, eq=False)
 class Slices:
-    """The beads of all layers in the order of deposit: layer index (m,), radius and height (m,) mm, tangent (m, 2)."""
+    """The beads of every layer in the order of deposit: layer index (m,), radius and height (m,) mm, tangent (m, 2)."""
 
     layer: Index
     radius: Array
@@ -51,9 +51,19 @@ def plan(
     """The toolpath of a wall of revolution, in part coordinates.
 
     Layers by arc length or height; points per bead from the chord error; build directions from the mode, capped and
-    tilted back until the nozzle is clear. platform_diameter: mm, 0 without a platform. platform_frame: (4, 4) pose
-    of the platform in part coordinates, None when the feature frame sits on it. A spiral is one layer with one open
-    bead. Raises InputError 'BAD_VALUE', 'LAYER_HEIGHT', 'NOT_FOR_FAMILY', 'OFF_PLATFORM', 'PARTIAL_TURN', 'TOO_MANY'.
+    tilted back until the nozzle is clear. A spiral is one layer with one open bead.
+
+    Parameters
+    ----------
+    platform_diameter
+        mm, 0 without a platform.
+    platform_frame
+        (4, 4) pose of the platform in part coordinates; None if the feature frame is on it.
+
+    Raises
+    ------
+    InputError
+        'BAD_VALUE', 'LAYER_HEIGHT', 'NOT_FOR_FAMILY', 'OFF_PLATFORM', 'PARTIAL_TURN', 'TOO_MANY'.
     """
     if build.mode == "symmetry-plane":
         raise InputError(
@@ -61,11 +71,11 @@ def plan(
             "build_direction.mode",
             "symmetry-plane is not for parts of revolution; use local, layer or fixed",
         )
-    size.refuse_absurd(size.of_revolution(wall, strategy), strategy)
+    size.refuse_absurd(size.revolution_size(wall, strategy), strategy)
     progress(0.0, "cutting layers")
     under = platform.under(wall, platform_diameter, platform_frame)
-    own = classes.leaning(build, process, WALL)
-    tilting = Tilting(wall, strategy, own, nozzle, under, process.bead_width)
+    leaning_build = classes.leaning(build, process, WALL)
+    tilting = Tilting(wall, strategy, leaning_build, nozzle, under, process.bead_width)
     issues: list[Issue] = []
     if strategy.path == "spiral":
         if strategy.min_layer_time > 0.0:
@@ -75,17 +85,17 @@ def plan(
                 "a spiral has no layers to wait between; use path: layers, a slower "
                 "process.travel_speed, or leave it out",
             )
-        layers, found = spiral.layers(wall, strategy, process, tilting)
+        layers, plan_issues = spiral.layers(wall, strategy, process, tilting)
     else:
         slices, issues = sliced(wall, strategy)
         progress(
             0.2,
             Text("build directions of {} layers, keeping the nozzle clear", slices.layer[-1] + 1),
         )
-        first = replace(tilting, parameters=classes.leaning(build, process, FIRST_LAYER))
-        layers, found = _layers(wall, slices, strategy, process, tilting, first)
+        first_tilting = replace(tilting, parameters=classes.leaning(build, process, FIRST_LAYER))
+        layers, plan_issues = _layers(wall, slices, strategy, process, tilting, first_tilting)
     progress(0.9, "checking")
-    issues = [*wall.issues, *platform.overhanging(wall, under), *issues, *found]
+    issues = [*wall.issues, *platform.overhanging(wall, under), *issues, *plan_issues]
     return Toolpath(
         layers,
         wall.frame,
@@ -98,21 +108,23 @@ def plan(
 
 
 def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, list[Issue]]:
-    """All beads of all layers, and notes on what is left at the top, what is skipped and uneven spacing.
+    """The beads of every layer, and notes on the remainder at the top, skipped beads and uneven spacing.
 
-    A bead whose radius is no more than the chord error cannot be told from a point, and is skipped.
+    A bead whose radius is no more than the chord error is a point, and is skipped.
     """
     meridian = wall.meridian
     rule = arc_length if strategy.spacing == "arc-length" else iso_height
-    layers, left = rule.layers(meridian, strategy.layer_height)
+    layers, remainder = rule.layers(meridian, strategy.layer_height)
     issues = []
-    if left > 1e-6 * strategy.layer_height:
+    if remainder > 1e-6 * strategy.layer_height:
         measure = "of the wall" if rule is arc_length else "of the height"
         issues.append(
             Issue(
                 NOTE,
                 "REMAINDER",
-                Text("{:.3g} mm {} are left at the top, less than a layer", left, Word(measure)),
+                Text(
+                    "{:.3g} mm {} are left at the top, less than a layer", remainder, Word(measure)
+                ),
             )
         )
     if rule is iso_height:
@@ -120,22 +132,22 @@ def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, 
     flat = np.concatenate(layers)
     number = np.repeat(np.arange(len(layers)), [len(layer) for layer in layers])
     radius, height, tangent = meridian.at(flat)
-    kept = radius > strategy.chord_error
-    if not kept.all():
+    is_kept = radius > strategy.chord_error
+    if not is_kept.all():
         issues.append(
             Issue(
                 NOTE,
                 "POINT_BEADS",
                 Text(
                     "{} bead(s) of a radius of no more than the chord error ({:g} mm) are left out",
-                    int((~kept).sum()),
+                    int((~is_kept).sum()),
                     strategy.chord_error,
                 ),
-                int(number[~kept][0]),
+                int(number[~is_kept][0]),
             )
         )
-    renumbered = np.unique(number[kept], return_inverse=True)[1]
-    return Slices(renumbered, radius[kept], height[kept], tangent[kept]), issues
+    renumbered = np.unique(number[is_kept], return_inverse=True)[1]
+    return Slices(renumbered, radius[is_kept], height[is_kept], tangent[is_kept]), issues
 
 
 def _spacing_issues(wall: RevolvedWall, layers: list[Array], layer_height: float) -> list[Issue]:
@@ -179,9 +191,9 @@ def _layers(
     strategy: RevolutionParameters,
     process: ProcessParameters,
     tilting: Tilting,
-    first: Tilting,
+    first_tilting: Tilting,
 ) -> tuple[tuple[Layer, ...], list[Issue]]:
-    """One layer per index, its beads turned about the axis. first: how the tool leans on the first layer."""
+    """One layer per index, its beads turned about the axis. first_tilting: the lean of the tool on the first layer."""
     azimuths, rising = [], []
     for index, (layer, radius) in enumerate(zip(slices.layer, slices.radius, strict=True)):
         segments = turn_segments(
@@ -197,9 +209,9 @@ def _layers(
     builds, tools, issues = tilting.resolve(
         slices.radius, slices.height, slices.tangent, azimuths, rising, slices.layer
     )
-    if first.parameters != tilting.parameters:  # below it is nothing that leans another way
+    if first_tilting.parameters != tilting.parameters:  # below it is nothing that leans another way
         count = int((slices.layer == 0).sum())
-        below, held, found = first.resolve(
+        below, below_tools, first_issues = first_tilting.resolve(
             slices.radius[:count],
             slices.height[:count],
             slices.tangent[:count],
@@ -207,8 +219,8 @@ def _layers(
             rising[:count],
             slices.layer[:count],
         )
-        builds, tools = [*below, *builds[count:]], [*held, *tools[count:]]
-        issues = [*found, *(issue for issue in issues if issue.layer != 0)]
+        builds, tools = [*below, *builds[count:]], [*below_tools, *tools[count:]]
+        issues = [*first_issues, *(issue for issue in issues if issue.layer != 0)]
     beads: list[list[Bead]] = [[] for _ in range(int(slices.layer[-1]) + 1)]
     for index, azimuth in enumerate(azimuths):
         name = classes.wall_bead_class(int(slices.layer[index]))
@@ -228,15 +240,15 @@ def _bead(
     speed: float,
     name: str,
 ) -> Bead:
-    at = azimuth.copy()
+    angles = azimuth.copy()
     if wall.full:
-        at[-1] = at[0]  # the last point is the first, to the bit
+        angles[-1] = angles[0]  # the last point is the first, to the bit
     n = len(azimuth)
-    points = wall.points(np.full(n, slices.radius[index]), np.full(n, slices.height[index]), at)
+    points = wall.points(np.full(n, slices.radius[index]), np.full(n, slices.height[index]), angles)
     return Bead(
         points,
-        wall.directions(build, at),
-        wall.directions(tool, at),
+        wall.directions(build, angles),
+        wall.directions(tool, angles),
         azimuth,
         np.full(n, speed),
         wall.full,

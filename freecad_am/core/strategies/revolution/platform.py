@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where the platform is under a wall of revolution, and whether what is deposited stands on it or reaches below it."""
+"""The platform under a wall of revolution, and whether the deposit is on it or reaches below it."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from ...types import Array, Mask
 
 UPRIGHT = 1e-6  # rad between the axis of the wall and the normal of the platform
 TOUCH = 1e-6  # mm
-DEEP = 0.05  # mm; what reaches no farther below the platform stands on it, but for its chords
+DEEP = 0.05  # mm; a depth below the platform that chords explain
 MOVE = "move the part up in its file, or set cell.platform_diameter to what there is (0 for none)"
 MOUNT = (
     "use mount: feature, which puts its lowest end on the platform, move the part up in its file, or set "
     "cell.platform_diameter to what there is (0 for none)"
 )
-GRAIN = 0.05  # of the radius of the platform, between the places of solids that are looked at
+GRAIN = 0.05  # of the radius of the platform, between the sampled points of solids
 
 
 @dataclass(frozen=True)
@@ -46,19 +46,19 @@ def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
     """
     centre, normal = np.zeros(3), np.array([0.0, 0.0, 1.0])
     if frame is not None:
-        turn, apart = wall.frame[:3, :3].T, frame[:3, 3] - wall.frame[:3, 3]
-        centre, normal = turn @ apart, turn @ frame[:3, 2]
+        turn, offset = wall.frame[:3, :3].T, frame[:3, 3] - wall.frame[:3, 3]
+        centre, normal = turn @ offset, turn @ frame[:3, 2]
     if diameter <= 0.0:
         return Platform(0.0)
     off, height, radius = float(np.hypot(centre[0], centre[1])), float(centre[2]), 0.5 * diameter
     if normal[2] < 0.0 or np.hypot(normal[0], normal[1]) > UPRIGHT:
         angle = np.degrees(np.arctan2(np.hypot(normal[0], normal[1]), normal[2]))
-        raise _off(
+        raise _off_platform(
             Text("the axis of {} is {:.4g} deg off the normal of the platform", wall.label, angle),
             "use mount: feature",
         )
     if off > radius:
-        raise _off(
+        raise _off_platform(
             Text(
                 "the axis of {} is {:.4g} mm off the middle of the platform and misses it",
                 wall.label,
@@ -67,7 +67,7 @@ def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
             "use mount: feature, or move the part",
         )
     if height > TOUCH:
-        raise _off(
+        raise _off_platform(
             Text("the base of {} is {:.4g} mm below the platform", wall.label, height),
             "use mount: feature, or move the part",
         )
@@ -101,13 +101,14 @@ def overhanging(wall: RevolvedWall, platform: Platform) -> list[Issue]:
 def refuse_below(
     label: str, points: Array, frame: Array, diameter: float, remedy: str = MOVE
 ) -> None:
-    """InputError OFF_PLATFORM where points (n, 3) of what is deposited are below the platform, a disc about the origin of a
-    frame (4, 4) in part coordinates; diameter: mm, 0 for none. Beside the disc there is room below its plane."""
+    """InputError OFF_PLATFORM for deposit points (n, 3) below the platform, a disc about the origin of a frame (4, 4) in part
+    coordinates; diameter: mm, 0 for none. Outside the disc there is room below its plane.
+    """
     local = (points - frame[:3, 3]) @ frame[:3, :3]
     depth = np.where(np.hypot(local[:, 0], local[:, 1]) < 0.5 * diameter, -local[:, 2], 0.0)
     if depth.max(initial=0.0) > DEEP:
         worst = int(depth.argmax())
-        raise _off(
+        raise _off_platform(
             Text(
                 "{} reaches {:.4g} mm below the platform, at {}",
                 label,
@@ -119,7 +120,7 @@ def refuse_below(
 
 
 def refuse_solids_below(solids: SolidsOnHub, frame: Array, diameter: float) -> None:
-    """The same of solids on a hub, of what is outside of the surfaces that they stand on."""
+    """The same check for solids on a hub, outside of the surfaces under them."""
 
     def over(corners: Array) -> Mask:
         """Which triangles (n, 3, 3) may come over the disc, or below it."""
@@ -134,13 +135,13 @@ def refuse_solids_below(solids: SolidsOnHub, frame: Array, diameter: float) -> N
             low = ((corners - frame[:3, 3]) @ frame[:3, 2]).min(axis=1) < -DEEP
             middles, _ = divide_triangles(
                 corners[low], max(GRAIN * 0.5 * diameter, 1.0), over
-            )  # of a large part most is beside it
+            )  # most of a large part is outside the disc
             points = np.vstack([corners[low].reshape(-1, 3), middles])
             outside = group.base.surface.distance(group.base.inside(points)) > DEEP
             refuse_below(body.name, points[outside], frame, diameter, MOUNT)
 
 
-def _off(what: str, remedy: str) -> InputError:
+def _off_platform(what: str, remedy: str) -> InputError:
     mended_by = {"mount": "feature"} if remedy == MOUNT else None
     return InputError(
         "OFF_PLATFORM", "cell.platform_diameter", "{}; {}", what, remedy, mended_by=mended_by

@@ -42,7 +42,7 @@ def layers(
     pitch = strategy.layer_height
     arc_length.layers(wall.meridian, pitch)
     end = _end(wall.meridian, pitch)
-    turns = _turned(wall.meridian, end, pitch, strategy)
+    turns = _turn_angles(wall.meridian, end, pitch, strategy)
     s = np.clip(pitch * (turns / (2.0 * math.pi) - 1.0), 0.0, end)
     radius, height, _ = wall.meridian.at(s)
     rising = seam.rising(process, 0, True)
@@ -73,14 +73,14 @@ def _over_itself(turns: Array, end: float, pitch: float, closed_top: bool) -> li
             pitch,
         )
         issues.append(Issue(NOTE, "DEPOSITED_TWICE", text, 0, 0, start))
-    last = int(np.searchsorted(turns, turns[-1] - 2.0 * math.pi - 1e-9))
-    if not closed_top and start < last < len(turns) - 1:
+    last_start = int(np.searchsorted(turns, turns[-1] - 2.0 * math.pi - 1e-9))
+    if not closed_top and start < last_start < len(turns) - 1:
         text = Text(
             "from here the flat last turn comes down from {:g} to 0 mm above the turn before, and half of it is deposited over "
             "that. Machine the top, or use path: layers",
             pitch,
         )
-        issues.append(Issue(NOTE, "DEPOSITED_TWICE", text, 0, 0, last))
+        issues.append(Issue(NOTE, "DEPOSITED_TWICE", text, 0, 0, last_start))
     return issues
 
 
@@ -91,15 +91,17 @@ def _end(meridian: Meridian, pitch: float) -> float:
     low, high = 0.0, meridian.length
     inside = meridian.points[:, 0] > 0.5 * pitch
     if inside.any():
-        last = int(np.flatnonzero(inside)[-1])
-        low, high = float(meridian.s[last]), float(meridian.s[last + 1])
+        last_inside = int(np.flatnonzero(inside)[-1])
+        low, high = float(meridian.s[last_inside]), float(meridian.s[last_inside + 1])
     for _ in range(50):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if meridian.at([middle])[0][0] > 0.5 * pitch else (low, middle)
     return low
 
 
-def _turned(meridian: Meridian, end: float, pitch: float, strategy: RevolutionParameters) -> Array:
+def _turn_angles(
+    meridian: Meridian, end: float, pitch: float, strategy: RevolutionParameters
+) -> Array:
     """Angles turned (n,) rad, from 0; each turn evenly divided within the chord error, with a point on each kink."""
     flat_from = 2.0 * math.pi * (1.0 + end / pitch)
     total = flat_from + (0.0 if meridian.closed_top else 2.0 * math.pi)
@@ -109,11 +111,11 @@ def _turned(meridian: Meridian, end: float, pitch: float, strategy: RevolutionPa
     )
     stops = stops[np.r_[True, np.diff(stops) > 1e-6]]
     stops[-1] = total
-    parts = [
+    sections = [
         np.linspace(a, b, _segments(meridian, a, b, pitch, end, strategy) + 1)[:-1]
         for a, b in pairwise(stops)
     ]
-    turns: Array = np.concatenate([*parts, [total]])
+    turns: Array = np.concatenate([*sections, [total]])
     return turns
 
 
@@ -141,16 +143,16 @@ def _directions(
     """Build directions and tool axes (n, 3) at angles turned and arc lengths (n,). The tilt-back is settled at PER_TURN
     places to a turn; between them it is interpolated from the larger of neighbours, so that it is never too small."""
     knots = np.linspace(0.0, turns[-1], step_count(turns[-1] * PER_TURN, 2.0 * math.pi) + 1)
-    at = np.interp(knots, turns, s)
-    radius, height, tangent = meridian.at(at)
+    knot_s = np.interp(knots, turns, s)
+    radius, height, tangent = meridian.at(knot_s)
     sense = 1.0 if rising else -1.0
     points = meridian.at(s)
     number = np.arange(len(s))
 
     def tips(where: tuple[Array, Array, Array], turned: Array, moment: Index) -> Tips:
-        # what was laid in the last turn is of the layer being laid
-        own = np.searchsorted(turns, turned - 2.0 * math.pi - SEAM)
-        return Tips(where[0], where[1], sense * turned, moment, own)
+        # deposit of the last turn belongs to the current layer
+        own_moment = np.searchsorted(turns, turned - 2.0 * math.pi - SEAM)
+        return Tips(where[0], where[1], sense * turned, moment, own_moment)
 
     deposit = Deposit(
         points[0],
@@ -162,9 +164,9 @@ def _directions(
         np.interp(turns, knots, np.arange(len(knots))),
         tilting.size,
     )
-    looked = tips((radius, height, tangent), knots, np.searchsorted(turns, knots, side="right"))
+    knot_tips = tips((radius, height, tangent), knots, np.searchsorted(turns, knots, side="right"))
     back, issues = tilting.tilt_back(
-        tangent, rising, looked, deposit, tips(points, turns, number + 1)
+        tangent, rising, knot_tips, deposit, tips(points, turns, number + 1)
     )
     build, tool = tilting.axes(points[2], np.interp(turns, knots, back), rising)
     return build, tool, issues

@@ -22,17 +22,17 @@ from ...parameters.strategy import RevolutionParameters
 from ...slicing.directions import revolution as directions
 from ...types import Array, Index, Mask
 from .cases import Cases
-from .clearance import CHORD, CONVERGED, Clearance, Deposit, Tips, around, of_nozzle
+from .clearance import CHORD, CONVERGED, Clearance, Deposit, Tips, arc_points, nozzle_clearance
 from .platform import Platform
 
-LOOKS = 12  # places of an arc at which the nozzle is looked at, before it is at all
+PLACES_PER_ARC = 12  # points of an arc at which the nozzle is checked before every point is
 COARSE = 0.01  # rad, to which directions are found while they still change much
 SWEEPS = 40  # over all beads, at most
 FREE_SWEEPS = 6  # after which no direction goes back
-FURTHER = (
+MAX_ROUNDS = (
     8  # times that directions are tilted back further where others, or points between, need it
 )
-STEEP, SLIGHT = np.radians(10.0), np.radians(1.0)  # by how much
+STEP_RAD, SLIGHT = np.radians(10.0), np.radians(1.0)  # by how much
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Tilting:
 
     @property
     def chord(self) -> float:
-        """mm, to which beads are looked at."""
+        """Chord error of beads in the clearance check, mm."""
         return max(CHORD, self.strategy.chord_error)
 
     def resolve(
@@ -65,10 +65,10 @@ class Tilting:
         rising: Sequence[bool],
         layer: Index,
     ) -> tuple[list[Array], list[Array], list[Issue]]:
-        """Build directions and tool axes per bead, (n, 3) or (1, 3) for all points alike, and what was found.
+        """Build directions and tool axes per bead, (n, 3) or (1, 3) if the same at every point, and issues.
 
-        radius, height (m,), tangent (m, 2): the beads in the order of deposit. azimuths, rising: of each bead.
-        layer: (m,) the layer that issues name.
+        radius, height (m,), tangent (m, 2): the beads in the order of deposit. azimuths, rising: of each bead. layer: (m,) the layer
+        that issues name.
         """
         sense = np.asarray(rising, dtype=bool)
         if self.parameters.mode == "layer" and not self.wall.full:
@@ -78,7 +78,9 @@ class Tilting:
         cases = self._circles(tangent, sense)
         # a tool in the plane of the axis meets the same on both sides
         turn = 2.0 * np.pi if self.wall.full else self.wall.end - self.wall.start
-        bead, azimuth = around(radius, turn, self.chord, self.strategy.min_points, self._upright)
+        bead, azimuth = arc_points(
+            radius, turn, self.chord, self.strategy.min_points, self._upright
+        )
         tips = Tips(
             radius, height, np.zeros(len(radius)), cases.bead + 1, np.searchsorted(layer, layer)
         )
@@ -93,11 +95,17 @@ class Tilting:
             bead.astype(float),
             self.size,
         )
-        clearance = of_nozzle(self.nozzle, self._lean, self.platform, tips, deposit, self.chord)
+        clearance = nozzle_clearance(
+            self.nozzle, self._lean, self.platform, tips, deposit, self.chord
+        )
         angle, issues = self._resolved(cases, clearance, layer)
         build = directions.tilt_back(cases.build, angle)
-        every = range(1, len(radius))
-        return np.split(build, every), np.split(self._tool(build, cases.rising), every), issues
+        bead_numbers = range(1, len(radius))
+        return (
+            np.split(build, bead_numbers),
+            np.split(self._tool(build, cases.rising), bead_numbers),
+            issues,
+        )
 
     def _resolved_arcs(
         self,
@@ -108,16 +116,17 @@ class Tilting:
         rising: Mask,
         layer: Index,
     ) -> tuple[list[Array], list[Array], list[Issue]]:
-        """The same where directions (k, 3) differ from point to point along the beads: the nozzle is looked at in LOOKS
-        places of each, and then at all points."""
+        """The same if directions (k, 3) differ from point to point along the beads: the nozzle is checked at PLACES_PER_ARC points of
+        each, and then at every point.
+        """
         counts = np.array([len(azimuth) for azimuth in azimuths])
         bead, azimuth = np.repeat(np.arange(len(counts)), counts), np.concatenate(azimuths)
         begin = np.cumsum(counts) - counts
         looks = [
-            np.unique(np.linspace(0, count - 1, min(count, LOOKS)).astype(np.intp))
+            np.unique(np.linspace(0, count - 1, min(count, PLACES_PER_ARC)).astype(np.intp))
             for count in counts
         ]
-        rows = np.concatenate([first + some for first, some in zip(begin, looks, strict=True)])
+        rows = np.concatenate([start + sample for start, sample in zip(begin, looks, strict=True)])
         number = (
             np.searchsorted(rows, np.arange(len(bead)), side="right") - 1
         )  # the last place before each point
@@ -135,7 +144,7 @@ class Tilting:
             number.astype(float),
             self.size,
         )
-        clearance = of_nozzle(
+        clearance = nozzle_clearance(
             self.nozzle, self._lean, self.platform, tips.rows(rows), deposit, self.chord, tips
         )
         angle, issues = self._resolved(cases, clearance, layer)
@@ -149,12 +158,13 @@ class Tilting:
     def tilt_back(
         self, tangent: Array, rising: bool, tips: Tips, deposit: Deposit, between: Tips
     ) -> tuple[Array, list[Issue]]:
-        """Tilt-back (c,) rad of tips along one bead with the meridian tangents (c, 2), never less than a neighbour's, and
-        what was found. between: all of its points."""
+        """Tilt-back (c,) rad of tips along one bead with the meridian tangents (c, 2), never less than a neighbour's, and issues.
+        between: every point of the bead.
+        """
         cases = dataclasses.replace(
             self._circles(tangent, np.full(len(tangent), rising)), chained=True
         )
-        clearance = of_nozzle(
+        clearance = nozzle_clearance(
             self.nozzle, self._lean, self.platform, tips, deposit, self.chord, between
         )
         return self._resolved(cases, clearance, np.zeros(len(tangent), dtype=np.intp))
@@ -175,7 +185,7 @@ class Tilting:
     def _resolved(
         self, cases: Cases, clearance: Clearance, layer: Index
     ) -> tuple[Array, list[Issue]]:
-        """Tilt-back (k,) rad of all cases, and what was found; layer: (m,) of the beads, that issues name."""
+        """Tilt-back (k,) rad of the cases, and issues; layer: (m,) layers of the beads, that issues name."""
         capped = self._capped(cases)
         if self.parameters.clearance == "nozzle":
             angle = self._cleared(cases, capped, clearance)
@@ -220,8 +230,8 @@ class Tilting:
         if self._upright:
             return np.maximum(directions.from_vertical(cases.build) - cap, 0.0)
 
-        def good(some: Index, angle: Array) -> Mask:
-            tool = self._tool(directions.tilt_back(cases.build[some], angle), cases.rising[some])
+        def good(rows: Index, angle: Array) -> Mask:
+            tool = self._tool(directions.tilt_back(cases.build[rows], angle), cases.rising[rows])
             return np.asarray(directions.from_vertical(tool) <= cap + 1e-12)
 
         angle = directions.least_tilt_back(cases.build, np.zeros(len(cases.bead)), good)
@@ -230,37 +240,38 @@ class Tilting:
     def _cleared(self, cases: Cases, low: Array, clearance: Clearance) -> Array:
         """Tilt-back (k,) that clears the nozzle, `low` or more; NaN where none does.
 
-        What stands up in the way of a bead that finds none is tilted back further, where that helps.
+        Obstructing beads before a bead without a solution are tilted back further if that helps.
         """
-        most = directions.from_vertical(cases.build)
-        first = found = self._resolved_over(cases, low, clearance, low)
-        for _ in range(FURTHER):
-            further = self._further(cases, found, clearance)
-            if not (further > np.maximum(low, np.where(np.isnan(found), most, found))).any():
+        max_angle = directions.from_vertical(cases.build)
+        first_angles = angles = self._resolved_over(cases, low, clearance, low)
+        for _ in range(MAX_ROUNDS):
+            further = self._further(cases, angles, clearance)
+            if not (further > np.maximum(low, np.where(np.isnan(angles), max_angle, angles))).any():
                 break
             low = np.maximum(low, further)
-            found = self._resolved_over(cases, low, clearance, found)
-        return found if not np.isnan(found).any() else first
+            angles = self._resolved_over(cases, low, clearance, angles)
+        return angles if not np.isnan(angles).any() else first_angles
 
     def _further(self, cases: Cases, angle: Array, clearance: Clearance) -> Array:
-        """Tilt-back (k,) rad that cases are to have at least, 0 where what they have will do: those that stand up before
-        one that finds none, and those next to points of the deposit on which the nozzle touches even so."""
-        most, tips, deposit = (
+        """Tilt-back (k,) rad that cases need at least, 0 if the present one suffices: for cases before one without a solution, and for
+        cases next to deposit points at which the nozzle touches even so.
+        """
+        max_angle, tips, deposit = (
             directions.from_vertical(cases.build),
             clearance.tips,
             clearance.deposit,
         )
         stuck = np.flatnonzero(np.isnan(angle))
-        known = np.where(np.isnan(angle), most, angle)
+        angle_ = np.where(np.isnan(angle), max_angle, angle)
         if len(stuck):
-            apart = np.hypot(
+            distance = np.hypot(
                 *(column[:, None] - column[stuck] for column in (tips.radius, tips.height))
             )
             # the nearest most, so that directions turn from bead to bead
             share = np.where(
-                np.arange(len(angle))[:, None] < stuck, 1.0 - apart / deposit.size[0], 0.0
+                np.arange(len(angle))[:, None] < stuck, 1.0 - distance / deposit.size[0], 0.0
             ).max(axis=1)
-            return np.where(share > 0.0, np.minimum(known + STEEP * share, most), 0.0)
+            return np.where(share > 0.0, np.minimum(angle_ + STEP_RAD * share, max_angle), 0.0)
         if clearance.between is None:
             return np.zeros(len(angle))
         build = directions.tilt_back(
@@ -269,21 +280,20 @@ class Tilting:
         tool = self._tool(build, np.full(len(build), cases.rising[0]))
         hit = deposit.case[~clearance.clear_between(clearance.standing(build), tool)]
         further = np.zeros(len(angle))
-        for near in (np.floor(hit).astype(np.intp), np.ceil(hit).astype(np.intp)):
-            further[near] = np.minimum(known + SLIGHT, most)[near]
+        for rows_ in (np.floor(hit).astype(np.intp), np.ceil(hit).astype(np.intp)):
+            further[rows_] = np.minimum(angle_ + SLIGHT, max_angle)[rows_]
         return further
 
     def _resolved_over(self, cases: Cases, low: Array, clearance: Clearance, start: Array) -> Array:
-        """Tilt-back (k,) that clears the nozzle over beads tilted as they are, `low` or more, looked for from `start` on;
-        NaN where none does.
+        """Tilt-back (k,) that clears the nozzle over tilted beads, `low` or more, searched from `start` on; NaN where none does.
 
-        Beads stand along their directions: what one needs depends on those before it, and on itself on the far side. So all
-        are settled again over what the others have become, until none changes. Where that goes to and fro, none goes back.
+        Beads extend along their directions: the tilt of one depends on earlier beads, and on itself on the far side. So every case is
+        solved again over the new tilts of the others, until none changes. If that oscillates, no tilt decreases.
         """
-        most, deposit = directions.from_vertical(cases.build), clearance.deposit
+        max_angle, deposit = directions.from_vertical(cases.build), clearance.deposit
         number = np.arange(len(low), dtype=float)
         still = CONVERGED / clearance.nozzle.reach
-        angle = np.maximum(low, np.where(np.isnan(start), most, start))
+        angle = np.maximum(low, np.where(np.isnan(start), max_angle, start))
         about, change = np.full((len(low), 2), np.nan), np.full(len(low), np.inf)
         free = np.zeros(len(low), dtype=bool)
         among: Scene | None = None
@@ -291,32 +301,32 @@ class Tilting:
             back = np.interp(deposit.case, number, angle)
             among = clearance.standing(directions.tilt_back(deposit.build, back), among)
 
-            def good(some: Index, tried: Array, among: Scene = among) -> Mask:
+            def good(rows: Index, angle_: Array, among: Scene = among) -> Mask:
                 tool = self._tool(
-                    directions.tilt_back(cases.build[some], tried), cases.rising[some]
+                    directions.tilt_back(cases.build[rows], angle_), cases.rising[rows]
                 )
-                return clearance.clear(among, some, tool)
+                return clearance.clear(among, rows, tool)
 
             within = float(np.clip(0.1 * change.max(), 0.1 * still, COARSE))
-            found = directions.least_tilt_back(cases.build, low, good, within, about, free)
-            needed = cases.together(found)
+            needed_angle = directions.least_tilt_back(cases.build, low, good, within, about, free)
+            needed = cases.together(needed_angle)
             stuck = np.isnan(needed)
-            now = np.where(stuck, most, needed)
+            now = np.where(stuck, max_angle, needed)
             if sweep >= FREE_SWEEPS:
                 now = np.maximum(now, angle)
             change = np.abs(now - angle)
             if change.max() <= still:
                 break
             angle = now
-            # what needs no tilt and comes before all that changes needs none again
-            free = (found == low) & cases.before(change > 0.0)
-            about = found[:, None] + np.outer(2.0 * change + within, [-1.0, 1.0])
+            # cases without tilt before every changed case stay without
+            free = (needed_angle == low) & cases.before(change > 0.0)
+            about = needed_angle[:, None] + np.outer(2.0 * change + within, [-1.0, 1.0])
         return np.where(stuck, np.nan, now)
 
     def _issues(
         self, cases: Cases, angle: Array, capped: Array, stuck: Mask, layer: Index
     ) -> list[Issue]:
-        at = layer[cases.bead]
+        case_layer = layer[cases.bead]
         cap = Text("{:.6g} deg", np.degrees(self.parameters.max_tilt))
         issues = []
         tool = self._tool(directions.tilt_back(cases.build, angle), cases.rising)
@@ -331,16 +341,18 @@ class Tilting:
                         "the cap larger",
                         Word(cap),
                     ),
-                    int(at[over][0]),
+                    int(case_layer[over][0]),
                 )
             )
         elif (capped > 1e-9).any():
-            first = int(at[np.argmax(capped > 1e-9)])
-            text = Text("from layer {} on, max_tilt holds directions within {}", first, Word(cap))
-            issues.append(Issue(NOTE, "MAX_TILT", text, first))
+            first_layer = int(case_layer[np.argmax(capped > 1e-9)])
+            text = Text(
+                "from layer {} on, max_tilt holds directions within {}", first_layer, Word(cap)
+            )
+            issues.append(Issue(NOTE, "MAX_TILT", text, first_layer))
         back = angle - capped
         if stuck.any():
-            hit = np.unique(at[stuck])
+            hit = np.unique(case_layer[stuck])
             bead = (
                 0
                 if cases.chained
@@ -363,7 +375,10 @@ class Tilting:
                 )
             )
         elif (back > 1e-9).any():
-            worst, first = int(at[np.argmax(back)]), int(at[np.argmax(back > 1e-9)])
+            worst, first_layer = (
+                int(case_layer[np.argmax(back)]),
+                int(case_layer[np.argmax(back > 1e-9)]),
+            )
             issues.append(
                 Issue(
                     NOTE,
@@ -371,7 +386,7 @@ class Tilting:
                     Text(
                         "from layer {} on, directions are tilted back to keep the nozzle clear, by up to "
                         "{:.2f} deg in layer {}",
-                        first,
+                        first_layer,
                         np.degrees(back.max()),
                         worst,
                     ),

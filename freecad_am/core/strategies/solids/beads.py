@@ -25,21 +25,24 @@ from ...toolpath import Bead
 from ...types import Array, Mask
 from .course import Course
 from .filling import bead_width
-from .lean import Turned, held
+from .lean import Turned, hold_torch
 from .outlines import leaning
 
 WRAP_SHARE = 0.5  # share of the chord error between a bead's chords and the surface
 GRID = 6  # decimals of mm that decide between points
 NEEDLESS = 0.02  # share of the chord error that a point has to matter by: offsets leave pairs of points at each node
-SHARES = 0.02  # of a bead's usual width, that points tell
-CLOSE = 2e-3  # mm; points nearer together are one: no controller tells the time of such a move
+SHARES = 0.02  # of a bead's usual width, resolution of the shares
+MIN_DISTANCE_MM = (
+    2e-3  # mm; nearer points are merged: no controller resolves the time of such a move
+)
 AGILE = 500.0  # mm/s^2; what every machine follows, where nothing but the speed sets the width
-BRIEF = 1.0001e-4  # s; no controller is told a shorter move, as narrow beads, which are laid faster, would have
+BRIEF = 1.0001e-4  # s; shortest move, for narrow beads, which are deposited faster, would have shorter ones
 
 
 class MadeBead(NamedTuple):
-    """A bead with what is to be told of it: where (n,) the speed is not what the width asks for, where it bends more than
-    the table's beads, None without a bead model; and how the torch turns."""
+    """A bead with its report: where (n,) the speed cannot hold the width, where it bends more than the table's beads, None without a
+    bead model; and how the torch turns.
+    """
 
     bead: Bead
     clamped: Mask | None = None
@@ -55,8 +58,9 @@ def bead_of(
     process: ProcessParameters,
     model: BeadModel | None,
 ) -> MadeBead:
-    """The bead of a curve of a layer, in part coordinates, laid as its class is, with the torch leaning as its class does;
-    its polynomial's variable is the arc length, 2 pi in all."""
+    """The bead of a curve of a layer, in part coordinates, with the settings and lean of its class; its polynomial's variable is
+    the arc length, 2 pi in all.
+    """
     surface, base, name = (
         layer.surface,
         layer.base,
@@ -70,19 +74,19 @@ def bead_of(
     )
     flat = divide_edges(flat, surface.pieces(flat, error))[0]
     course = Course(flat, curve.closed, surface.for_sheet(flat, curve.sheet))
-    flat, points, normals, tool, turned = held(
+    flat, points, normals, tool, turned = hold_torch(
         course, leaning(curve, layer, strategy, build), build, strategy.chord_error
     )
     points = base.to_part(points)
     if curve.closed:
         points[-1] = points[0]
-    way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     bead = Bead(
         points,
         base.rotate_to_part(normals),
         base.rotate_to_part(tool),
-        TURN * way / way[-1],
-        np.full(len(way), process.travel_speed),
+        TURN * arc / arc[-1],
+        np.full(len(arc), process.travel_speed),
         curve.closed,
         kind=curve.kind,
         ring=curve.ring,
@@ -93,20 +97,22 @@ def bead_of(
     heights = surface.heights(flat) if model is None else None
     closed = curve.closed and not curve.turns
     return _thinned(
-        _with_speed(bead, flat, closed, share, heights, strategy, process, model)
+        _set_speed(bead, flat, closed, share, heights, strategy, process, model)
     )._replace(turned=turned)
 
 
-def _thinned(made: MadeBead) -> MadeBead:
-    """The bead without points that come so soon after another that no controller can be told of the move."""
-    kept = _sparse(made.bead.points, made.bead.speed[1:], BRIEF)
-    if kept.all():
-        return made
-    clamped, tight = (None if mask is None else mask[kept] for mask in (made.clamped, made.tight))
-    return MadeBead(made.bead.thinned(np.flatnonzero(kept)), clamped, tight)
+def _thinned(dense: MadeBead) -> MadeBead:
+    """The bead without points that follow another too soon for any controller."""
+    is_kept = _sparse(dense.bead.points, dense.bead.speed[1:], BRIEF)
+    if is_kept.all():
+        return dense
+    clamped, tight = (
+        None if mask is None else mask[is_kept] for mask in (dense.clamped, dense.tight)
+    )
+    return MadeBead(dense.bead.thinned(np.flatnonzero(is_kept)), clamped, tight)
 
 
-def _with_speed(
+def _set_speed(
     bead: Bead,
     flat: Array,
     closed: bool,
@@ -116,8 +122,9 @@ def _with_speed(
     process: ProcessParameters,
     model: BeadModel | None,
 ) -> MadeBead:
-    """The bead, flat (n, 2) on the plane, at the speeds that hold its width. share: (n,) of the usual one; heights: (n,) mm
-    of the layer there, which no bead model asks for; None where they are as ever."""
+    """The bead, flat (n, 2) on the plane, at the speeds that hold its width. share: (n,) of the usual width; heights: (n,) mm of
+    the layer there, not used with a bead model; None if uniform.
+    """
     if model is not None:
         radius = radii(flat, closed, process.bead_width)
         return MadeBead(
@@ -138,31 +145,32 @@ def _with_speed(
     return MadeBead(replace(bead, width=width, height=heights))
 
 
-def _sparse(points: Array, speed: Array, least: float) -> Mask:
-    """Which points (n, k) of a polyline stay where none may be less than `least` along it from the one kept before, lengths
-    divided by the pace (n-1,) of its segments; both ends stay."""
-    way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1) / speed)]
-    kept: Mask = np.r_[True, np.diff(np.floor(way / least)) > 0.0]
-    kept &= (way < way[-1] - least) | (way == 0.0)
-    kept[0] = kept[-1] = True
-    rows = np.flatnonzero(kept)
-    near = np.r_[
-        False, np.linalg.norm(np.diff(points[rows], axis=0), axis=1) / speed[rows[1:] - 1] < least
+def _sparse(points: Array, speed: Array, min_step: float) -> Mask:
+    """Mask of the points (n, k) of a polyline with at least `min_step` between them along it, lengths divided by the pace (n-1,) of
+    its segments; both ends stay.
+    """
+    arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1) / speed)]
+    is_kept: Mask = np.r_[True, np.diff(np.floor(arc / min_step)) > 0.0]
+    is_kept &= (arc < arc[-1] - min_step) | (arc == 0.0)
+    is_kept[0] = is_kept[-1] = True
+    rows = np.flatnonzero(is_kept)
+    is_near = np.r_[
+        False,
+        np.linalg.norm(np.diff(points[rows], axis=0), axis=1) / speed[rows[1:] - 1] < min_step,
     ]
-    near[-1] = False  # neighbours across a step of the count: the first of the two is enough
-    kept[rows[near]] = False
-    return kept
+    is_near[-1] = False  # neighbours across a step of the count: the first of the two is enough
+    is_kept[rows[is_near]] = False
+    return is_kept
 
 
 def needed(line: Array, chord_error: float, besides: Mask | None = None) -> Array:
-    """A polyline (n, 2) on the plane without points that the chord error needs not, but for those (n,) needed besides, and
-    without those that all but coincide."""
+    """A polyline (n, 2) on the plane without points that the chord error does not need, except a mask (n,), and without coinciding points."""
     grid = np.ascontiguousarray(
         np.round(line, GRID) + 0.0
-    )  # of points alike the same wherever the hub stands
+    )  # the same rounding for equal points wherever the hub is
     simple = np.ascontiguousarray(simplified(grid, NEEDLESS * chord_error))
-    kept = np.isin(grid.view(np.complex128).ravel(), simple.view(np.complex128).ravel())
-    kept[[0, -1]] = True
-    line = line[kept if besides is None else kept | besides]
-    found: Array = line[_sparse(line, np.ones(len(line) - 1), CLOSE)]
-    return found
+    is_kept = np.isin(grid.view(np.complex128).ravel(), simple.view(np.complex128).ravel())
+    is_kept[[0, -1]] = True
+    line = line[is_kept if besides is None else is_kept | besides]
+    result: Array = line[_sparse(line, np.ones(len(line) - 1), MIN_DISTANCE_MM)]
+    return result

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids, and closed pieces of meshes, that no layer is cut in: thinner than a layer, or between two cuts.
+"""Solids, and closed pieces of meshes, without a layer cut: thinner than a layer, or between two cuts.
 
-What the beads of other solids cover of them is deposited all the same, such as a thin sheet below a thick one.
+Regions covered by the beads of other solids are deposited all the same, such as a thin sheet below a thick one.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from ...toolpath import Bead
 from ...types import Array
 
 PLACES = 4000  # in the box about a piece, at which it is looked whether beads cover it
-FEWEST, MOST = 3, 60  # of these along one axis
+MIN_SAMPLES, MAX_SAMPLES = 3, 60  # sample points along one axis
 LEAST_SHARE = 0.05  # of a piece, which is no more than rounding at its borders
 STEPS = 4  # to the width of a bead, of points along it
 MAX_NAMED = 8
@@ -39,8 +39,9 @@ MM3 = 1000.0  # in a cm3
 
 
 class Uncut(NamedTuple):
-    """A solid, or a closed piece of it, that no layer is cut in: its name, its volume and what of that no bead covers, mm3, a
-    point (3,) in it in part coordinates, and how high it is across the layers, mm."""
+    """A solid, or a closed piece, without a layer cut: its name, its volume and the volume that no bead covers, mm3, a point (3,) in
+    it in part coordinates, and its height across the layers, mm.
+    """
 
     name: str
     volume: float
@@ -52,8 +53,9 @@ class Uncut(NamedTuple):
 def uncut(
     solids: SolidsOnHub, strategy: FilledParameters, ranked: Sequence[RankedBead], width: float
 ) -> list[Uncut]:
-    """All of them of which beads, of a width in mm, leave more than LEAST_SHARE. Curved layers are not looked at: they reach
-    all that hangs together with what they start on."""
+    """Uncut pieces of which beads, of a width in mm, leave more than LEAST_SHARE. Curved layers are not checked: they reach
+    everything connected with their start.
+    """
     if getattr(strategy, "layers", "planes") in ("geodesic", "offset"):
         return []
     missed = []
@@ -62,10 +64,10 @@ def uncut(
             levels = _levels(group, piece.vertices[np.unique(piece.triangles)])
             if _is_cut(float(levels.min()), float(levels.max()), strategy):
                 continue
-            own = [each for each in ranked if each.group == number]
-            found = _missed(group, piece, strategy, own, width)
-            if found.bare > LEAST_SHARE * found.volume:
-                missed.append(found)
+            group_beads = [bead for bead in ranked if bead.group == number]
+            missed_piece = _missed(group, piece, strategy, group_beads, width)
+            if missed_piece.bare > LEAST_SHARE * missed_piece.volume:
+                missed.append(missed_piece)
     return missed
 
 
@@ -76,13 +78,13 @@ def issues(missed: Sequence[Uncut], strategy: FilledParameters) -> list[Issue]:
     named = [
         Text(
             "{} at {} ({:.3g} mm high, {:.4g} of its {:.4g} cm3)",
-            each.name,
-            place(each.point),
-            each.height,
-            each.bare / MM3,
-            each.volume / MM3,
+            piece.name,
+            place(piece.point),
+            piece.height,
+            piece.bare / MM3,
+            piece.volume / MM3,
         )
-        for each in sorted(missed, key=lambda each: -each.bare)[:MAX_NAMED]
+        for piece in sorted(missed, key=lambda piece: -piece.bare)[:MAX_NAMED]
     ]
     return [
         Issue(
@@ -93,7 +95,7 @@ def issues(missed: Sequence[Uncut], strategy: FilledParameters) -> list[Issue]:
                 "strategy.layer_height to at most their height, or fuse them with the solid beside them",
                 len(missed),
                 strategy.layer_height,
-                sum(each.bare for each in missed) / MM3,
+                sum(piece.bare for piece in missed) / MM3,
                 Text.joined(", ", named),
                 "" if len(missed) <= MAX_NAMED else ", ...",
             ),
@@ -104,12 +106,12 @@ def issues(missed: Sequence[Uncut], strategy: FilledParameters) -> list[Issue]:
 def _pieces(body: Body) -> Iterator[Body]:
     """The closed pieces of a body, without the walls of hollows in it."""
     triangles = np.asarray(body.triangles, dtype=np.intp)
-    piece = connected_pieces(triangles)
-    whole = SolidMesh(body.vertices, triangles).volume
-    for number in range(int(piece.max(initial=-1)) + 1):
-        own = triangles[piece == number]
-        if SolidMesh(body.vertices, own).volume * whole > 0.0:
-            yield Body(body.name, body.vertices, own)
+    label = connected_pieces(triangles)
+    volume = SolidMesh(body.vertices, triangles).volume
+    for number in range(int(label.max(initial=-1)) + 1):
+        piece_triangles = triangles[label == number]
+        if SolidMesh(body.vertices, piece_triangles).volume * volume > 0.0:
+            yield Body(body.name, body.vertices, piece_triangles)
 
 
 def _levels(group: Group, points: Array) -> Array:
@@ -128,8 +130,8 @@ def _is_cut(low: float, high: float, strategy: FilledParameters) -> bool:
     share = getattr(strategy, "share_of_cut", 0.0)
     if getattr(strategy, "cut_at", "bottom") == "top":
         low, high = low + 2.0 * aside, high + 2.0 * aside
-    first = max(0, int(np.ceil((low - aside) / strategy.layer_height - share - EXACT)))
-    return (first + share) * strategy.layer_height < high - aside
+    first_layer = max(0, int(np.ceil((low - aside) / strategy.layer_height - share - EXACT)))
+    return (first_layer + share) * strategy.layer_height < high - aside
 
 
 def _missed(
@@ -139,7 +141,7 @@ def _missed(
     ranked: Sequence[RankedBead],
     width: float,
 ) -> Uncut:
-    """What beads leave of a piece."""
+    """The volume that beads leave of a piece."""
     corners = piece.vertices[np.unique(piece.triangles)]
     points = _places_in(piece, corners)
     levels = _levels(group, points)
@@ -147,12 +149,12 @@ def _missed(
     covered = np.zeros(len(points), dtype=bool)
     reach = 0.5 * width / strategy.fill_density
     for number in np.unique(layer):
-        beads = [each.bead for each in ranked if each.layer == number]
+        beads = [bead.bead for bead in ranked if bead.layer == number]
         if beads:
-            some = np.flatnonzero(layer == number)
-            rise = levels[some] - number * strategy.layer_height
-            away = cKDTree(_along(beads, width / STEPS)).query(points[some])[0]
-            covered[some] = away**2 - rise**2 <= reach**2 + (0.5 * width / STEPS) ** 2
+            rows = np.flatnonzero(layer == number)
+            rise = levels[rows] - number * strategy.layer_height
+            distance = cKDTree(_sample_beads(beads, width / STEPS)).query(points[rows])[0]
+            covered[rows] = distance**2 - rise**2 <= reach**2 + (0.5 * width / STEPS) ** 2
     volume = abs(SolidMesh(piece.vertices, np.asarray(piece.triangles, dtype=np.intp)).volume)
     bare = points[~covered] if (~covered).any() else points
     middle = bare[int(((bare - bare.mean(axis=0)) ** 2).sum(axis=1).argmin())]
@@ -164,16 +166,16 @@ def _places_in(piece: Body, corners: Array) -> Array:
     """Points (n, 3) in a piece, evenly in the box about its corners (k, 3); the middles of its triangles where none is in it."""
     low, size = corners.min(axis=0), np.maximum(np.ptp(corners, axis=0), 1e-9)
     step = float((np.prod(size) / PLACES) ** (1.0 / 3.0))
-    count = np.clip(np.rint(size / step), FEWEST, MOST).astype(np.intp)
+    count = np.clip(np.rint(size / step), MIN_SAMPLES, MAX_SAMPLES).astype(np.intp)
     axes = [low[k] + size[k] * (np.arange(count[k]) + 0.5) / count[k] for k in range(3)]
     grid = np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=1)
     inside = inside_of(piece)
-    held = grid[inside.holds(grid)] if inside is not None else grid[:0]
+    inside_points = grid[inside.holds(grid)] if inside is not None else grid[:0]
     middles: Array = piece.corners().mean(axis=1)
-    return held if len(held) else middles
+    return inside_points if len(inside_points) else middles
 
 
-def _along(beads: Sequence[Bead], step: float) -> Array:
+def _sample_beads(beads: Sequence[Bead], step: float) -> Array:
     """Points (n, 3) along the middles of beads, no more than `step` mm apart."""
     points = []
     for bead in beads:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers filled: equal pictures once, and what stays open told with its place in the part."""
+"""Layers filled: equal regions once, and open gaps reported with their position in the part."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ from ...types import Array
 Same = TypeVar("Same", bound=FilledParameters)
 
 TOLERANCE_MM = 1e-6  # mm; regions whose borders are no farther apart are equal
-USUAL = ProcessParameters().bead_width  # mm; a width that is other than that was given
+DEFAULT_WIDTH_MM = ProcessParameters().bead_width  # mm; a width that is other than that was given
 MOST_FED = 1.5  # of the room in a layer; beads that overlap by a third
 USUAL_SPACING = (
     0.738  # of a width, at which the surface between beads is flat (Ding, Pan, Cuiuri, Li 2015)
 )
-MUCH = 0.03  # of a region, laid over other beads of it
-EVERY = (1.0, 1.0)  # widths that all beads have
+OVERLAP_SHARE = 0.03  # of a region, deposited over its other beads
+FULL_RANGE = (1.0, 1.0)  # widths that all beads have
 INSTEAD = {  # round a hub
     "spiral": "contours",
     "connected": "contours",
@@ -51,7 +51,7 @@ INSTEAD = {  # round a hub
 
 
 class Bare(NamedTuple):
-    """A place in which no bead lies: its area, mm^2, its width, mm, and a point (2,) in it."""
+    """A place without a bead: its area, mm^2, its width, mm, and a point (2,) in it."""
 
     area: float
     width: float
@@ -59,8 +59,9 @@ class Bare(NamedTuple):
 
 
 class Filled(NamedTuple):
-    """The beads of a layer on the plane, what to know about them, the numbers of those that fill each region, from inside
-    out, how well all of them are covered, and where no bead lies."""
+    """The beads of a layer on the plane, its issues, the bead numbers of each region, from inside out, the coverage, and the places
+    without a bead.
+    """
 
     curves: list[PlaneCurve]
     issues: tuple[Issue, ...]
@@ -78,7 +79,7 @@ class _Filling(NamedTuple):
 
 
 class _Picture(NamedTuple):
-    """A region, what it is filled with, its beads, places left open with their widths, and how well it is covered."""
+    """A region with its filling, beads, open gaps with their widths, and coverage."""
 
     region: Region | Strip
     filling: _Filling
@@ -89,8 +90,9 @@ class _Picture(NamedTuple):
 
 
 class Pictures:
-    """Fills layers. Solids alike but for a turn about the hub's axis have equal pictures, but for rounding: the beads of the
-    first, within TOLERANCE_MM of its own, are those of all."""
+    """Fills layers. Solids that differ by a turn about the hub's axis have equal regions up to rounding: the beads of the first
+    serve for all within TOLERANCE_MM.
+    """
 
     def __init__(
         self, strategy: FilledParameters, process: ProcessParameters, width: float = 0.0
@@ -102,8 +104,9 @@ class Pictures:
         self._pictures: defaultdict[Period | None, list[_Picture]] = defaultdict(list)
 
     def filled(self, layer: Slice, name: str) -> Filled:
-        """The beads of a layer of what messages call by a name; every other curve the other way round where directions of
-        closed ones alternate, or starts of open ones are spread. InfeasibleError THIN_REGION."""
+        """The beads of a layer, with a name for messages; every other curve is reversed if directions of closed ones alternate, or
+        starts of open ones are spread. InfeasibleError THIN_REGION.
+        """
         strategy, filling = self._strategy, self._filling(layer)
         curves: list[PlaneCurve] = []
         gaps: Gaps = []
@@ -150,13 +153,13 @@ class Pictures:
     def _issues(
         self, layer: Slice, curves: Sequence[PlaneCurve], gaps: Gaps, filling: _Filling
     ) -> tuple[Issue, ...]:
-        """What is told of a layer: what beads leave open, single ones that stand out, a pattern that is another there."""
+        """The issues of a layer: open gaps, single beads that protrude, a replaced pattern."""
         strategy, beads, issues = self._strategy, filling.beads, []
         regions = tuple(region for region in layer.regions if isinstance(region, Region))
         all_round = len(regions) < len(layer.regions)
         if not all_round and strategy.fill_density == 1.0:
             regions = joined(regions, beads.gap)
-            if regions != layer.regions:  # what beads leave open on both sides of a slit is one gap
+            if regions != layer.regions:  # open places on both sides of a slit are one gap
                 gaps = [gap for region in regions for gap in open_places(region, curves, beads)]
         if gaps:
             point, width = max(gaps, key=lambda gap: gap[1])
@@ -223,7 +226,7 @@ class Pictures:
         """A region filled, as one before it where that was the same."""
         flat = layer.surface.period is None
         if isinstance(region, Strip):
-            return self._made(
+            return self._fill_region(
                 region, filling._replace(infill=Infill()) if layer.buried == () else filling, flat
             )
         for picture in self._pictures[layer.surface.period]:
@@ -232,17 +235,16 @@ class Pictures:
                 picture.region.borders(), region.borders()
             ):
                 return picture
-        self._pictures[layer.surface.period].append(self._made(region, filling, flat))
+        self._pictures[layer.surface.period].append(self._fill_region(region, filling, flat))
         return self._pictures[layer.surface.period][-1]
 
-    def _made(self, region: Region | Strip, filling: _Filling, flat: bool) -> _Picture:
-        """A region filled; of what its beads leave open nothing is told where room is left on purpose. flat: nothing goes
-        round the surface."""
+    def _fill_region(self, region: Region | Strip, filling: _Filling, flat: bool) -> _Picture:
+        """Fill a region; open places are not reported if room is left on purpose. flat: no curve goes round the surface."""
         strategy, (beads, angle, infill) = self._strategy, filling
-        sparse, (least, most) = infill.density < 1.0, strategy.spacing_range
+        sparse, (min_share, max_share) = infill.density < 1.0, strategy.spacing_range
         share = 1.0
         if isinstance(region, Region) and not sparse and strategy.rounds_alone:
-            beads, share = fitted(region, beads, least, most)
+            beads, share = fitted(region, beads, min_share, max_share)
         curves: Sequence[PlaneCurve] = fill(
             region,
             beads,
@@ -254,28 +256,33 @@ class Pictures:
         )
         gaps = [] if sparse else open_places(region, curves, beads)
         if isinstance(region, Region) and not sparse:
-            curves = [*shared(region, curves, beads, share, least, most)]
+            curves = [*shared(region, curves, beads, share, min_share, max_share)]
         cover = covered(region, curves, filling.beads, infill.density)
         narrowing = (
-            not sparse and flat and strategy.spacing_range == EVERY and strategy.narrowest < 1.0
+            not sparse
+            and flat
+            and strategy.spacing_range == FULL_RANGE
+            and strategy.narrowest < 1.0
         )
         if (
             narrowing
             and cover.over(filling.beads.spacing * math.fsum(map(_weighed, curves)))
-            > MUCH * cover.area
+            > OVERLAP_SHARE * cover.area
         ):
             curves = narrowed(
                 curves, filling.beads, angle, strategy.narrowest
-            )  # no wider than their room, and in the middle of it
+            )  # no wider than their room, and centred in it
             cover = covered(region, curves, filling.beads)
         bare = [] if sparse or not isinstance(region, Region) else bare_parts(region, curves, beads)
-        places = [Bare(part.area, part.width, part.inside()) for part, _ in bare]
-        return _Picture(region, filling, curves, gaps, cover, places)
+        bare_places = [
+            Bare(bare_part.area, bare_part.width, bare_part.inside()) for bare_part, _ in bare
+        ]
+        return _Picture(region, filling, curves, gaps, cover, bare_places)
 
 
 def _no_bead(layer: Slice, bare: Sequence[Bare]) -> Issue:
-    """What is told of places of a layer in which no bead lies."""
-    largest = max(bare, key=lambda place: place.area)
+    """The issue of places of a layer without a bead."""
+    largest = max(bare, key=lambda bare_place: bare_place.area)
     return Issue(
         WARNING,
         "NO_BEAD",
@@ -283,7 +290,7 @@ def _no_bead(layer: Slice, bare: Sequence[Bare]) -> Issue:
             "{} place(s) too narrow for a bead get none, {:.3g} mm^2 in all; the largest, {:.3g} mm^2 and "
             "{:.3g} mm wide, is at {}; use narrower beads, lower strategy.narrowest, or make the part thicker there",
             len(bare),
-            math.fsum(place.area for place in bare),
+            math.fsum(bare_place.area for bare_place in bare),
             largest.area,
             largest.width,
             layer.where(largest.point),
@@ -293,10 +300,12 @@ def _no_bead(layer: Slice, bare: Sequence[Bare]) -> Issue:
 
 
 def _weighed(curve: PlaneCurve) -> float:
-    """mm of usual bead that lays as much as a curve."""
+    """mm of usual bead that deposits as much as a curve."""
     points, share = curve.whole()
-    way = np.hypot(*np.diff(points, axis=0).T)
-    return float(way.sum() if share is None else 0.5 * (share[1:] + share[:-1]) @ way)
+    segment_lengths = np.hypot(*np.diff(points, axis=0).T)
+    return float(
+        segment_lengths.sum() if share is None else 0.5 * (share[1:] + share[:-1]) @ segment_lengths
+    )
 
 
 def spaced(strategy: Same, process: ProcessParameters) -> Same:
@@ -313,8 +322,8 @@ def bead_width(
 
     InputError BEAD_SPACING where the spacing is larger, so that stripes would stay open."""
     spacing, width = strategy.bead_spacing, process.bead_width
-    known = model is not None or strategy.bead_overlap is not None or width != USUAL
-    if process.fill_width == "spacing" or (process.fill_width == "auto" and not known):
+    is_known = model is not None or strategy.bead_overlap is not None or width != DEFAULT_WIDTH_MM
+    if process.fill_width == "spacing" or (process.fill_width == "auto" and not is_known):
         return spacing
     if spacing > width * (1.0 + 1e-9):
         raise InputError(
@@ -333,14 +342,16 @@ def bead_width(
 def over_fed(
     strategy: FilledParameters, process: ProcessParameters, model: BeadModel | None, width: float
 ) -> list[Issue]:
-    """A warning where beads that count as `width` mm wide lie so close that what the wire feeds along them fills a layer more
-    than MOST_FED times: fed for their width, as the bead model has it, or as it is given. Where beads are not much wider than
-    they are apart a feed that is given is looked at by `wire.fed` alone."""
+    """A warning if beads that count as `width` mm wide are so close that the wire fills a layer more than MOST_FED times.
+
+    The feed is for their width, from the bead model or as given. If beads are not much wider than their spacing, `wire.set_wire_feed`
+    checks a given feed.
+    """
     spacing, height = strategy.bead_spacing, strategy.layer_height
     section = _fed_section(process, model, width * height)
     fed = section / (spacing * height)
-    given = model is None and not isinstance(process.wire.feed, str)
-    if fed <= MOST_FED or (given and width <= MOST_FED * spacing):
+    is_given = model is None and not isinstance(process.wire.feed, str)
+    if fed <= MOST_FED or (is_given and width <= MOST_FED * spacing):
         return []
     overlap = strategy.bead_overlap is not None
     text = Text(
@@ -398,7 +409,7 @@ def _wider_apart(
 
 
 def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> list[Issue]:
-    """What is told of single beads in regions narrower than they are."""
+    """The issue of single beads in regions narrower than they are."""
     curves = [
         curve for curve in curves if curve.kind == "centre" and curve.ring == 0 and not curve.dot
     ]
@@ -429,14 +440,15 @@ def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> l
     ]
 
 
-def _same(one: _Filling, other: _Filling) -> bool:
+def _same(filling: _Filling, other_filling: _Filling) -> bool:
     """Whether equal regions are filled in the same way."""
     turned = max(
-        abs(one.angle - other.angle), np.abs(np.subtract(one.beads.start, other.beads.start)).max()
+        abs(filling.angle - other_filling.angle),
+        np.abs(np.subtract(filling.beads.start, other_filling.beads.start)).max(),
     )
-    if turned >= 1e-9 or one.beads.spread != other.beads.spread:
+    if turned >= 1e-9 or filling.beads.spread != other_filling.beads.spread:
         return False
-    a, b = one.infill, other.infill
+    a, b = filling.infill, other_filling.infill
     if a.density == b.density == 1.0:
         return True
     if (
@@ -445,19 +457,19 @@ def _same(one: _Filling, other: _Filling) -> bool:
         or (a.buried is None) != (b.buried is None)
     ):
         return False
-    borders, others = (
+    borders, other_borders = (
         tuple(border for region in infill.buried or () for border in region.borders())
         for infill in (a, b)
     )
-    return _equal(borders, others)
+    return _equal(borders, other_borders)
 
 
-def _equal(borders: Sequence[Array], others: Sequence[Array]) -> bool:
+def _equal(borders: Sequence[Array], other_borders: Sequence[Array]) -> bool:
     """Whether borders (n, 2) are the same within TOLERANCE_MM, wherever they begin."""
-    if [len(border) for border in borders] != [len(other) for other in others]:
+    if [len(border) for border in borders] != [len(other_border) for other_border in other_borders]:
         return False
-    for border, other in zip(borders, others):
-        first = int(np.argmin(((other - border[0]) ** 2).sum(axis=1)))
-        if np.abs(np.roll(other, -first, axis=0) - border).max() > TOLERANCE_MM:
+    for border, other_border in zip(borders, other_borders):
+        start = int(np.argmin(((other_border - border[0]) ** 2).sum(axis=1)))
+        if np.abs(np.roll(other_border, -start, axis=0) - border).max() > TOLERANCE_MM:
             return False
     return True

@@ -2,9 +2,9 @@
 """How the torch is held along a bead on a hub: lead, tilt and the deflection of outer contours (Dai 2020, section 3), turned
 no faster than `build_direction.max_turn`.
 
-The torch leans from the surface's normal by angles forward and to the right of the way the bead runs. Where that way turns
-at a corner the torch leans by as much, and goes round the normal from the one side to the other over a stretch of the bead
-about the corner. Laid flat this is a heading, a number that runs on along the bead, and its means over stretches.
+The torch leans from the surface's normal by angles forward and to the right of the direction of travel. At a corner the torch
+leans by the same angle, and goes round the normal from one side to the other over a stretch of the bead about the corner. On
+the flattened bead this is a heading, a number that continues along the bead, and its means over stretches.
 """
 
 from __future__ import annotations
@@ -22,60 +22,61 @@ from ...layers.surface import LayerSurface
 from ...parameters.build_direction import BuildDirectionParameters
 from ...slicing.directions.wall import turn_rates
 from ...types import Array, Mask
-from .course import LEAST_DEPARTURE, OF_NORMAL, WITHIN, Course, evened, limit
+from .course import LEAST_DEPARTURE, OF_NORMAL, RATE_MARGIN, Course, evened, limit
 from .spread import Line, Zones, means, too_fast
 
 GROWTH, SHRINK = 1.1, 0.9
 ROUNDS = 100
-ASTRAY = math.radians(
+MAX_DEPARTURE_SHARE = math.radians(
     40.0
 )  # largest mean of how far the heading of the lean may be from the bead's
-LONGEST = 0.7  # of a bead; no stretch reaches farther
-FEWEST = 0.02  # share of the lean asked for below which it is none
+MAX_STRETCH_SHARE = 0.7  # of a bead; no stretch reaches farther
+MIN_LEAN_SHARE = 0.02  # share of the lean asked for below which it is none
 STEEPEST = math.radians(
     300.0
 )  # rad/mm; without a limit, so that lean and bead agree next to corners
-FINE, FLAT = (
+FINE, STRETCH = (
     math.radians(0.02),
     1e4,
-)  # what of a direction may be lost between points; mm stretched so that only that counts
+)  # largest loss of a direction between points; mm stretched so that only this counts
 LEAST_MM = (
     4e-3  # mm; no shorter are the pieces of a segment on which the torch goes round the normal
 )
 EDGE = 1e-3  # mm over which a deflection ends before it is spread
-ROUGH = 0.05  # share of the chord error that the heading's course need not follow
-CORNER = 0.5  # points so much farther apart than those of a curve make a corner
+SIMPLIFY_SHARE = 0.05  # share of the chord error that the heading's course need not follow
+CORNER = 0.5  # ratio of point distance to that of a curve from which points make a corner
 
 
 @dataclass(frozen=True)
 class Lean:
-    """What is asked of a bead: leaning forward and to its right by `lead` and `side`, rad; beyond `until` mm
-    by `rest` to the right."""
+    """The requested lean of a bead: forward and to its right by `lead` and `side`, rad; beyond `until` mm by `side_beyond` to the
+    right.
+    """
 
     lead: float
     side: float
-    rest: float = 0.0
+    side_beyond: float = 0.0
     until: float = math.inf
 
     @property
     def most(self) -> float:
         """The largest angle (rad) between the torch and the normal."""
         return math.acos(
-            math.cos(self.lead) * math.cos(max(abs(self.side), abs(self.rest), key=abs))
+            math.cos(self.lead) * math.cos(max(abs(self.side), abs(self.side_beyond), key=abs))
         )
 
     def less(self, share: float) -> Lean:
-        """The same to a share of it."""
-        return Lean(share * self.lead, share * self.side, share * self.rest, self.until)
+        """The lean scaled by a share."""
+        return Lean(share * self.lead, share * self.side, share * self.side_beyond, self.until)
 
 
 class Turned(NamedTuple):
-    """Besides the bead: share of the lean asked for that it has, by how much (rad) the torch departs from what that asks for
-    at corners at most, over how much of the length (mm), and the turn of the normals (rad/mm) where they alone turn faster
-    than asked for, else 0."""
+    """Torch turning of a bead: its share of the requested lean, the largest departure (rad) from the requested axis at corners, the
+    length affected (mm), and the turn of the normals (rad/mm) if the normals turn faster than the limit, else 0.
+    """
 
     share: float
-    asked: float
+    requested: float
     departure: float
     length: float
     normals: float = 0.0
@@ -91,153 +92,179 @@ class Held(NamedTuple):
     turned: Turned
 
 
-def held(course: Course, lean: Lean, build: BuildDirectionParameters, chord_error: float) -> Held:
+def hold_torch(
+    course: Course, lean: Lean, build: BuildDirectionParameters, chord_error: float
+) -> Held:
     """The bead with its tool axes, and points added where they turn."""
     step = np.linalg.norm(np.diff(course.flat, axis=0), axis=1)
-    way = np.r_[0.0, np.cumsum(step)]
-    asked = lean.most
-    course, off, over = evened(course, way, build, asked > 0.0)
-    flat, points, normal, phi = course.at(way, way)
-    own = float(turn_rates(points, normal).max())
-    most = limit(course.surface, build, own)
-    lacking = own if own > (WITHIN if asked else 1.0) * most else 0.0
-    most = OF_NORMAL * own if lacking else most
-    if asked == 0.0:
+    arc = np.r_[0.0, np.cumsum(step)]
+    requested = lean.most
+    course, off, over = evened(course, arc, build, requested > 0.0)
+    flat, points, normal, phi = course.wrap_at(arc, arc)
+    normal_rate = float(turn_rates(points, normal).max())
+    max_rate = limit(course.surface, build, normal_rate)
+    lacking = normal_rate if normal_rate > (RATE_MARGIN if requested else 1.0) * max_rate else 0.0
+    max_rate = OF_NORMAL * normal_rate if lacking else max_rate
+    if requested == 0.0:
         return Held(flat, points, normal, normal, Turned(1.0, 0.0, off, over, lacking))
-    limited, most = most < math.inf, min(most, STEEPEST)
-    line, period = _line(course, way, float(phi[-1] - phi[0]), chord_error)
+    limited, max_rate = max_rate < math.inf, min(max_rate, STEEPEST)
+    line, period = _line(course, arc, float(phi[-1] - phi[0]), chord_error)
     share = 1.0
     if course.closed:  # it cannot go round the normal faster than that
         share = min(
             1.0,
-            WITHIN * most * way[-1] / max(math.sin(min(asked, 0.5 * math.pi)) * abs(period), 1e-12),
+            RATE_MARGIN
+            * max_rate
+            * arc[-1]
+            / max(math.sin(min(requested, 0.5 * math.pi)) * abs(period), 1e-12),
         )
-    while share > FEWEST:
-        found = _spread(course, way, line, lean.less(share), most, max(most - own, 0.1 * most))
-        if found is not None:
-            departure = max(found.turned.departure, off) if limited else off
-            return found._replace(
-                turned=Turned(share, asked, departure, max(found.turned.length, over), lacking)
+    while share > MIN_LEAN_SHARE:
+        spread_bead = _spread_lean(
+            course,
+            arc,
+            line,
+            lean.less(share),
+            max_rate,
+            max(max_rate - normal_rate, 0.1 * max_rate),
+        )
+        if spread_bead is not None:
+            departure = max(spread_bead.turned.departure, off) if limited else off
+            return spread_bead._replace(
+                turned=Turned(
+                    share, requested, departure, max(spread_bead.turned.length, over), lacking
+                )
             )
         share *= SHRINK
-    return Held(flat, points, normal, normal, Turned(0.0, asked, off, over, lacking))
+    return Held(flat, points, normal, normal, Turned(0.0, requested, off, over, lacking))
 
 
-def _line(course: Course, way: Array, round_: float, chord_error: float) -> tuple[Line, float]:
+def _line(course: Course, arc: Array, round_: float, chord_error: float) -> tuple[Line, float]:
     """The heading (rad) of the bead along it, in the plane, and by how much it is more after a round of a closed one.
 
     At each point it turns over as much of the way as a curve that stays within the chord error would, half of the shorter
     edge at most; next to at once at a corner. round_: how far phi goes on in a round.
     """
     x, y = columns(course.flat)
-    kept = np.isin(x + 1j * y, simplified(course.flat, ROUGH * chord_error) @ np.array([1.0, 1j]))
-    x, y = columns(np.diff(course.flat[kept], axis=0))
+    is_kept = np.isin(
+        x + 1j * y, simplified(course.flat, SIMPLIFY_SHARE * chord_error) @ np.array([1.0, 1j])
+    )
+    x, y = columns(np.diff(course.flat[is_kept], axis=0))
     heading = np.unwrap(np.arctan2(y, x))
-    edge, at = np.diff(way[kept]), way[kept][1:-1]
+    edge, position = np.diff(arc[is_kept]), arc[is_kept][1:-1]
     turn = np.diff(heading)
     margin = 0.5 * np.minimum(edge[:-1], edge[1:])
-    before, after = heading[:-1], heading[1:]
+    left, right = heading[:-1], heading[1:]
     period = 0.0
     if course.closed:
         seam = float(np.remainder(heading[0] + round_ - heading[-1] + math.pi, TURN) - math.pi)
         period = heading[-1] + seam - heading[0]
-        at, turn = np.r_[0.0, at], np.r_[seam, turn]
+        position, turn = np.r_[0.0, position], np.r_[seam, turn]
         margin = np.r_[0.5 * min(edge[-1], edge[0]), margin]
-        before, after = np.r_[heading[-1] - period, before], np.r_[heading[0], after]
+        left, right = np.r_[heading[-1] - period, left], np.r_[heading[0], right]
     curve = 2.0 * chord_error / np.maximum(np.abs(turn), 1e-12)
     margin = np.where(curve < CORNER * margin, 0.1 * EDGE, np.minimum(margin, curve))
-    places = np.stack([at - margin, at + margin], axis=1).ravel()
-    values = np.stack([before, after], axis=1).ravel()
+    knots = np.stack([position - margin, position + margin], axis=1).ravel()
+    values = np.stack([left, right], axis=1).ravel()
     if course.closed:
         turns = np.array([-1.0, 0.0, 1.0])[:, None]
-        places, values = (places + turns * way[-1]).ravel(), (values + turns * period).ravel()
-    if not len(places):
-        places, values = np.zeros(1), heading[:1]
-    apart = np.r_[True, np.diff(places) > 1e-9]
-    return Line(places[apart], values[apart, None]), period
+        knots, values = (knots + turns * arc[-1]).ravel(), (values + turns * period).ravel()
+    if not len(knots):
+        knots, values = np.zeros(1), heading[:1]
+    is_separate = np.r_[True, np.diff(knots) > 1e-9]
+    return Line(knots[is_separate], values[is_separate, None]), period
 
 
-def _with_sides(line: Line, lean: Lean) -> Line:
+def _add_sides(line: Line, lean: Lean) -> Line:
     """Heading and angle to the right along the bead."""
     if math.isinf(lean.until):
-        return Line(line.at, np.column_stack([line.values, np.full(len(line.at), lean.side)]))
+        return Line(
+            line.positions, np.column_stack([line.values, np.full(len(line.positions), lean.side)])
+        )
     ends = lean.until + np.array([-0.5, 0.5]) * EDGE
-    at = np.union1d(line.at, ends)
-    side = np.interp(at, ends, [lean.side, lean.rest])
-    return Line(at, np.column_stack([line(at)[:, 0], side]))
+    knots = np.union1d(line.positions, ends)
+    side = np.interp(knots, ends, [lean.side, lean.side_beyond])
+    return Line(knots, np.column_stack([line(knots)[:, 0], side]))
 
 
-def _spread(
-    course: Course, way: Array, heading: Line, lean: Lean, most: float, budget: float
+def _spread_lean(
+    course: Course, arc: Array, heading: Line, lean: Lean, max_rate: float, budget: float
 ) -> Held | None:
-    """The bead with its lean spread so that the torch turns no faster than `most`; None where that takes it too far astray.
+    """The bead with its lean spread so that the torch turns no faster than `max_rate`; None if that departs too far.
 
-    budget: what the lean may turn by for sure."""
-    length = float(way[-1])
-    line = _with_sides(heading, lean)
+    budget: rate of turn reserved for the lean.
+    """
+    length = float(arc[-1])
+    line = _add_sides(heading, lean)
     line = line if course.closed else line.mirrored(length)
     weights = np.array([math.sin(lean.most), 1.0])
-    leaning = length if lean.lead or lean.rest else min(length, lean.until + EDGE)
+    leaning = length if lean.lead or lean.side_beyond else min(length, lean.until + EDGE)
     zones = too_fast(line, weights, budget, length if course.closed else None, leaning)
     for _ in range(ROUNDS):
-        s = np.union1d(way, zones.places(way))
+        s = np.union1d(arc, zones.places(arc))
         values = means(line, s, zones.stretches(s))
-        more = _within_bends(line, s, zones, values, lean.most)
-        if len(more):
-            s = np.union1d(s, more)
+        extra = _within_bends(line, s, zones, values, lean.most)
+        if len(extra):
+            s = np.union1d(s, extra)
             values = means(line, s, zones.stretches(s))
-        more = _about_normal(s, values, lean.most)
-        if len(more):
-            s = np.union1d(s, more)
+        extra = _about_normal(s, values, lean.most)
+        if len(extra):
+            s = np.union1d(s, extra)
             values = means(line, s, zones.stretches(s))
-        flat, points, normal, tool, phi, rates = _sampled(course, way, s, values, lean)
-        fast = rates > WITHIN * most
+        flat, points, normal, tool, phi, rates = _sampled(course, arc, s, values, lean)
+        fast = rates > RATE_MARGIN * max_rate
         if not fast.any():
             break
         zones = zones.widened(0.5 * (s[1:] + s[:-1])[fast], GROWTH)
-        if zones.half.max() > LONGEST * length:
+        if zones.half.max() > MAX_STRETCH_SHARE * length:
             return None
     else:
         return None
-    fewer = np.isin(s, way) | _needed(s, values, lean.lead)
-    if not fewer.all():
-        thin = _sampled(course, way, s[fewer], values[fewer], lean)
-        if not (thin.rates > 0.5 * (1.0 + WITHIN) * most).any():
-            s, values = s[fewer], values[fewer]
+    is_kept = np.isin(s, arc) | _needed(s, values, lean.lead)
+    if not is_kept.all():
+        thin = _sampled(course, arc, s[is_kept], values[is_kept], lean)
+        if not (thin.rates > 0.5 * (1.0 + RATE_MARGIN) * max_rate).any():
+            s, values = s[is_kept], values[is_kept]
             flat, points, normal, tool, phi, _ = thin
-    asked = line(s)
+    requested = line(s)
     share = np.diff(s) / length
     leans = np.hypot(
-        math.sin(lean.lead), np.sin(asked[:, 1])
-    )  # where the torch stands straight its heading says nothing
+        math.sin(lean.lead), np.sin(requested[:, 1])
+    )  # where the torch is upright its heading is undefined
     off, weight = (
         0.5 * (row[1:] + row[:-1]) @ share
-        for row in (np.abs(values[:, 0] - asked[:, 0]) * leans, leans)
+        for row in (np.abs(values[:, 0] - requested[:, 0]) * leans, leans)
     )
-    if off > ASTRAY * weight:
+    if off > MAX_DEPARTURE_SHARE * weight:
         return None
-    wanted = directed(course.surface, normal, asked[:, 0] - phi, lean.lead, asked[:, 1])
-    apart = np.arctan2(np.linalg.norm(np.cross(wanted, tool), axis=1), (wanted * tool).sum(axis=1))
-    touched = float((share * length)[np.maximum(apart[1:], apart[:-1]) > LEAST_DEPARTURE].sum())
+    target = directed(course.surface, normal, requested[:, 0] - phi, lean.lead, requested[:, 1])
+    departure = np.arctan2(
+        np.linalg.norm(np.cross(target, tool), axis=1), (target * tool).sum(axis=1)
+    )
+    touched = float(
+        (share * length)[np.maximum(departure[1:], departure[:-1]) > LEAST_DEPARTURE].sum()
+    )
     return Held(
         flat,
         points,
         normal,
         tool,
-        Turned(1.0, 0.0, float(apart.max()) if touched else 0.0, touched),
+        Turned(1.0, 0.0, float(departure.max()) if touched else 0.0, touched),
     )
 
 
 def _within_bends(line: Line, s: Array, zones: Zones, values: Array, lean: float) -> Array:
-    """Places (m,) mm to add between places s (n,) with their values (n, c) where the heading bends on a short part of a long
-    segment alone: straight from one to the other it would be so far off that the torch leaned by more than FINE less."""
-    at = line.at[(line.at > s[0] + LEAST_MM) & (line.at < s[-1] - LEAST_MM)]
-    at = at[np.diff(at, prepend=-math.inf) >= LEAST_MM]
-    after = np.searchsorted(s, at)
-    at = at[np.minimum(at - s[after - 1], s[after] - at) >= LEAST_MM]
-    off = np.abs(means(line, at, zones.stretches(at))[:, 0] - np.interp(at, s, values[:, 0]))
-    found: Array = at[off > _straight_turn(lean)]
-    return found
+    """Positions (m,) mm to add between positions s (n,) with values (n, c) where the heading bends on a short section of a long
+    segment: interpolated linearly, the torch would lean by more than FINE less.
+    """
+    bends = line.positions[(line.positions > s[0] + LEAST_MM) & (line.positions < s[-1] - LEAST_MM)]
+    bends = bends[np.diff(bends, prepend=-math.inf) >= LEAST_MM]
+    right = np.searchsorted(s, bends)
+    bends = bends[np.minimum(bends - s[right - 1], s[right] - bends) >= LEAST_MM]
+    off = np.abs(
+        means(line, bends, zones.stretches(bends))[:, 0] - np.interp(bends, s, values[:, 0])
+    )
+    positions: Array = bends[off > _straight_turn(lean)]
+    return positions
 
 
 def _straight_turn(lean: float) -> float:
@@ -247,15 +274,16 @@ def _straight_turn(lean: float) -> float:
 
 
 def _about_normal(s: Array, values: Array, lean: float) -> Array:
-    """Places (m,) mm to add where the torch goes round the normal by so much between two places s (n,) that on the straight
-    way from one side to the other it would lean by more than FINE less."""
-    most = _straight_turn(lean)
+    """Positions (m,) mm to add where the torch goes so far round the normal between two positions s (n,) that in between it would
+    lean by more than FINE less.
+    """
+    max_turn = _straight_turn(lean)
     turn, step = np.abs(np.diff(values[:, 0])), np.diff(s)
-    count = np.maximum(np.minimum(np.ceil(turn / most), step / LEAST_MM), 1.0).astype(np.intp)
+    count = np.maximum(np.minimum(np.ceil(turn / max_turn), step / LEAST_MM), 1.0).astype(np.intp)
     start = np.repeat(np.arange(len(step)), count - 1)
     number = np.arange(len(start)) - np.repeat(np.cumsum(count - 1) - (count - 1), count - 1) + 1
-    found: Array = s[start] + number / count[start] * step[start]
-    return found
+    positions: Array = s[start] + number / count[start] * step[start]
+    return positions
 
 
 class _Sampled(NamedTuple):
@@ -269,9 +297,9 @@ class _Sampled(NamedTuple):
     rates: Array
 
 
-def _sampled(course: Course, way: Array, s: Array, values: Array, lean: Lean) -> _Sampled:
+def _sampled(course: Course, arc: Array, s: Array, values: Array, lean: Lean) -> _Sampled:
     """The bead at places s (n,) with its torch by headings and angles to the right, values (n, 2)."""
-    flat, points, normal, phi = course.at(s, way)
+    flat, points, normal, phi = course.wrap_at(s, arc)
     tool = directed(course.surface, normal, values[:, 0] - phi, lean.lead, values[:, 1])
     if course.closed:
         tool[-1] = tool[0]
@@ -279,22 +307,23 @@ def _sampled(course: Course, way: Array, s: Array, values: Array, lean: Lean) ->
 
 
 def _needed(s: Array, values: Array, lead: float) -> Mask:
-    """Which places (n,) keep the lean, laid flat, within FINE where it runs straight between them."""
+    """Mask of the positions (n,) that keep the flattened lean within FINE under linear interpolation."""
     heading, side = columns(values)
     ahead, right = np.cos(side) * math.sin(lead), np.sin(side)
     cos, sin = np.cos(heading), np.sin(heading)
-    found = np.zeros(len(s), dtype=bool)
-    for part in (ahead * cos + right * sin, ahead * sin - right * cos):
-        kept = simplified(np.stack([FLAT * s, part], axis=-1), FINE)
-        found |= np.isin(FLAT * s, kept[:, 0])
-    return found
+    is_needed = np.zeros(len(s), dtype=bool)
+    for component in (ahead * cos + right * sin, ahead * sin - right * cos):
+        simple = simplified(np.stack([STRETCH * s, component], axis=-1), FINE)
+        is_needed |= np.isin(STRETCH * s, simple[:, 0])
+    return is_needed
 
 
 def directed(
     surface: LayerSurface, normal: Array, heading: Array, lead: float, side: Array
 ) -> Array:
-    """Tool axes (n, 3): the normals turned by `lead` towards the heading (n,), counted from the first axis of the surface,
-    then by `side` (n,) to the right of it, rad."""
+    """Tool axes (n, 3): the normals turned by `lead` towards the heading (n,), counted from the first axis of the surface, then to
+    its right by `side` (n,), rad.
+    """
     around, up = surface.axes(normal)
     cos, sin = np.cos(heading)[:, None], np.sin(heading)[:, None]
     along, right = cos * around + sin * up, sin * around - cos * up

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is said about the beads of solids: speeds, widths, heights against the layer height, waits, what was mended; and how
-the torch is turned along them: spread at corners, leaning less, fast normals."""
+"""Issues about the beads of solids: speeds, widths, heights against the layer height, waits, repairs; and how the torch turns
+along them: spread at corners, leaning less, fast normals.
+"""
 
 from __future__ import annotations
 
@@ -19,28 +20,28 @@ from ...toolpath import Layer
 from ...types import Array
 from .beads import MadeBead
 from .course import LEAST_DEPARTURE
-from .filling import EVERY
+from .filling import FULL_RANGE
 from .lean import Turned
 
-SLIGHTLY = 0.01  # of the travel speed, by which one may differ and nothing is told
+SLIGHTLY = 0.01  # of the travel speed; smaller differences are not reported
 WIDE = "as wide as the room that they have, {:.3g} to {:.3g} mm"
 HIGH = "as high as their layer is there, {:.3g} to {:.3g} mm"
 
 
 def notes(
-    made: Sequence[MadeBead],
+    made_beads: Sequence[MadeBead],
     layers: Sequence[Layer],
     strategy: FilledParameters,
     build: BuildDirectionParameters,
     process: ProcessParameters,
     model: BeadModel | None,
 ) -> list[Issue]:
-    """All of them."""
+    """All issues."""
     height = strategy.layer_height
     issues = (
         _speeds(layers, strategy, process)
         if model is None
-        else model_issues(made, height, process, model)
+        else model_issues(made_beads, height, process, model)
     )
     issues += _single_layers(layers, strategy)
     waits = [layer.wait for layer in layers if layer.wait > 0.0]
@@ -77,7 +78,7 @@ def notes(
                 ),
             )
         )
-    return issues + _leans(made, layers, build)
+    return issues + _leans(made_beads, layers, build)
 
 
 def _speeds(
@@ -87,27 +88,29 @@ def _speeds(
     than usual; at the bead that departs most from its travel speed."""
     classes = {bead.bead_class for layer in layers for bead in layer.beads}
     usual = {name: process.for_class(name).travel_speed for name in classes}
-    places = [
+    deviations = [
         (float(np.abs(bead.speed[1:] / usual[bead.bead_class] - 1.0).max()), i, j)
         for i, layer in enumerate(layers)
         for j, bead in enumerate(layer.beads)
     ]
-    some = [place for place in places if place[0] > SLIGHTLY]
-    if not some:
+    varied = [deviation for deviation in deviations if deviation[0] > SLIGHTLY]
+    if not varied:
         return []
-    beads = [layers[i].beads[j] for _, i, j in some]
+    beads = [layers[i].beads[j] for _, i, j in varied]
     speed = np.concatenate([bead.speed[1:] for bead in beads])
-    asked = {usual[bead.bead_class] for bead in beads}
-    instead = Text(" instead of {:.4g} mm/s", asked.pop()) if len(asked) == 1 else ""
+    usual_speeds = {usual[bead.bead_class] for bead in beads}
+    instead = Text(" instead of {:.4g} mm/s", usual_speeds.pop()) if len(usual_speeds) == 1 else ""
     wide = [bead.width for bead in beads if bead.width is not None]
     high = [bead.height for bead in beads if bead.height is not None]
-    sizes = [Text(text, *_ends(found)) for text, found in ((WIDE, wide), (HIGH, high)) if found]
-    _, layer, number = max(some, key=lambda place: place[0])
+    sizes = [
+        Text(text, *_ends(columns)) for text, columns in ((WIDE, wide), (HIGH, high)) if columns
+    ]
+    _, layer, number = max(varied, key=lambda deviation: deviation[0])
     text = Text(
         "{} of {} beads are deposited at {:.4g} to {:.4g} mm/s{}, for one wire feed to make them {}; the speed follows that "
         "along them",
-        len(some),
-        len(places),
+        len(varied),
+        len(deviations),
         speed.min(),
         speed.max(),
         Word(instead),
@@ -126,7 +129,7 @@ def _for_one_speed(strategy: FilledParameters, high: bool) -> str:
         *(["strategy.fill: contours"] if strategy.fill == "connected" else []),
         *(
             [Text("a spacing range of {0} to {0}", "100 %")]
-            if strategy.spacing_range != EVERY
+            if strategy.spacing_range != FULL_RANGE
             else []
         ),
         *(["strategy.narrowest: 100 %"] if strategy.narrowest < 1.0 else []),
@@ -135,12 +138,14 @@ def _for_one_speed(strategy: FilledParameters, high: bool) -> str:
 
 
 def _ends(columns: Sequence[Array]) -> tuple[float, float]:
-    """The least and the largest value of all."""
-    return min(float(one.min()) for one in columns), max(float(one.max()) for one in columns)
+    """The least and the largest value of several columns."""
+    return min(float(column.min()) for column in columns), max(
+        float(column.max()) for column in columns
+    )
 
 
 def _single_layers(layers: Sequence[Layer], strategy: FilledParameters) -> list[Issue]:
-    """Solids, or groups of them laid in turn, that get one layer alone."""
+    """The issue of solids, or groups of solids deposited in turn, with a single layer."""
     starts = [*(index for index, layer in enumerate(layers) if layer.first), len(layers)]
     single = [start for start, end in zip(starts, starts[1:]) if end - start == 1]
     if not single:
@@ -162,23 +167,31 @@ def _single_layers(layers: Sequence[Layer], strategy: FilledParameters) -> list[
 
 
 def _leans(
-    made: Sequence[MadeBead], layers: Sequence[Layer], build: BuildDirectionParameters
+    made_beads: Sequence[MadeBead], layers: Sequence[Layer], build: BuildDirectionParameters
 ) -> list[Issue]:
     """At most one issue of a kind, at the bead where it is worst."""
-    turned = {id(one.bead): one.turned for one in made if one.turned is not None}
-    places = [(bead, i, j) for i, layer in enumerate(layers) for j, bead in enumerate(layer.beads)]
-    beads = [(turned[id(bead)], i, j) for bead, i, j in places if id(bead) in turned]
-    asked = "" if build.max_turn == "auto" else Text(" ({:.3g} deg/mm)", math.degrees(build.turn()))
-    limit = Text("build_direction.max_turn{}", Word(asked))
-    return _spread(beads, limit) + _less(beads, limit) + _normals(beads, limit)
+    turned = {
+        id(made_bead.bead): made_bead.turned
+        for made_bead in made_beads
+        if made_bead.turned is not None
+    }
+    keyed_beads = [
+        (bead, i, j) for i, layer in enumerate(layers) for j, bead in enumerate(layer.beads)
+    ]
+    beads = [(turned[id(bead)], i, j) for bead, i, j in keyed_beads if id(bead) in turned]
+    turn_text = (
+        "" if build.max_turn == "auto" else Text(" ({:.3g} deg/mm)", math.degrees(build.turn()))
+    )
+    limit = Text("build_direction.max_turn{}", Word(turn_text))
+    return _turn_issues(beads, limit) + _less(beads, limit) + _normals(beads, limit)
 
 
-def _spread(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]:
-    some = [entry for entry in beads if entry[0].departure > LEAST_DEPARTURE]
-    if not some:
+def _turn_issues(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]:
+    spread_beads = [entry for entry in beads if entry[0].departure > LEAST_DEPARTURE]
+    if not spread_beads:
         return []
-    worst, layer, bead = max(some, key=lambda entry: entry[0].departure)
-    length = sum(entry[0].length for entry in some)
+    worst, layer, bead = max(spread_beads, key=lambda entry: entry[0].departure)
+    length = sum(entry[0].length for entry in spread_beads)
     return [
         Issue(
             NOTE,
@@ -186,7 +199,7 @@ def _spread(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]
             Text(
                 "on {} of {} beads, {:.4g} mm in all, the torch begins to turn ahead of corners, by up "
                 "to {:.3g} deg from what is asked, to turn no faster than {}",
-                len(some),
+                len(spread_beads),
                 len(beads),
                 length,
                 math.degrees(worst.departure),
@@ -199,11 +212,11 @@ def _spread(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]
 
 
 def _less(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]:
-    some = [entry for entry in beads if entry[0].asked > 0.0 and entry[0].share < 1.0]
-    if not some:
+    reduced = [entry for entry in beads if entry[0].requested > 0.0 and entry[0].share < 1.0]
+    if not reduced:
         return []
-    worst, layer, bead = min(some, key=lambda entry: entry[0].share)
-    layers = sorted({entry[1] for entry in some})
+    worst, layer, bead = min(reduced, key=lambda entry: entry[0].share)
+    layers = sorted({entry[1] for entry in reduced})
     where = (
         Text("layer {}", layers[0])
         if len(layers) == 1
@@ -216,13 +229,13 @@ def _less(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]:
             Text(
                 "on {} of {} beads in {} bends follow one another too closely to turn the torch round "
                 "them at {}: it leans by {:.3g} to {:.3g} deg there instead of {:.3g} deg; lean less, or allow a faster turn",
-                len(some),
+                len(reduced),
                 len(beads),
                 Word(where),
                 limit,
-                math.degrees(worst.share * worst.asked),
-                math.degrees(max(entry[0].share * entry[0].asked for entry in some)),
-                math.degrees(worst.asked),
+                math.degrees(worst.share * worst.requested),
+                math.degrees(max(entry[0].share * entry[0].requested for entry in reduced)),
+                math.degrees(worst.requested),
             ),
             layer,
             bead,
@@ -231,10 +244,10 @@ def _less(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]:
 
 
 def _normals(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]:
-    some = [entry for entry in beads if entry[0].normals > 0.0]
-    if not some:
+    fast = [entry for entry in beads if entry[0].normals > 0.0]
+    if not fast:
         return []
-    worst, layer, bead = max(some, key=lambda entry: entry[0].normals)
+    worst, layer, bead = max(fast, key=lambda entry: entry[0].normals)
     return [
         Issue(
             WARNING,
@@ -242,7 +255,7 @@ def _normals(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue
             Text(
                 "on {} of {} beads the hub's normals alone turn by up to {:.3g} deg/mm, faster "
                 "than {}; the torch follows them all the same",
-                len(some),
+                len(fast),
                 len(beads),
                 math.degrees(worst.normals),
                 limit,

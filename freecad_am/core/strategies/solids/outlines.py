@@ -14,8 +14,8 @@ from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from .lean import Lean
 
-OUTLINE = 0.55  # of the bead spacing; beads along an outline are half a spacing inside of it, the next are farther
-PROBES = 9  # edges that tell on which side the outline is, the longest
+OUTLINE = 0.55  # of the bead spacing; beads along an outline are half a spacing inside, the next are farther
+PROBES = 9  # the longest edges, which decide the side of the outline
 
 
 def leaning(
@@ -37,8 +37,8 @@ def leaning(
     edges = steps(curve.points[:count], curve.closed and not curve.turns)
     longest = np.argsort(-np.hypot(*edges.T), kind="stable")[:PROBES]
     middle = curve.points[longest] + 0.5 * edges[longest]
-    left = (
+    is_left = (
         sines(edges[longest], nearest_among(layer.borders, middle)[0] - middle).sum() > 0.0
     )  # the outline, of the curve
-    side = -1.0 if left else 1.0
+    side = -1.0 if is_left else 1.0
     return Lean(build.lead, build.tilt + side * strategy.deflection, build.tilt, until)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The volume of a part of several solids: of those that touch the sum, of those that overlap the union.
+"""The volume of a part of several solids: the sum if they touch, the union if they overlap.
 
-By Gauss's theorem over the triangles of all solids, without what of them lies inside of another one or is there twice.
+By Gauss's theorem over the triangles of the solids, without triangles inside of another one or present twice.
 """
 
 from __future__ import annotations
@@ -20,46 +20,49 @@ from ...geometry.on_hub import SolidsOnHub
 from ...types import Array, Mask
 
 FINER = 8.0  # times, where a solid cuts another one
-INWARDS = 1e-3  # of the way to its middle, by which a corner of a triangle is looked at
-PLACES = 10_000  # of the surface of all solids, if their triangles were squares
-NEAR = 3.0  # chord errors; surfaces that are no farther apart are one
-LEAST = 1e-3  # mm; the same, however small the chord error
+INWARDS = 1e-3  # of the distance to its middle, by which a corner of a triangle is moved inwards
+PLACES = 10_000  # squares of the surface of the solids, for the side length of triangles
+CONTACT_CHORDS = 3.0  # chord errors; surfaces that are no farther apart are one
+MIN_CONTACT_MM = 1e-3  # mm; the same, however small the chord error
 TOUCHING = 3e-3  # of the volume; solids that share less, as far as it can be measured, only touch
 
 
 def part_volume(solids: SolidsOnHub) -> float | None:
-    """Volume, mm3, of all solids outside of their hubs, what they share counted once; None where one of them is open."""
-    known = solids_beyond(solids)
-    if known is not None:
-        return known
-    near = max(NEAR * solids.chord_error, LEAST)
-    volumes = [_union_volume(group.bodies, near) for group in solids.groups]
+    """Volume, mm3, of the solids outside of their hubs, shared volume counted once; None if one is open."""
+    exact_volume = solids_beyond(solids)
+    if exact_volume is not None:
+        return exact_volume
+    tolerance = max(CONTACT_CHORDS * solids.chord_error, MIN_CONTACT_MM)
+    volumes = [_union_volume(group.bodies, tolerance) for group in solids.groups]
     return None if None in volumes else sum(volume for volume in volumes if volume is not None)
 
 
-def _union_volume(bodies: Sequence[Body], near: float) -> float | None:
-    """Volume, mm3, of the union of bodies. near: mm within which surfaces count as one."""
+def _union_volume(bodies: Sequence[Body], tolerance: float) -> float | None:
+    """Volume, mm3, of the union of bodies. tolerance: mm within which surfaces count as one."""
     insides = [inside_of(body) for body in bodies]
-    whole = [SolidMesh(body.vertices, body.triangles).volume for body in bodies]
+    volumes = [SolidMesh(body.vertices, body.triangles).volume for body in bodies]
     if any(inside is None for inside in insides):
         return None
     closed = [inside for inside in insides if inside is not None]
     corners = [
         body.corners() if volume > 0.0 else body.corners()[:, ::-1]
-        for body, volume in zip(bodies, whole, strict=True)
+        for body, volume in zip(bodies, volumes, strict=True)
     ]
     middle = np.vstack([corner.reshape(-1, 3) for corner in corners]).mean(axis=0)
-    surface = sum(float(np.linalg.norm(doubled_areas(one), axis=1).sum()) for one in corners) / 2.0
+    surface = (
+        sum(float(np.linalg.norm(doubled_areas(corner_), axis=1).sum()) for corner_ in corners)
+        / 2.0
+    )
     longest = float(np.sqrt(surface / PLACES))
-    total = sum(abs(volume) for volume in whole)
+    total = sum(abs(volume) for volume in volumes)
     shared = 0.0
     for number, corner in enumerate(corners):
-        others = [
+        other_bodies = [
             (k, inside) for k, inside in enumerate(closed) if k != number and _meet(inside, corner)
         ]
-        if others:
+        if other_bodies:
             shared += _hidden_volume(
-                corner - middle, longest, _hiding(number, others, near, middle)
+                corner - middle, longest, _hiding(number, other_bodies, tolerance, middle)
             )
     return total if shared < TOUCHING * total else total - shared
 
@@ -70,17 +73,18 @@ def _meet(inside: Inside, corners: Array) -> bool:
 
 
 def _hidden_volume(corner: Array, longest: float, hidden: Callable[[Array, Array], Mask]) -> float:
-    """What triangles (m, 3, 3), as far as they are hidden, add to the volume, mm3; pieces that are hidden in part are
-    divided FINER times finer. hidden: of places (n, 3) with areas (n, 3)."""
+    """The volume, mm3, of the hidden sections of triangles (m, 3, 3); partly hidden pieces are divided FINER times finer. hidden:
+    of points (n, 3) with areas (n, 3).
+    """
     pieces = _divided(corner, longest)
     areas, middles = doubled_areas(pieces) / 2.0, pieces.mean(axis=1)
     at_middle = hidden(middles, areas)
     at_corners = [
         hidden(pieces[:, k] + INWARDS * (middles - pieces[:, k]), areas) for k in range(3)
     ]
-    mixed = np.any([one != at_middle for one in at_corners], axis=0)
-    whole = at_middle & ~mixed
-    volume = float(dots(middles[whole], areas[whole]).sum()) / 3.0
+    mixed = np.any([mask != at_middle for mask in at_corners], axis=0)
+    is_hidden = at_middle & ~mixed
+    volume = float(dots(middles[is_hidden], areas[is_hidden]).sum()) / 3.0
     if mixed.any():
         fine = _divided(pieces[mixed], longest / FINER)
         areas, middles = doubled_areas(fine) / 2.0, fine.mean(axis=1)
@@ -90,19 +94,20 @@ def _hidden_volume(corner: Array, longest: float, hidden: Callable[[Array, Array
 
 
 def _hiding(
-    number: int, others: Sequence[tuple[int, Inside]], near: float, origin: Array
+    number: int, other_bodies: Sequence[tuple[int, Inside]], tolerance: float, origin: Array
 ) -> Callable[[Array, Array], Mask]:
-    """The function that tells which places (n, 3) from an origin, of the surface of a body with areas (n, 3) outwards, lie
-    in others or on surfaces of others that face the other way; of surfaces that face the same way the first one counts."""
+    """The predicate for points (n, 3) from an origin, on the surface of a body with outward areas (n, 3): inside other bodies, or on
+    surfaces of others that face the other way; if surfaces face the same way the first one counts.
+    """
 
-    def hidden(places: Array, areas: Array) -> Mask:
-        outwards, places = near * unit_rows(areas), places + origin
-        found = np.zeros(len(places), dtype=bool)
-        for k, inside in others:
-            found |= inside.holds(places + outwards)
+    def hidden(points: Array, areas: Array) -> Mask:
+        outwards, points = tolerance * unit_rows(areas), points + origin
+        mask = np.zeros(len(points), dtype=bool)
+        for k, inside in other_bodies:
+            mask |= inside.holds(points + outwards)
             if k < number:
-                found |= inside.holds(places - outwards)
-        return found
+                mask |= inside.holds(points - outwards)
+        return mask
 
     return hidden
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids: cut by a field of layers, filled, laid in order, at speeds that hold the bead's width (Dai 2020)."""
+"""Solids: cut by a field of layers, filled, ordered and deposited at speeds that hold the bead's width (Dai 2020)."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ from .between_cuts import uncut
 from .filling import Pictures, bead_width, over_fed, spaced
 from .notes import notes
 from .part_volume import part_volume
-from .volumes import of_slabs, twice, volumes
-from .without_bead import BareLayer, without_bead
+from .volumes import slab_volumes, twice_volume, volumes
+from .without_bead import BareLayer, empty_layer_issues
 
-LEVEL = 1e-6  # mm, and of the cosine of an angle
+PLANE_TOLERANCE_MM = 1e-6  # mm, and of the cosine of an angle
 
 
 def plan(
@@ -40,22 +40,23 @@ def plan(
     model: BeadModel | None,
     progress: Progress = silent,
 ) -> Toolpath:
-    """The toolpath of solids, in part coordinates; layer i lies i layer heights from what they stand on.
+    """The toolpath of solids, in part coordinates; layer i is i layer heights above their base.
 
-    model: sets the speeds, None for the travel speed everywhere. progress(fraction, text) may raise to cancel. Raises
+    model: sets the speeds; with None the travel speed applies everywhere. progress(fraction, text) may raise to cancel. Raises
     InputError APEX_INSIDE, TOO_FAR_ROUND, BEAD_SPACING, NOTHING_TO_DEPOSIT, NOT_FOR_FAMILY, TOO_MANY, InfeasibleError
-    THIN_REGION."""
+    THIN_REGION.
+    """
     _refuse_mode(solids.has_plane_layers(), strategy, build)
     strategy = spaced(strategy, process)
     size.refuse_absurd(
-        size.of_solids(solids, strategy, strategy.bead_spacing),
+        size.solids_size(solids, strategy, strategy.bead_spacing),
         strategy,
         None if strategy.bead_overlap is None else process.bead_width,
     )
     width = bead_width(strategy, process, model)
     pictures = Pictures(strategy, process, width)
     ranked: list[RankedBead] = []
-    made: list[MadeBead] = []
+    made_beads: list[MadeBead] = []
     issues: list[tuple[Stack, Issue]] = []
     bare: list[BareLayer] = []
     covers: list[Cover] = []
@@ -65,11 +66,12 @@ def plan(
     ] = {}  # least and largest of each layer in all stacks, where it is not as high everywhere
     order = IslandOrder(as_below=strategy.min_layer_time > 0.0)
     stacks = list(field.stacks(solids, strategy))
-    for done, stack in enumerate(stacks):
-        order.below = None  # no layer of this stack yet
+    for stack_number, stack in enumerate(stacks):
+        order.below = None  # this stack has no layer yet
         for layer in stack.layers:
             progress(
-                (done + layer.share_before) / len(stacks), f"{stack.name} layer {layer.number}"
+                (stack_number + layer.share_before) / len(stacks),
+                f"{stack.name} layer {layer.number}",
             )
             picture = pictures.filled(layer, stack.name)
             issues += [(stack, issue) for issue in (*layer.issues, *picture.issues)]
@@ -85,8 +87,8 @@ def plan(
             )
             beads: list[Bead] = []
             for curve in picture.curves:
-                made.append(bead_of(curve, layer, strategy, build, process, model))
-                beads.append(made[-1].bead)
+                made_beads.append(bead_of(curve, layer, strategy, build, process, model))
+                beads.append(made_beads[-1].bead)
             if solids.has_plane_layers():
                 ranked += [
                     RankedBead(stack.group, stack.solid, layer.number, -len(ranked) - rank, bead)
@@ -108,20 +110,20 @@ def plan(
     course = order_beads(ranked, strategy.order)
     layers = add_waits(course, strategy.wait, process.rapid_speed, strategy.min_layer_time)
     missed = uncut(solids, strategy, ranked, width)
-    told = [
+    all_issues = [
         *solids.issues,
         *[_numbered(issue, stack, course) for stack, issue in issues],
-        *without_bead(bare, course),
+        *empty_layer_issues(bare, course),
         *uncut_issues(missed, strategy),
         *over_fed(strategy, process, model, width),
-        *notes(made, layers, strategy, build, process, model),
+        *notes(made_beads, layers, strategy, build, process, model),
     ]
     return Toolpath(
         layers,
         solids.frame,
         strategy.layer_height,
         strategy.chord_error,
-        tuple(told),
+        tuple(all_issues),
         process.overlap,
         "solid" if solids.has_plane_layers() else "developable",
         solids.surroundings,
@@ -131,13 +133,13 @@ def plan(
             None if strategy.margin else part_volume(solids),
             strategy,
             covers,
-            sum(each.bare for each in missed),
-            of_slabs(solids, strategy),
+            sum(piece.bare for piece in missed),
+            slab_volumes(solids, strategy),
             numbers,
         ),
-        twice=twice(made, strategy, covers, width),
+        twice=twice_volume(made_beads, strategy, covers, width),
         uneven=np.array(
-            [(number, min(both), max(both)) for number, both in sorted(heights.items())]
+            [(number, min(extremes), max(extremes)) for number, extremes in sorted(heights.items())]
         )
         if heights
         else None,
@@ -177,18 +179,25 @@ def _refuse_mode(planes: bool, strategy: FilledParameters, build: BuildDirection
 
 
 def clear_by_itself(toolpath: Toolpath, solids: SolidsOnHub) -> bool:
-    """Whether nothing can stand above the tip of the nozzle: layers are planes, each wholly below the next, the tool stands
-    upright on them, and what is around ends below the first."""
+    """Whether nothing can be above the tip of the nozzle: layers are planes, each wholly below the next, the tool is upright, and
+    the surroundings end below the first.
+    """
     up, origin = solids.groups[0].base.frame[:3, 2], solids.groups[0].base.frame[:3, 3]
-    before = -np.inf
+    previous_height = -np.inf
     for _, _, bead in toolpath:
         height = float((bead.points[0] - origin) @ up)
-        if height < before - LEVEL or (bead.tool @ up).min() < 1.0 - LEVEL:
+        if (
+            height < previous_height - PLANE_TOLERANCE_MM
+            or (bead.tool @ up).min() < 1.0 - PLANE_TOLERANCE_MM
+        ):
             return False
-        before = height
-    return all(float(((body.vertices - origin) @ up).max()) < LEVEL for body in solids.surroundings)
+        previous_height = height
+    return all(
+        float(((body.vertices - origin) @ up).max()) < PLANE_TOLERANCE_MM
+        for body in solids.surroundings
+    )
 
 
-def without_axis_limits(build: BuildDirectionParameters) -> BuildDirectionParameters:
+def lift_axis_limits(build: BuildDirectionParameters) -> BuildDirectionParameters:
     """The same with tool axes that may point anywhere: on a hub they do, and the machine turns it."""
     return replace(build, max_tilt=np.pi)

@@ -15,27 +15,35 @@ from .filling import Bare
 
 
 class BareLayer(NamedTuple):
-    """A layer of a stack in which no bead lies, although the part has places there."""
+    """A layer of a stack without a bead, although the part has places there."""
 
     stack: Stack
     layer: Slice
-    places: Sequence[Bare]
+    bare_places: Sequence[Bare]
 
 
-def without_bead(bare: Sequence[BareLayer], course: Course) -> list[Issue]:
+def empty_layer_issues(bare: Sequence[BareLayer], course: Course) -> list[Issue]:
     """One issue for the layers of each stack without beads: which they are, the area of each, and the largest place."""
-    found = []
-    for stack in dict.fromkeys(each.stack for each in bare):
-        own = [each for each in bare if each.stack == stack]
+    issues = []
+    for stack in dict.fromkeys(bare_layer.stack for bare_layer in bare):
+        stack_layers = [bare_layer for bare_layer in bare if bare_layer.stack == stack]
         largest, layer = max(
-            ((place, each.layer) for each in own for place in each.places),
+            (
+                (bare_place, bare_layer.layer)
+                for bare_layer in stack_layers
+                for bare_place in bare_layer.bare_places
+            ),
             key=lambda pair: pair[0].area,
         )
-        numbers = [course.number(stack.group, stack.solid, each.layer.number) for each in own]
-        shown = [
-            each.layer.number if number is None else number for number, each in zip(numbers, own)
+        numbers = [
+            course.number(stack.group, stack.solid, bare_layer.layer.number)
+            for bare_layer in stack_layers
         ]
-        found.append(
+        layer_numbers = [
+            bare_layer.layer.number if number is None else number
+            for number, bare_layer in zip(numbers, stack_layers)
+        ]
+        issues.append(
             Issue(
                 WARNING,
                 "LAYER_WITHOUT_BEAD",
@@ -43,22 +51,26 @@ def without_bead(bare: Sequence[BareLayer], course: Course) -> list[Issue]:
                     "{} layer(s) of {} have places too narrow for a bead, and none in them: {}; the largest "
                     "place, {:.3g} mm^2 and {:.3g} mm wide, is at {}; all of them are {:.4g} mm^2; use narrower beads, lower "
                     "strategy.narrowest, or make the part thicker there",
-                    len(own),
+                    len(stack_layers),
                     stack.name,
-                    ranges(shown),
+                    ranges(layer_numbers),
                     largest.area,
                     largest.width,
                     layer.where(largest.point),
-                    math.fsum(place.area for each in own for place in each.places),
+                    math.fsum(
+                        bare_place.area
+                        for bare_layer in stack_layers
+                        for bare_place in bare_layer.bare_places
+                    ),
                 ),
                 numbers[0],
             )
         )
-    return found
+    return issues
 
 
 def ranges(numbers: Sequence[int]) -> str:
-    """Numbers as a text, those that follow one another as a range: 0-6, 9."""
+    """Numbers as a text, consecutive ones as a range: 0-6, 9."""
     runs: list[list[int]] = []
     for number in sorted(set(numbers)):
         if runs and number == runs[-1][-1] + 1:

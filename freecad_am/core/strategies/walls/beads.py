@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads of curves on a wall: points, tangents and directions; and what is said of the layers that they form."""
+"""Beads of curves on a wall: points, tangents and directions; and the issues of their layers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,9 @@ from ...toolpath import Bead
 from ...types import Array
 from .directions import Along, Directions, directions
 
-NEAREST = 1e-3  # mm; nearer points of a bead are one: no controller tells the time between them
+MIN_DISTANCE_MM = (
+    1e-3  # mm; nearer points of a bead are merged: no controller resolves the time between them
+)
 
 
 class Traced(NamedTuple):
@@ -48,33 +50,37 @@ def traced(curve: SpaceCurve, w: Array, closed: bool) -> Traced:
         nearest = np.clip(
             np.searchsorted(curve.w[corners], curve.wrap(w) - 1e-12), 0, len(corners) - 1
         )
-        at = np.abs(curve.w[corners][nearest] - curve.wrap(w)) < 1e-9 * curve.period
-        into[at], out[at] = curve.into[corners[nearest[at]]], curve.out[corners[nearest[at]]]
-    points, into, out = _apart(points, into, out)
+        is_corner = np.abs(curve.w[corners][nearest] - curve.wrap(w)) < 1e-9 * curve.period
+        into[is_corner], out[is_corner] = (
+            curve.into[corners[nearest[is_corner]]],
+            curve.out[corners[nearest[is_corner]]],
+        )
+    points, into, out = _merge_points(points, into, out)
     if not closed:
         into[0], out[-1] = out[0], into[-1]
     return Traced(points, unit(np.stack([into, out], axis=1)), closed)
 
 
-def _apart(points: Array, into: Array, out: Array) -> tuple[Array, Array, Array]:
-    """The columns (n, 3) with points nearer than NEAREST to the one before left out; the first and the last stay. A point
-    that stands for others, such as an end next to a corner, is left as the last of them and arrived at as the first."""
-    if np.linalg.norm(np.diff(points, axis=0), axis=1).min() >= NEAREST:
+def _merge_points(points: Array, into: Array, out: Array) -> tuple[Array, Array, Array]:
+    """The columns (n, 3) with points nearer than MIN_DISTANCE_MM to the one before left out; the first and the last stay. Of merged
+    points, such as an end next to a corner, the outgoing tangent of the last and the incoming one of the first remain.
+    """
+    if np.linalg.norm(np.diff(points, axis=0), axis=1).min() >= MIN_DISTANCE_MM:
         return points, into, out
     starts, end = [0], len(points) - 1
     for k in range(1, end):
-        if np.linalg.norm(points[k] - points[starts[-1]]) >= NEAREST:
+        if np.linalg.norm(points[k] - points[starts[-1]]) >= MIN_DISTANCE_MM:
             starts.append(k)
     merged = end
-    while len(starts) > 1 and np.linalg.norm(points[end] - points[starts[-1]]) < NEAREST:
+    while len(starts) > 1 and np.linalg.norm(points[end] - points[starts[-1]]) < MIN_DISTANCE_MM:
         merged = starts.pop()
     starts.append(merged)
     ends = [*(k - 1 for k in starts[1:]), end]
     return points[[*starts[:-1], end]], into[starts], out[ends]
 
 
-def along(trace: Traced, normal: Array, up: Array) -> Along:
-    """Directions at the points of a bead, at a corner those halfway between its two sides.
+def directions_along(trace: Traced, normal: Array, up: Array) -> Along:
+    """Directions at the points of a bead, at a corner halfway between its two sides.
 
     normal: (n, 3) out of the wall. up: (n, 3) any vectors away from the layer below that are not along the bead.
     """
@@ -83,8 +89,7 @@ def along(trace: Traced, normal: Array, up: Array) -> Along:
 
 
 class BeadSettings(NamedTuple):
-    """What all beads of a wall are made with. plane: unit normal (3,) of the one that tool axes stay in, if any. label: the
-    wall's, for messages."""
+    """Settings of a wall's beads. plane: unit normal (3,) of the plane that tool axes stay in, if any. label: the wall's, for messages."""
 
     build: BuildDirectionParameters
     process: ProcessParameters
@@ -98,13 +103,13 @@ class BeadSettings(NamedTuple):
         end."""
         bead_class = classes.wall_bead_class(layer, closing)
         build = classes.leaning(self.build, self.process, bead_class)
-        found = directions(trace.points, trace.closed, vectors, build, self.plane, self.label)
+        directions_ = directions(trace.points, trace.closed, vectors, build, self.plane, self.label)
         speed = np.full(len(trace.points), self.process.for_class(bead_class).travel_speed)
         length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(trace.points, axis=0), axis=1))]
         return Bead(
             trace.points,
-            found.build,
-            found.tool,
+            directions_.build,
+            directions_.tool,
             TURN * length / length[-1],
             speed,
             trace.closed,
@@ -112,20 +117,23 @@ class BeadSettings(NamedTuple):
             trace.tangents,
             closing,
             bead_class=bead_class,
-        ), found
+        ), directions_
 
 
 def spacing_issues(distances: list[Array], strategy: SurfaceParameters) -> list[Issue]:
-    """What the local distances (n,) of each layer but the first are, and a warning where that is not what was asked for."""
+    """The range of local distances (n,) of each layer after the first, with a warning if it is not as requested."""
     if not distances:
         return []
-    least, most = min(layer.min() for layer in distances), max(layer.max() for layer in distances)
+    smallest, largest = (
+        min(layer.min() for layer in distances),
+        max(layer.max() for layer in distances),
+    )
     height = strategy.layer_height
     exact = strategy.spacing == "constant-distance"
-    # between the points, where arcs stand for the front, ten times the tolerance is allowed
+    # between the points, where arcs approximate the front, ten times the tolerance is allowed
     allowed = 10.0 * strategy.tolerance if exact else strategy.band * height
-    text = Text("the local distance between layers is {:.6g} to {:.6g} mm", least, most)
-    if max(height - least, most - height) <= allowed:
+    text = Text("the local distance between layers is {:.6g} to {:.6g} mm", smallest, largest)
+    if max(height - smallest, largest - height) <= allowed:
         return [Issue(NOTE, "SPACING", text)]
     worst = int(np.argmax([np.abs(layer - height).max() for layer in distances])) + 1
     advice = (
@@ -144,9 +152,9 @@ def spacing_issues(distances: list[Array], strategy: SurfaceParameters) -> list[
 
 
 def corner_notes(turns: list[Array]) -> list[Issue]:
-    """Corners that the fronts of each layer have formed, for a robot slows down there; nothing where there are none.
-
-    turns: rad at the corners of each layer."""
+    """A note about corners that the fronts of each layer have formed, for a robot slows down there; empty without corners. turns:
+    rad at the corners of each layer.
+    """
     cornered = [index for index, layer in enumerate(turns) if len(layer)]
     if not cornered:
         return []
@@ -177,7 +185,7 @@ def turn_notes(rates: list[float], strategy: SurfaceParameters) -> list[Issue]:
     corners = sum(np.isinf(rates[index]) for index in over)
     finite = np.where(np.isinf(rates), 0.0, rates)
     if strategy.spacing == "smooth" and over:
-        some = Text(", {} of them in corners", corners) if corners else ""
+        corner_text = Text(", {} of them in corners", corners) if corners else ""
         return [
             Issue(
                 WARNING,
@@ -189,7 +197,7 @@ def turn_notes(rates: list[float], strategy: SurfaceParameters) -> list[Issue]:
                     len(over),
                     len(rates),
                     np.degrees(strategy.bead_turn),
-                    Word(some),
+                    Word(corner_text),
                     over[0],
                     np.degrees(finite[1:].max()),
                     Word(" elsewhere" if corners else ""),

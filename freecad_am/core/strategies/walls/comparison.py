@@ -21,25 +21,25 @@ from .plan import sliced
 NORMAL = "centreline-normal"
 METHODS = ("iso-parameter", NORMAL, "constant-distance", "smooth")
 FINER = 4  # places per arc at which the distance is measured
-SLACK = 1e-9  # of u; what lies past an edge by no more is on it
+END_TOLERANCE = 1e-9  # of u; a point past an edge by no more is on it
 
 
 @dataclass(frozen=True, eq=False)
 class Compared:
     """A wall cut by one method. Lengths mm, angles rad.
 
-    layers: up to the first one wholly past the end. least, mean, most: of the distance of each point to the nearest of
-    the layer below. turn: sharpest turn within the wall per mm, away from corners. corners: layers that have some;
-    corner: the sharpest. length: of all layers below the end. Per layer but the first: around (n,), v as a share of its
-    period from -0.5 to 0.5, distance (n,) and step (n,), how far the layer lies above the one below along the line
-    v = const (Delta_ij); NaN where there is nothing to deposit. curves: points (n, 3) of all layers, NaN likewise.
+    layers: up to the first one wholly past the end. smallest, mean, largest: distance of each point to the nearest of the layer
+    below. turn: sharpest turn within the wall per mm, away from corners. corners: number of layers with corners; corner: the
+    sharpest. length: of the layers below the end. Per layer after the first: around (n,), v as a share of its period from -0.5 to
+    0.5, distance (n,) and step (n,), height of the layer above the one below along the line v = const (Delta_ij); NaN without
+    deposit. curves: points (n, 3) of the layers, NaN likewise.
     """
 
     method: str
     layers: int
-    least: float
+    smallest: float
     mean: float
-    most: float
+    largest: float
     turn: float
     corners: int
     corner: float
@@ -61,53 +61,56 @@ class Refused:
 def compare(wall: SurfaceWall, strategy: SurfaceParameters) -> tuple[Compared | Refused, ...]:
     """The wall cut by every method of METHODS with the layer height, band and largest turn of the strategy."""
     surface = wall.surface()
-    first = interpolate_polyline(surface, wall.first, label=wall.label)
-    found: list[Compared | Refused] = []
+    first_layer = interpolate_polyline(surface, wall.first, label=wall.label)
+    results: list[Compared | Refused] = []
     for method in METHODS:
         try:
             if method == NORMAL:
                 fronts = normal_layers.layers(
-                    surface, first, strategy.layer_height, wall.end, label=wall.label
+                    surface, first_layer, strategy.layer_height, wall.end, label=wall.label
                 )
             else:
                 fronts = sliced(wall, surface, replace(strategy, spacing=method))
         except InputError as error:
-            found.append(Refused(method, error.message))
+            results.append(Refused(method, error.message))
         else:
-            found.append(_measured(method, surface, fronts, first, wall.end))
-    return tuple(found)
+            results.append(_measured(method, surface, fronts, first_layer, wall.end))
+    return tuple(results)
 
 
 def _measured(
-    method: str, surface: Placed, fronts: Sequence[WallLayer], first: WallLayer, end: float
+    method: str, surface: Placed, fronts: Sequence[WallLayer], first_layer: WallLayer, end: float
 ) -> Compared:
     around, distance, step = [], [], []
     for below, above in zip(fronts, fronts[1:]):
-        v, apart = local_distances(above, below, FINER)
+        v, distance_ = local_distances(above, below, FINER)
         u, base = above.heights(surface, v)[0], below.heights(surface, v)[0]
-        there = u > first.heights(surface, v)[0]
+        is_deposited = u > first_layer.heights(surface, v)[0]
         rise = np.linalg.norm(surface.point(u, v) - surface.point(base, v), axis=1)
         share = v[:-1] / above.curve.period
         share -= np.round(share)
         order = np.argsort(share, kind="stable")
         order = np.r_[order, order[0]]
         around.append(np.r_[share[order[:-1]], share[order[0]] + 1.0])
-        distance.append(np.where(there, apart, np.nan)[order])
-        step.append(np.where(there, rise, np.nan)[order])
-    # nodes gather at corners: each place counts by the stretch it stands for
-    weight, values = np.concatenate([np.gradient(one) for one in around]), np.concatenate(distance)
+        distance.append(np.where(is_deposited, distance_, np.nan)[order])
+        step.append(np.where(is_deposited, rise, np.nan)[order])
+    # nodes gather at corners: each node counts by its stretch
+    weight, values = (
+        np.concatenate([np.gradient(shares) for shares in around]),
+        np.concatenate(distance),
+    )
     weight, values = weight[np.isfinite(values)], values[np.isfinite(values)]
     turn = corner = 0.0
     cornered = 0
     for front in fronts[1:]:  # the first is the substrate's
-        inside = (front.u <= end) & (front.u >= first.heights(surface, front.v)[0])
+        inside = (front.u <= end) & (front.u >= first_layer.heights(surface, front.v)[0])
         corners = front.curve.corners
         sharpest = float(front.curve.turns[corners[inside[corners]]].max(initial=0.0))
         smooth = inside[:-1] & inside[1:]
         smooth[corners] = False
         turn = max(turn, float(turns_in_wall(surface, front)[smooth].max(initial=0.0)))
         cornered, corner = cornered + (sharpest > 0.0), max(corner, sharpest)
-    curves = tuple(_deposited(surface, front, first, end) for front in fronts)
+    curves = tuple(_deposited(surface, front, first_layer, end) for front in fronts)
     length = sum(
         float(np.nansum(np.linalg.norm(np.diff(curve, axis=0), axis=1))) for curve in curves
     )
@@ -128,10 +131,12 @@ def _measured(
     )
 
 
-def _deposited(surface: Placed, front: WallLayer, first: WallLayer, end: float) -> Array:
+def _deposited(surface: Placed, front: WallLayer, first_layer: WallLayer, end: float) -> Array:
     """Points (n, 3) along a layer, NaN below the first one and past the end."""
     v = front.curve.refined(2)
     u = front.heights(surface, v)[0]
-    there = (u <= end + SLACK) & (u >= first.heights(surface, v)[0] - SLACK)
-    points: Array = np.where(there[:, None], surface.point(u, v), np.nan)
+    is_deposited = (u <= end + END_TOLERANCE) & (
+        u >= first_layer.heights(surface, v)[0] - END_TOLERANCE
+    )
+    points: Array = np.where(is_deposited[:, None], surface.point(u, v), np.nan)
     return points

@@ -33,13 +33,14 @@ class Along(NamedTuple):
     normal: Array
 
     def reversed(self) -> Along:
-        """Of the bead run the other way."""
+        """The directions of the bead run the other way."""
         return Along(-self.forward[::-1], self.up[::-1], self.normal[::-1])
 
 
 class Directions(NamedTuple):
-    """Build directions and tool axes (n, 3) of a bead; by how much (rad) max_tilt has turned the farthest of them back, and
-    max_turn has spread them."""
+    """Build directions and tool axes (n, 3) of a bead; the largest angles (rad) by which max_tilt has turned them back, and max_turn
+    has spread them.
+    """
 
     build: Array
     tool: Array
@@ -48,15 +49,15 @@ class Directions(NamedTuple):
 
 
 def symmetry_plane(wall: SurfaceWall | PatchWall, build: BuildDirectionParameters) -> Array | None:
-    """Unit normal (3,) of the plane that tool axes stay in, None where they may lean any way.
+    """Unit normal (3,) of the plane that tool axes stay in, None if they may lean any way.
 
-    InputError NO_SYMMETRY_PLANE where a plane of symmetry is asked for that the wall is not known to have.
+    InputError NO_SYMMETRY_PLANE if a plane of symmetry is requested and the wall has no known one.
     """
     if build.mode != "symmetry-plane":
         return None
-    given = build.plane_normal()
-    if given is not None:
-        return np.asarray(np.array(given) / np.linalg.norm(given))
+    plane_normal = build.plane_normal()
+    if plane_normal is not None:
+        return np.asarray(np.array(plane_normal) / np.linalg.norm(plane_normal))
     normal = wall.symmetry_normal
     if normal is None:
         raise InputError(
@@ -89,40 +90,42 @@ def directions(
         length = np.linalg.norm(mean)
         up = np.tile(mean / length if length > MIN_IN_PLANE else UP, (len(up), 1))
     tool = lean_tool(up, along.forward, along.normal, build.lead, build.tilt)
-    both = [up] if tool is up else [up, tool]
+    axes_pair = [up] if tool is up else [up, tool]
     if plane is not None:
-        both = [project_onto_plane(axes, plane, label) for axes in both]
-    turned = [cap_lean(axes, build.max_tilt) for axes in both]
-    both, back, spread = [axes for axes, _ in turned], turned[-1][1], 0.0
+        axes_pair = [project_onto_plane(axes, plane, label) for axes in axes_pair]
+    turned = [cap_lean(axes, build.max_tilt) for axes in axes_pair]
+    axes_pair, back, spread = [axes for axes, _ in turned], turned[-1][1], 0.0
     if build.turn() < np.inf:  # last, for turned back beyond the level they turn faster
         slower = [
             limit_turns(points, axes, closed, build.turn(), max_lean=build.max_tilt)
-            for axes in both
+            for axes in axes_pair
         ]
-        both, spread = (
+        axes_pair, spread = (
             [axes for axes, _ in slower],
             float(max(departure.max() for _, departure in slower)),
         )
-    return Directions(both[0], both[-1], back, spread)
+    return Directions(axes_pair[0], axes_pair[-1], back, spread)
 
 
-def notes(found: list[tuple[int, Directions]]) -> list[Issue]:
-    """Says how far directions depart from what was asked for: by layer of each bead."""
+def notes(keyed_directions: list[tuple[int, Directions]]) -> list[Issue]:
+    """Notes on how far directions depart from the requested ones, by layer of each bead."""
     issues = []
     for code, values, text in (
         (
             "TILT_CAPPED",
-            [one.back for _, one in found],
+            [directions_.back for _, directions_ in keyed_directions],
             "tool axes are turned back by up to {:.3g} deg to stay within build_direction.max_tilt",
         ),
         (
             "TURN_LIMITED",
-            [one.spread for _, one in found],
+            [directions_.spread for _, directions_ in keyed_directions],
             "tool axes are spread along the bead, by up to {:.3g} deg, to "
             "turn no faster than build_direction.max_turn",
         ),
     ):
         worst = int(np.argmax(values))
         if values[worst] > TOLERANCE_RAD:
-            issues.append(Issue(NOTE, code, Text(text, np.degrees(values[worst])), found[worst][0]))
+            issues.append(
+                Issue(NOTE, code, Text(text, np.degrees(values[worst])), keyed_directions[worst][0])
+            )
     return issues

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What of a front lies below the end of a wall: all of it, or open stretches that end flush with it."""
+"""The front below the end of a wall: entire, or open stretches that end flush with it."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from ...geometry.walls.surface_wall import Placed
 from ...slicing.tubes.wall_layer import WallLayer
 from ...types import Array, Mask
 
-SAME_END = 1e-6  # mm; what is above the end by no more than this lies on it
-FINER = 8  # places per arc at which above and below are told apart
+SAME_END = 1e-6  # mm; a point above the end by no more than this is on it
+FINER = 8  # samples per arc that distinguish above and below
 HALVINGS = 48
 
 
@@ -33,7 +33,7 @@ class Stretch:
 
 
 def trimmed(surface: Placed, front: WallLayer, end: float) -> list[Stretch]:
-    """The stretches of a front below u = end, in the order of their parameter; none where all of it is above."""
+    """The stretches of a front below u = end, in the order of their parameter; empty if the front is above."""
     curve = front.curve
     w = curve.refined(FINER)
     inside = _below(surface, front, w, end)
@@ -56,8 +56,9 @@ def trimmed(surface: Placed, front: WallLayer, end: float) -> list[Stretch]:
 
 
 def _below(surface: Placed, front: WallLayer, w: Array, end: float) -> Mask:
-    """Which places (n,) of a front lie below the end. Where u is an angle, as along a bend, it is the front that tells which
-    turn a place is on: a surface knows its own points only up to whole turns."""
+    """Mask of the positions (n,) of a front below the end. Where u is an angle, as along a bend, the front decides the turn of a
+    position: a surface knows its own points only up to whole turns.
+    """
     u, v = surface.inverse(front.curve.at(w)[0])
     rate = np.linalg.norm(surface.derivatives(u, v)[1], axis=1)
     if surface.rise_period is not None:

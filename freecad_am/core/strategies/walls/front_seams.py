@@ -30,8 +30,8 @@ def seam(piece: Piece, angle: float, middles: dict[int, Middle]) -> float:
     """The parameter at which a closed front begins, at `angle` (rad) about its middle.
 
     The angle's zero is X of the part, or Y where X is along the axis, at the first front; from there on it is carried with
-    the smallest rotation that takes one axis to the next. Of several places at that angle the one nearest to the seam
-    below is taken. middles: of the fronts below by id, the new one is added.
+    the smallest rotation that takes one axis to the next. Of several positions at that angle the one nearest to the seam
+    below is taken. middles: of the fronts below by id; the new one is added.
     """
     curve = piece.curve
     w = curve.refined(FINER)[:-1]
@@ -42,14 +42,14 @@ def seam(piece: Piece, angle: float, middles: dict[int, Middle]) -> float:
     axis = np.cross(points - centre, ahead - centre).sum(axis=0)
     axis /= np.linalg.norm(axis)
     below = next((middles[id(parent)] for parent in piece.parents if id(parent) in middles), None)
-    reference = _carried(below, axis) if below is not None else _reference(axis)
+    reference = _carry_reference(below, axis) if below is not None else _reference(axis)
     # the front relative to a frame that is turned by the angle: the seam crosses its X from below
     x = np.cos(angle) * reference + np.sin(angle) * np.cross(axis, reference)
     y = np.cross(axis, x)
     sideways = (points - centre) @ y
-    after = np.roll(sideways, -1)
+    next_sideways = np.roll(sideways, -1)
     out = (points - centre) @ x
-    crossing = np.flatnonzero((sideways <= 0.0) & (after > 0.0) & (out > 0.0))
+    crossing = np.flatnonzero((sideways <= 0.0) & (next_sideways > 0.0) & (out > 0.0))
     if not len(crossing):
         crossing = np.array(
             [int(np.argmax(out / np.maximum(np.linalg.norm(points - centre, axis=1), 1e-300)))]
@@ -78,7 +78,7 @@ def _reference(axis: Array) -> Array:
     raise AssertionError("an axis is along X or along Y, not both")
 
 
-def _carried(below: Middle, axis: Array) -> Array:
+def _carry_reference(below: Middle, axis: Array) -> Array:
     """The reference of the front below, turned with the axis."""
     cosine = float(below.axis @ axis)
     if cosine < -1.0 + ACROSS:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How the fronts of a wall lie on each other: what splits, what merges, what an end of the wall cuts off."""
+"""The tree of a wall's fronts: splits, merges, and cuts by an end of the wall."""
 
 from __future__ import annotations
 
@@ -13,14 +13,15 @@ from ...issues import NOTE, Issue, Text
 from ...slicing.fronts.feet import nearest_feet
 from ...slicing.fronts.rims import Rims
 
-SAMPLES = 100  # points along a front at which it is asked what it lies on
-LEAST_COMMON = 2  # of these; less is a touch at an end
+SAMPLES = 100  # sample points along a front for its parents
+LEAST_COMMON = 2  # of the samples; fewer are a touch at an end
 
 
 @dataclass(eq=False)
 class Piece:
-    """A front. parents: the fronts of the layer below that it lies on, most of it on the first. cut: ends at an upper edge
-    of the wall. closing: no front but a bead that closes a gap between fronts."""
+    """A front. parents: the fronts of the layer below that support it, the largest share first. cut: ends at an upper edge of the
+    wall. closing: not a front but a bead that closes a gap between fronts.
+    """
 
     curve: SpaceCurve
     parents: list[Piece]
@@ -63,7 +64,7 @@ def events(layers: list[list[Piece]]) -> list[Issue]:
             len(piece.children) for piece in layers[index - 1] if len(piece.children) > 1
         )
         merges = Counter(len(piece.parents) for piece in layer if len(piece.parents) > 1)
-        for code, found, one, many in (
+        for code, counts, singular, plural in (
             (
                 "SPLIT",
                 splits,
@@ -78,26 +79,28 @@ def events(layers: list[list[Piece]]) -> list[Issue]:
             ),
         ):
             issues += [
-                Issue(NOTE, code, Text(one if count == 1 else many, size, index, count), index)
-                for size, count in sorted(found.items())
+                Issue(
+                    NOTE, code, Text(singular if count == 1 else plural, size, index, count), index
+                )
+                for size, count in sorted(counts.items())
             ]
     return issues
 
 
-def whole(layers: list[list[Piece]]) -> list[list[Piece]]:
+def uncut_pieces(layers: list[list[Piece]]) -> list[list[Piece]]:
     """The pieces that no end cuts off, on others of their kind."""
-    kept: list[list[Piece]] = []
+    kept_layers: list[list[Piece]] = []
     for layer in layers:
-        below = set(kept[-1]) if kept else set()
-        some = [piece for piece in layer if not piece.cut and below.issuperset(piece.parents)]
-        if not some:
+        below = set(kept_layers[-1]) if kept_layers else set()
+        uncut = [piece for piece in layer if not piece.cut and below.issuperset(piece.parents)]
+        if not uncut:
             break
-        kept.append(some)
-    return _pruned(kept)
+        kept_layers.append(uncut)
+    return _pruned(kept_layers)
 
 
-def shorn(layers: list[list[Piece]], shortest: float) -> tuple[list[list[Piece]], int]:
-    """Without the pieces shorter than `shortest` mm that nothing lies on, and how many these are."""
+def drop_short_pieces(layers: list[list[Piece]], shortest: float) -> tuple[list[list[Piece]], int]:
+    """Remove the pieces shorter than `shortest` mm without a piece above, and count them."""
     dropped: set[Piece] = set()
     for layer in reversed(layers):
         dropped.update(
@@ -105,13 +108,13 @@ def shorn(layers: list[list[Piece]], shortest: float) -> tuple[list[list[Piece]]
             for piece in layer
             if piece.curve.length < shortest and dropped.issuperset(piece.children)
         )
-    kept = [[piece for piece in layer if piece not in dropped] for layer in layers]
-    return _pruned([layer for layer in kept if layer]), len(dropped)
+    kept_layers = [[piece for piece in layer if piece not in dropped] for layer in layers]
+    return _pruned([layer for layer in kept_layers if layer]), len(dropped)
 
 
 def _pruned(layers: list[list[Piece]]) -> list[list[Piece]]:
-    """The same pieces, knowing of each other alone."""
-    every = {piece for layer in layers for piece in layer}
-    for piece in every:
-        piece.children = [child for child in piece.children if child in every]
+    """The same pieces, with links only among themselves."""
+    remaining = {piece for layer in layers for piece in layer}
+    for piece in remaining:
+        piece.children = [child for child in piece.children if child in remaining]
     return layers

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls on an existing part that no closed parameter runs around: several faces, open shells, openings, branches.
+"""Walls on an existing part without a closed parameter: several faces, open shells, openings, branches.
 
-Layers are fronts of constant local distance (slicing.fronts), which split, merge, close and end at rims by themselves. Every
-bead of a layer lies on beads of the layer below, so layers follow each other; within a layer the bead comes next
-that begins nearest to where the last one ended.
+Layers are fronts of constant local distance (slicing.fronts), which split, merge, close and end at rims. Every bead of a
+layer is on beads of the layer below, so layers follow each other; within a layer the bead that begins nearest to the last end
+comes next.
 """
 
 from __future__ import annotations
@@ -29,10 +29,18 @@ from ...toolpath import Bead, Layer, Toolpath
 from ...types import Array
 from .. import size
 from ..progress import Progress, silent
-from .beads import BeadSettings, along, corner_notes, short_note, spacing_issues, traced, turn_notes
+from .beads import (
+    BeadSettings,
+    corner_notes,
+    directions_along,
+    short_note,
+    spacing_issues,
+    traced,
+    turn_notes,
+)
 from .directions import notes, symmetry_plane
 from .front_seams import Middle, seam
-from .front_tree import Piece, events, shorn, tree, whole
+from .front_tree import Piece, drop_short_pieces, events, tree, uncut_pieces
 
 FINER = 4  # places per arc of a front at which its distance from the layer below is measured
 FINDING = 0.7  # of the time goes into finding the layers
@@ -58,7 +66,7 @@ def plan(
     'NO_PARAMETER', 'LAYER_HEIGHT', 'TOO_LOW', 'TOO_MANY', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION', 'TURN_LIMIT'.
     """
     _refuse(strategy)
-    size.refuse_absurd(size.of_fronts(wall, strategy), strategy)
+    size.refuse_absurd(size.fronts_size(wall, strategy), strategy)
     settings = BeadSettings(build, process, symmetry_plane(wall, build), wall.label)
     height = strategy.layer_height
     smoothing = (
@@ -67,10 +75,8 @@ def plan(
     sliced = _sliced(wall, height, smoothing, progress)
     pieces = tree(sliced.fronts, sliced.rims)
     full = [len(layer) for layer in pieces]
-    pieces, omitted = _kept(pieces, sliced.rims, strategy, wall.label)
-    fronts = [
-        [piece.curve for piece in layer] for layer in pieces
-    ]  # what is not deposited is nobody's concern
+    pieces, omitted = _deposited_pieces(pieces, sliced.rims, strategy, wall.label)
+    fronts = [[piece.curve for piece in layer] for layer in pieces]  # only deposited layers count
     distances = [
         np.concatenate([local_distances(front, below, FINER) for front in layer])
         for below, layer in zip(sliced.fronts, fronts[1:])
@@ -97,7 +103,7 @@ def _sliced(
     """The layers of a wall, as they were found before where they were."""
     if wall not in _SLICED or _SLICED[wall][0] != (height, smoothing):
         layers = slicing.slice_layers(
-            wall, height, smoothing, lambda done, text: progress(FINDING * done, text)
+            wall, height, smoothing, lambda share, text: progress(FINDING * share, text)
         )
         _SLICED[wall] = (height, smoothing), layers
     return _SLICED[wall][1]
@@ -131,30 +137,32 @@ def _turns(
     return issues + turn_notes(rates, strategy)
 
 
-def _kept(
+def _deposited_pieces(
     pieces: list[list[Piece]], rims: Rims, strategy: SurfaceParameters, label: str
 ) -> tuple[list[list[Piece]], list[Issue]]:
     """The pieces that are deposited: all, or those below the first that an end of the wall cuts off."""
     if strategy.end != "whole":
-        kept, dropped = shorn(pieces, 0.5 * strategy.layer_height)
-        return kept, short_note(dropped)
-    kept = whole(pieces)
-    if not kept:
+        kept_layers, dropped = drop_short_pieces(pieces, 0.5 * strategy.layer_height)
+        return kept_layers, short_note(dropped)
+    kept_layers = uncut_pieces(pieces)
+    if not kept_layers:
         raise InputError("TOO_LOW", label, "its end cuts the first layer off; make it longer")
-    last = [piece.curve for layer in kept for piece in layer if not piece.children]
+    top_curves = [piece.curve for layer in kept_layers for piece in layer if not piece.children]
     remainder = (
-        float(nearest_feet(last, rims.upper).distance.max()) if last and len(rims.upper) else 0.0
+        float(nearest_feet(top_curves, rims.upper).distance.max())
+        if top_curves and len(rims.upper)
+        else 0.0
     )
     text = Text("up to {:.4g} mm of the wall are left above the last whole layer", remainder)
-    note = Issue(NOTE, "REMAINDER", text, len(kept) - 1)
-    return kept, [note] if remainder > 1e-4 * strategy.layer_height else []
+    note = Issue(NOTE, "REMAINDER", text, len(kept_layers) - 1)
+    return kept_layers, [note] if remainder > 1e-4 * strategy.layer_height else []
 
 
 def _close(
     pieces: list[list[Piece]], closing: list[list[SpaceCurve]], full: list[int]
 ) -> list[Issue]:
-    """Put the closing beads behind the pieces of their layers, where all of the layer below is there; and say so."""
-    count, first = 0, 0
+    """Append the closing beads to the pieces of their layers if the layer below is complete, with a note."""
+    count, first_layer = 0, 0
     for index, curves in enumerate(closing):
         if not curves or index > len(pieces) or len(pieces[index - 1]) < full[index - 1]:
             continue
@@ -163,7 +171,7 @@ def _close(
                 break
             pieces.append([])
         pieces[index] += [Piece(curve, [], False, closing=True) for curve in curves]
-        first = first or index
+        first_layer = first_layer or index
         count += len(curves)
     if not count:
         return []
@@ -175,9 +183,9 @@ def _close(
                 "{} bead(s) close gaps between fronts that meet, nearer to them than a layer height; the "
                 "first in layer {}",
                 count,
-                first,
+                first_layer,
             ),
-            first,
+            first_layer,
         )
     ]
 
@@ -189,25 +197,25 @@ class _Way:
     piece: Piece
     start: float
     backwards: bool
-    first: Array
+    start_point: Array
 
 
 def _layers(
     wall: PatchWall, pieces: list[list[Piece]], chord_error: float, settings: BeadSettings
 ) -> tuple[tuple[Layer, ...], list[Issue]]:
-    process, layers, found, last = settings.process, [], [], None
+    process, layers, keyed_directions, last_point = settings.process, [], [], None
     middles: dict[int, Middle] = {}
     for index, layer in enumerate(pieces):
         angle = process.seam.angle + index * process.seam.step
-        ways = [_ways(piece, angle, middles, process, index) for piece in layer]
+        open_runs = [_ways(piece, angle, middles, process, index) for piece in layer]
         beads: list[Bead] = []
-        while ways:
-            way = _nearest(ways, last)
-            ways = [some for some in ways if some[0].piece is not way.piece]
-            curve = way.piece.curve
+        while open_runs:
+            run = _nearest(open_runs, last_point)
+            open_runs = [runs for runs in open_runs if runs[0].piece is not run.piece]
+            curve = run.piece.curve
             trace = traced(
                 curve,
-                sample_within_chord(curve, way.start, way.start + curve.period, chord_error),
+                sample_within_chord(curve, run.start, run.start + curve.period, chord_error),
                 curve.closed,
             )
             points, normal = wall.project(
@@ -216,17 +224,17 @@ def _layers(
             if curve.closed:
                 points[-1] = points[0]
             trace = trace._replace(points=points)
-            vectors = along(
+            vectors = directions_along(
                 trace, normal, np.cross(normal, trace.tangents.sum(axis=1))
             )  # up is on the left
-            if way.backwards:
+            if run.backwards:
                 trace, vectors = trace.reversed(), vectors.reversed()
-            bead, directions = settings.bead(trace, vectors, index, way.piece.closing)
+            bead, directions = settings.bead(trace, vectors, index, run.piece.closing)
             beads.append(bead)
-            found.append((index, directions))
-            last = trace.points[-1]
+            keyed_directions.append((index, directions))
+            last_point = trace.points[-1]
         layers.append(Layer(tuple(beads)))
-    return tuple(layers), notes(found)
+    return tuple(layers), notes(keyed_directions)
 
 
 def _ways(
@@ -240,17 +248,18 @@ def _ways(
             process.direction == "alternate" and layer % 2 == 1
         )
         return [_Way(piece, start, clockwise, curve.at(np.array([start]))[0][0])]
-    ways = [_Way(piece, float(curve.w[0]), False, curve.points[0])]
+    runs = [_Way(piece, float(curve.w[0]), False, curve.points[0])]
     if process.direction == "alternate":
-        ways.append(_Way(piece, float(curve.w[0]), True, curve.points[-1]))
-    return ways
+        runs.append(_Way(piece, float(curve.w[0]), True, curve.points[-1]))
+    return runs
 
 
-def _nearest(ways: list[list[_Way]], last: Array | None) -> _Way:
-    """The way that begins nearest to the last point (3,), at first simply the first; gaps are closed when the fronts about
-    them are there."""
-    those = [some for some in ways if not some[0].piece.closing] or ways
-    if last is None:
-        return those[0][0]
-    every = [way for some in those for way in some]
-    return every[int(np.argmin([float(np.linalg.norm(way.first - last)) for way in every]))]
+def _nearest(open_runs: list[list[_Way]], last_point: Array | None) -> _Way:
+    """The run that begins nearest to the last point (3,), initially the first; gaps are closed once the fronts about them are there."""
+    candidates = [runs_ for runs_ in open_runs if not runs_[0].piece.closing] or open_runs
+    if last_point is None:
+        return candidates[0][0]
+    all_runs = [run for runs_ in candidates for run in runs_]
+    return all_runs[
+        int(np.argmin([float(np.linalg.norm(run.start_point - last_point)) for run in all_runs]))
+    ]

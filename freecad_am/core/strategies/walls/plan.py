@@ -26,8 +26,8 @@ from ..progress import Progress, silent
 from .beads import (
     BeadSettings,
     Traced,
-    along,
     corner_notes,
+    directions_along,
     short_note,
     spacing_issues,
     traced,
@@ -48,11 +48,11 @@ def plan(
 ) -> Toolpath:
     """The toolpath of a wall around a closed direction, in part coordinates.
 
-    The first layer lies where the wall leaves the substrate; closed beads start at the seam's angle around the wall. The
+    The first layer is where the wall leaves the substrate; closed beads start at the seam's angle around the wall. The
     polynomial's variable is the arc length of the bead, one turn (2 pi) from end to end. Raises InputError 'NOT_YET',
     'LAYER_HEIGHT', 'BAND', 'NOT_AROUND', 'TOO_LOW', 'TOO_MANY', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION'.
     """
-    size.refuse_absurd(size.of_tube(wall, strategy), strategy)
+    size.refuse_absurd(size.tube_size(wall, strategy), strategy)
     settings = BeadSettings(build, process, symmetry_plane(wall, build), wall.label)
     surface = wall.surface()
     progress(0.0, "finding layers")
@@ -82,34 +82,36 @@ def plan(
 
 
 def sliced(wall: SurfaceWall, surface: Placed, strategy: SurfaceParameters) -> list[WallLayer]:
-    """The fronts from the substrate up, the last of them at or past the end of the wall somewhere."""
-    first = interpolate_polyline(surface, wall.first, label=wall.label)
+    """The fronts from the substrate up; the last is at or past the end of the wall somewhere."""
+    first_layer = interpolate_polyline(surface, wall.first, label=wall.label)
     if strategy.spacing == "smooth":
-        found = smooth_spacing.layers(
+        smoothed_layers = smooth_spacing.layers(
             surface,
-            first,
+            first_layer,
             strategy.layer_height,
             wall.end,
             strategy.band,
             strategy.bead_turn,
             label=wall.label,
         )
-        return [first, *(smoothed.layer for smoothed in found)]
+        return [first_layer, *(smoothed.layer for smoothed in smoothed_layers)]
     rule = (
         constant_distance.layers
         if strategy.spacing == "constant-distance"
         else iso_parameter.layers
     )
-    return rule(surface, first, strategy.layer_height, wall.end, label=wall.label)
+    return rule(surface, first_layer, strategy.layer_height, wall.end, label=wall.label)
 
 
 def _stretches(
     wall: SurfaceWall, surface: Placed, fronts: list[WallLayer], strategy: SurfaceParameters
 ) -> tuple[list[list[Stretch]], list[Issue]]:
-    """What is deposited of each front: all of it, or what lies below the end of the wall."""
+    """The deposited stretches of each front: the whole front, or its stretches below the end of the wall."""
     stretches = [trimmed(surface, front, wall.end) for front in fronts]
-    whole = [len(some) == 1 and some[0].closed for some in stretches]
-    count = whole.index(False) if False in whole else len(whole)
+    is_whole = [
+        len(layer_stretches) == 1 and layer_stretches[0].closed for layer_stretches in stretches
+    ]
+    count = is_whole.index(False) if False in is_whole else len(is_whole)
     if count == 0:
         raise InputError(
             "TOO_LOW",
@@ -127,14 +129,18 @@ def _stretches(
             count - 1,
         )
         return stretches[:count], [note] if remainder > 1e-6 * strategy.layer_height else []
-    kept = [
-        [stretch for stretch in some if stretch.length(front.curve) > 0.5 * strategy.layer_height]
-        for front, some in zip(fronts, stretches, strict=True)
+    kept_layers = [
+        [
+            stretch
+            for stretch in layer_stretches
+            if stretch.length(front.curve) > 0.5 * strategy.layer_height
+        ]
+        for front, layer_stretches in zip(fronts, stretches, strict=True)
     ]
-    dropped = sum(map(len, stretches)) - sum(map(len, kept))
-    while not kept[-1]:
-        kept.pop()
-    return kept, short_note(dropped)
+    dropped = sum(map(len, stretches)) - sum(map(len, kept_layers))
+    while not kept_layers[-1]:
+        kept_layers.pop()
+    return kept_layers, short_note(dropped)
 
 
 def _rate(surface: Placed, front: WallLayer) -> Array:
@@ -149,7 +155,7 @@ def _layers(
     settings: BeadSettings,
 ) -> tuple[tuple[Layer, ...], list[Issue]]:
     side = _outside(surface, stretches[0][0])
-    process, layers, number, found = settings.process, [], 0, []
+    process, layers, number, keyed_directions = settings.process, [], 0, []
     for index, layer in enumerate(stretches):
         beads = []
         for stretch in layer:
@@ -159,15 +165,15 @@ def _layers(
                 _parameters(stretch, start, strategy.chord_error),
                 stretch.closed,
             )
-            vectors = _along(surface, trace, side)
+            vectors = _wall_directions(surface, trace, side)
             if _backwards(trace, vectors, process, index, number):
                 trace, vectors = trace.reversed(), vectors.reversed()
             bead, directions = settings.bead(trace, vectors, index)
             beads.append(bead)
-            found.append((index, directions))
+            keyed_directions.append((index, directions))
             number += 1
         layers.append(Layer(tuple(beads)))
-    return tuple(layers), notes(found)
+    return tuple(layers), notes(keyed_directions)
 
 
 def _parameters(stretch: Stretch, start: float, chord_error: float) -> Array:
@@ -192,10 +198,10 @@ def _outside(surface: Placed, stretch: Stretch) -> _Side:
     return _Side(float(np.sign(out.sum())))
 
 
-def _along(surface: Placed, trace: Traced, side: _Side) -> Along:
+def _wall_directions(surface: Placed, trace: Traced, side: _Side) -> Along:
     u, v = surface.inverse(trace.points)
     _, rise, turn = surface.derivatives(u, v)
-    return along(trace, unit(np.cross(rise, turn)) * side.sign, rise)
+    return directions_along(trace, unit(np.cross(rise, turn)) * side.sign, rise)
 
 
 def _backwards(
@@ -205,10 +211,10 @@ def _backwards(
     if not trace.closed:
         return process.direction == "alternate" and number % 2 == 1
     turning = np.cross(trace.points[:-1], trace.points[1:]).sum(axis=0) @ vectors.up.mean(axis=0)
-    wanted = (
+    is_counter_clockwise = (
         process.direction != "clockwise" if process.direction != "alternate" else layer % 2 == 0
     )
-    return bool((turning > 0.0) != wanted)
+    return bool((turning > 0.0) != is_counter_clockwise)
 
 
 def _corner_notes(
@@ -217,8 +223,9 @@ def _corner_notes(
     stretches: list[list[Stretch]],
     strategy: SurfaceParameters,
 ) -> list[Issue]:
-    """Corners that fronts have formed where they are deposited, for a robot slows down there; where there are none, the
-    sharpest turn."""
+    """The note about corners that fronts have formed where they are deposited, for a robot slows down there; without corners, the
+    sharpest turn.
+    """
     turns = [_corners(front.curve, layer) for front, layer in zip(fronts, stretches, strict=True)]
     if not any(map(len, turns)):
         return turn_notes(

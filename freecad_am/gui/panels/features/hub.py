@@ -163,7 +163,7 @@ class HubPanel(PickPanel):
 
         def both() -> tuple[Outcome, Drawing]:
             _, made, drawn = kept if kept is not None and kept[0] == key else (key, work(), None)
-            size.refuse_absurd(size.of_solids(made.value, strategy), strategy)
+            size.refuse_absurd(size.solids_size(made.value, strategy), strategy)
             self.kept = (key, made, drawing(made.value) if drawn is None else drawn)
             return self.kept[1:]
 

@@ -204,7 +204,7 @@ class SolidPanel(PickPanel):
             self.kept = (key, made)
             bodies = made.value.groups[0].bodies
             solids = made.value if guided else prepare_stack(bodies, strategy, made.value.label)
-            size.refuse_absurd(size.of_solids(solids, strategy), strategy)
+            size.refuse_absurd(size.solids_size(solids, strategy), strategy)
             if guided:  # at once what is higher or lower than allowed
                 list(along.slices(solids.groups[0].base, bodies, strategy))
             slit = strategy.chord_error if strategy.fuse == "auto" else None
