@@ -159,7 +159,7 @@ def _nearest(folder: Path, body: Standing) -> float | None:
     box = fcl.CollisionObject(fcl.Box(*body.size), fcl.Transform(middle))
     links = [
         (number, [cylinder(fcl, rod) for rod in rods])
-        for number, rods in enumerate(link_rods.of_robot(robot.chain))
+        for number, rods in enumerate(link_rods.robot_cylinders(robot.chain))
     ]
     for q in places(folder):
         for number, rods in links[1:]:

@@ -164,7 +164,7 @@ class Piece:
 def _least(fcl: Any, job: Moving, joints: Array) -> float:
     """The least distance in mm with joints (k, axes) between what is kept apart."""
     robot = machine.load(job.robot)
-    links = [[_rod(fcl, rod) for rod in rods] for rods in link_rods.of_robot(robot.chain)]
+    links = [[_rod(fcl, rod) for rod in rods] for rods in link_rods.robot_cylinders(robot.chain)]
     last, arm = len(links) - 1, KdlLinks(robot)
 
     def of_links(q: Array) -> list[Array]:

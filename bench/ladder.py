@@ -55,7 +55,7 @@ def run() -> list[Row]:
     """Both in turns on the same job, then the certificate."""
     dome, cell = hemisphere(15.0, choose(0.2, 1.0), "fixed"), _beside_a_wall()
     rods, task = (
-        link_rods.of_robot(cell.robot.chain),
+        link_rods.robot_cylinders(cell.robot.chain),
         Task(cell, cell.branch or 0, JointParameters()),
     )
     found = []
@@ -196,7 +196,7 @@ class _Looks:
         )[:3, 3]
         self.wall = fcl.CollisionObject(fcl.Box(*np.add(WALL, CLEARANCE)), fcl.Transform(middle))
         self.cylinders = [[_cylinder(fcl, rod) for rod in link] for link in rods]
-        self.pairs = ArmContact(cell, rods, (), None, CLEARANCE).own.pairs
+        self.pairs = ArmContact(cell, rods, (), None, CLEARANCE).own_links.pairs
         self.request, self.result = fcl.CollisionRequest(), fcl.CollisionResult
 
     def meet(self, q: np.ndarray) -> bool:

@@ -32,7 +32,7 @@ def pose_by_pose(task: Task, beads: Sequence[Bead], sampled: int) -> Callable[[]
         for slope in search.SLOPES
     ][::sampled]
     phi = np.array([offset + slope * points.parameter for offset, slope in grid])
-    flange = points.frames.at(phi).reshape(-1, 4, 4)
+    flange = points.frames.flange_poses(phi).reshape(-1, 4, 4)
     joints = task.inverse(flange)
     reached = np.isfinite(joints).all(axis=1)
     flange, joints = flange[reached], joints[reached]

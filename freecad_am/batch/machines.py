@@ -36,7 +36,7 @@ def chosen(maker: str | None, reach: str | None, payload: str | None, post: str 
     if post is not None:
         catalogue.load(post)
     min_reach = 0.0 if reach is None else quantity.read(reach, field.LENGTH, "--reach")
-    entries = machine_catalogue.chosen(
+    entries = machine_catalogue.select_machines(
         machine_catalogue.entries(user_machines.folders()),
         maker,
         min_reach,

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..core.issues import NOTE, AmError, InputError, Issue, Text, has_errors
 from ..core.kinematics import cell as cells
-from ..core.kinematics.links.external_links import of_unknown_shape
+from ..core.kinematics.links.external_links import titles_without_shape
 from ..core.kinematics.machines.machine import UNKNOWN_REMARK
 from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
@@ -298,7 +298,7 @@ def _not_known(cell: cells.Cell) -> list[Issue]:
     shape.
     """
     if cell.external is None or not (
-        lacking := ", ".join(of_unknown_shape(cell.external, cell.external_links))
+        lacking := ", ".join(titles_without_shape(cell.external, cell.external_links))
     ):
         return []
     return [

@@ -67,7 +67,9 @@ def nearest(folder, middle, size):
     robot = machine.load(ROBOT)
     arm, best = KdlLinks(robot), np.inf
     links = [
-        (k, on_rods(rods)) for k, rods in enumerate(link_rods.of_robot(robot.chain)) if k and rods
+        (k, on_rods(rods))
+        for k, rods in enumerate(link_rods.robot_cylinders(robot.chain))
+        if k and rods
     ]
     dense = np.concatenate(
         [rows[:-1] + share * np.diff(rows, axis=0) for share in np.linspace(0.1, 1.0, 10)]

@@ -15,7 +15,7 @@ from freecad_am import api
 from freecad_am.core.issues import InputError, has_errors
 from freecad_am.core.kinematics.links import cylinders as link_cylinders
 from freecad_am.core.kinematics.links.collisions import CORE, flange_passes
-from freecad_am.core.kinematics.links.rounds import of_cylinder
+from freecad_am.core.kinematics.links.rounds import round_solid
 from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.planning.remedies import remedies
@@ -265,9 +265,9 @@ def test_a_wrist_of_which_no_shape_is_known_is_warned_about(doc):
 def test_the_flange_tells_what_of_a_forearm_is_not_there():
     def passes(name, share):
         robot = machines.load(name, ())
-        link = link_cylinders.of_robot(robot.chain)[4]
+        link = link_cylinders.robot_cylinders(robot.chain)[4]
         inner = [dataclasses.replace(one, radius=share * one.radius) for one in link]
-        return flange_passes(robot, [of_cylinder(one, 0.0) for one in inner])
+        return flange_passes(robot, [round_solid(one, 0.0) for one in inner])
 
     assert passes("fanuc-arcmate120ic", 0.5) and not passes("fanuc-arcmate120ic", CORE)
     assert passes("fanuc-m10-8-20d", 0.001)  # its arm is bent aside, its wrist turns by 180 deg

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a machine does in a cell: one record for each set-up says what follows; nobody asks which it is."""
+"""The kind of a machine in a cell: one record for each set-up holds the consequences, so no
+code asks for the kind.
+"""
 
 from __future__ import annotations
 
@@ -10,14 +12,14 @@ from ..issues import InputError
 
 @dataclass(frozen=True)
 class Arrangement:
-    """What hangs on the flange, and what is known and free then.
+    """What the flange carries, and the resulting freedom.
 
-    setup: the value of `cell.setup`.
-    carries_part: the flange carries the part, under a nozzle that stands; else the nozzle.
-    free: how many coordinates point and tool axis leave free on the machine alone: on a robot the rotation about the tool.
-    holds_part: the part turns in the hand of a robot, so that what runs straight in the world is not a line on the part.
-    links_known: files tell what the links look like, so that what they touch can be found; else they are drawn to fit.
-    named_axes: the controller writes axes by names of their own (X, A), not by number.
+    setup: the value of `cell.setup`. carries_part: the flange carries the part, under a fixed
+    nozzle; otherwise it carries the nozzle. free: number of coordinates that point and tool
+    axis leave free without external axes: on a robot the rotation about the tool. holds_part:
+    the part turns in the hand of a robot, so a straight motion in the world is not a line on
+    the part. links_known: files describe the links, so collisions can be computed; otherwise
+    they are only drawn. named_axes: the controller writes axes by name (X, A), not by number.
     planned: jobs with it can be planned.
     """
 

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The cell: a machine, what it carries, and where the deposit comes out.
+"""The cell: a machine, its load, and the deposition point.
 
-The one freedom left at a point of the toolpath is the rotation phi about the tool axis. It is measured from a
-reference carried along without twist: the smallest rotation that takes the tool axis to the Z of the platform.
-With M the rotation that takes part coordinates to those of the deposition point, M = Rz(phi) S(t) and M t = Z
-(Chalvin 2020, eq. 10). RZ of the paper is the last Bryant angle of the same M = Rx(RX) Ry(RY) Rz(RZ) (eq. 9);
-the two differ, and RZ degenerates where t is horizontal (ERRATA).
+The one freedom at a point of the toolpath is the rotation phi about the tool axis. It is
+measured from a reference carried along without twist: the smallest rotation that takes
+the tool axis to the Z of the platform. With M the rotation from part coordinates to
+coordinates of the deposition point, M = Rz(phi) S(t) and M t = Z (Chalvin 2020, eq. 10).
+RZ of the paper is the last Bryant angle of the same M = Rx(RX) Ry(RY) Rz(RZ) (eq. 9); the
+two differ, and RZ degenerates where t is horizontal (ERRATA).
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ from .machines import machine as machines
 from .machines.machine import Machine
 from .pose_frames import PoseFrames
 from .torch import Torch
-from .work_offset import WorkOffset, of_cell
+from .work_offset import WorkOffset, offset_of_cell
 
 UP = (0.0, 0.0, 1.0)
 
@@ -43,16 +44,17 @@ _TURNED = np.diag([1.0, -1.0, -1.0, 1.0])
 class Cell:
     """A resolved cell. Frames are (4, 4) in mm.
 
-    station: in base_link, the deposition point (part on robot, rotary table) or the fixed platform (tool on robot).
-    carried: on the flange, the platform (part on robot, rotary table) or the nozzle's tip (tool on robot). A machine with
-    rotary axes is a chain seen from the torch, so that the part hangs on its flange wherever its axes are.
-    mount: in part coordinates, the frame that sits on the platform.
-    branch: index of the branch (opw.branch_index), or None when all are to be searched.
-    external: external axes; the machine then is the robot together with them, and what stands for base_link in its
-    chain is the face that carries the part, or the world where only the robot is carried.
-    obstacles: what stands in the world, the maker's base frame, in its coordinates. up: (3,) against gravity, there.
-    torch: what holds the nozzle, in the frame of its tip, Z into it. offset: where the part stands by points touched.
-    external_links: the links of positioner and track that are known, each in its own frame.
+    station: in base_link, the deposition point (part on robot, five-axis machine) or the
+    fixed platform (tool on robot). carried: on the flange, the platform (part on robot,
+    five-axis machine) or the nozzle's tip (tool on robot). A five-axis machine is a chain
+    seen from the torch, so the part is on its flange wherever its axes are. mount: in part
+    coordinates, the frame on the platform. branch: index of the branch (opw.branch_index), or
+    None to search all. external: external axes; the machine is then the robot together with
+    them, and base_link of its chain is the face that carries the part, or the world if only
+    the robot is carried. obstacles: obstacles in the world, the manufacturer's base frame.
+    up: (3,) against gravity, there. torch: the holder of the nozzle, in the frame of its tip,
+    Z into it. offset: pose of the part from touched points. external_links: the known links
+    of positioner and track, each in its own frame.
     """
 
     machine: Machine
@@ -78,7 +80,9 @@ class Cell:
         return self.machine if self.external is None else self.external.robot
 
     def external_of(self, joints: Array) -> Array | None:
-        """The values (..., k) of the external axes among joints (..., axes); None where there are none."""
+        """Return the values (..., k) of the external axes among joints (..., axes); None without
+        external axes.
+        """
         return None if self.external is None else joints[..., self.robot.chain.axes :]
 
     def links(self, joints: Array) -> Array:
@@ -101,7 +105,7 @@ class Cell:
         values = np.array(joints[..., self.robot.chain.axes :])
         if (
             self.external.slides is not None
-        ):  # where its track is at zero the robot stands in the world as it does without
+        ):  # with its track at zero the robot has the same pose in the world as without a track
             values[:, self.external.slides] = 0.0
         base_frames: Array = self.external.base(values) @ self.robot.base
         return base_frames
@@ -120,7 +124,7 @@ class Cell:
 
     @property
     def arrangement(self) -> Arrangement:
-        """What hangs on the flange, and what follows from it."""
+        """The load of the flange, and its consequences."""
         return arrangement_of(self.setup)
 
     @property
@@ -138,7 +142,7 @@ class Cell:
         return () if self.external is None else self.external.carriers
 
     def in_part(self) -> tuple[Body, ...]:
-        """The obstacles in part coordinates; none where the part moves in the world."""
+        """Return the obstacles in part coordinates; empty if the part moves in the world."""
         if self.part_moves or not self.obstacles:
             return ()
         world = self.world(np.zeros((1, self.machine.chain.axes)))[0]
@@ -148,10 +152,11 @@ class Cell:
     def pose_frames(
         self, position: Array, tool: Array, external: Array | None = None
     ) -> PoseFrames:
-        """What is constant in the flange poses of n points, in base_link, while the rotation varies.
+        """Return the constant factors of the flange poses of n points, in base_link, while the
+        rotation varies.
 
-        position (n, 3) mm and tool (n, 3) unit vectors in part coordinates; external (n, k) values of the external axes
-        where there are any.
+        position (n, 3) mm and tool (n, 3) unit vectors in part coordinates; external (n, k)
+        values of any external axes.
         """
         to_platform = frames.inverse(self.mount)
         points = position @ to_platform[:3, :3].T + to_platform[:3, 3]
@@ -164,21 +169,27 @@ class Cell:
         if self.external is not None:
             assert (
                 external is not None
-            )  # whoever asks for the poses of a cell with external axes knows where these are
+            )  # callers must give the values of the external axes of such a cell
             stands = frames.inverse(self.external.base(external)) @ stands
         return PoseFrames(stands, -1.0, (_TURNED @ frames.inverse(self.carried))[None])
 
-    def on_carrier(self, position: Array) -> Array:
-        """Points (n, 3) mm of the part as seen from the flange or the face that carries it; there are `carriers`."""
-        to_carrier = (
+    def to_carrier(self, position: Array) -> Array:
+        """Return points (n, 3) mm of the part as seen from the flange or the face that carries it;
+        there are `carriers`.
+        """
+        carrier_frame = (
             self.carried if self.arrangement.carries_part else self.station
         ) @ frames.inverse(self.mount)
-        return np.asarray(position @ to_carrier[:3, :3].T + to_carrier[:3, 3])
+        return np.asarray(position @ carrier_frame[:3, :3].T + carrier_frame[:3, 3])
 
-    def on_flange(self, position: Array, tool: Array) -> tuple[Array, Array]:
-        """Points (n, 3) and tool axes (n, 3) of the part as seen from the flange that carries it."""
-        to_flange = self.carried @ frames.inverse(self.mount)
-        return position @ to_flange[:3, :3].T + to_flange[:3, 3], tool @ to_flange[:3, :3].T
+    def to_flange(self, position: Array, tool: Array) -> tuple[Array, Array]:
+        """Return points (n, 3) and tool axes (n, 3) of the part as seen from the flange that carries
+        it.
+        """
+        flange_frame = self.carried @ frames.inverse(self.mount)
+        return position @ flange_frame[:3, :3].T + flange_frame[:3, 3], tool @ flange_frame[
+            :3, :3
+        ].T
 
     def flange_poses(
         self, position: Array, tool: Array, phi: Array, joints: Array | None = None
@@ -187,7 +198,7 @@ class Cell:
         (n, axes) near there, whose external axes stay as they are."""
         return self.pose_frames(
             position, tool, None if joints is None else self.external_of(joints)
-        ).at(phi)
+        ).flange_poses(phi)
 
     def tip_in_part(self, flange: Array) -> tuple[Array, Array]:
         """Where the nozzle is, seen from the part: its tip (n, 3) mm and tool axis (n, 3), part coordinates.
@@ -203,16 +214,18 @@ class Cell:
         return in_part[:, :3, 3], in_part[:, :3, 2]
 
     def tip_at(self, joints: Array) -> Array:
-        """The same tip alone, (..., 3) mm in part coordinates, for joint values (..., axes): in a third of the time."""
+        """Return only the tip, (..., 3) mm in part coordinates, for joint values (..., axes), in a
+        third of the time.
+        """
         chain = self.machine.chain
         if self.torch_stands:
             tip, into = (
-                chain.seen(joints, self.station[:3, 3]),
+                chain.point_from_flange(joints, self.station[:3, 3]),
                 self.mount @ frames.inverse(self.carried),
             )
         else:
             tip, into = (
-                chain.placed(joints, self.carried[:3, 3]),
+                chain.point_position(joints, self.carried[:3, 3]),
                 self.mount @ frames.inverse(self.station),
             )
         in_part: Array = tip @ into[:3, :3].T + into[:3, 3]
@@ -220,7 +233,7 @@ class Cell:
 
     @property
     def torch_stands(self) -> bool:
-        """Whether the machine moves the part alone, under a torch that stands still."""
+        """Whether the machine moves only the part, under a fixed torch."""
         return self.arrangement.carries_part
 
     def deposition_point(self, flange: Array) -> Array:
@@ -245,7 +258,7 @@ class Cell:
         sy = -(t[:, 0] * cos - t[:, 1] * sin)
         cx = np.sqrt(sy * sy + t[:, 2] ** 2)
         level = np.where(cx > 0.0, cx, 1.0)
-        # Rx Ry Rz on the first row of the rotation that brings the tool upright, of which two entries tell the angle
+        # Rx Ry Rz on the first row of the rotation that brings the tool upright; two of its entries give the angle
         x, y, z = columns(frames.smallest_rotation(t, UP)[:, 0])
         x, y = cos * x - sin * y, sin * x + cos * y
         cos_y, sin_y = np.where(cx > 0.0, t[:, 2], 1.0) / level, sy / level
@@ -263,7 +276,9 @@ class Cell:
 
 
 def mounted(parameters: CellParameters, feature_frame: Array, family: str) -> Array:
-    """(4, 4) what sits on the platform, in part coordinates: the feature's own frame (4, 4), or that of the part file."""
+    """Return the frame (4, 4) on the platform, in part coordinates: the feature's own frame (4,
+    4), or the part file's frame.
+    """
     mount = (
         parameters.mount
         if parameters.mount != "auto"
@@ -297,7 +312,10 @@ def resolve(
     limits, external = machine.limits(parameters.limits), None
     # the torch of a machine that leaves nothing free is where its chain begins
     station = frames.bryant(parameters.deposition_point) if arrangement.free else np.eye(4)
-    mount, offset = mounted(parameters, feature_frame, family), of_cell(parameters, arrangement)
+    mount, offset = (
+        mounted(parameters, feature_frame, family),
+        offset_of_cell(parameters, arrangement),
+    )
     station = station if offset is None else offset.pose @ mount
     if mechanisms:
         machine, limits, external = coupled(

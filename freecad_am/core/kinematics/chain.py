@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Forward kinematics of a serial chain of turning and sliding joints from its joint frames.
+"""Forward kinematics of a serial chain of revolute and prismatic joints from its joint
+frames.
 
-Knows nothing of the closed form in `opw`, so that one can check the other. Joint frames are those of
-the machine file: T = product of Trans(origin) Rz(yaw) Ry(pitch) Rx(roll) Rot(axis, q_i), then the flange; a joint that
-slides has Trans(axis q_i) in the place of Rot(axis, q_i).
+Independent of the closed form in `opw`, so that one can check the other. Joint frames
+follow the machine file: T = product of Trans(origin) Rz(yaw) Ry(pitch) Rx(roll) Rot(axis,
+q_i), then the flange; a prismatic joint has Trans(axis q_i) in place of Rot(axis, q_i).
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import numpy as np
 from ..geometry import frames
 from ..types import Array, ArrayLike, Index, Mask
 
-# poses done together: what they need stays in the processor's cache, and a call is not longer than its work
+# number of poses per batch: their data fits the processor's cache, and the call overhead stays small
 PIECE = 4096
 
 
@@ -32,11 +33,15 @@ class JointFrames(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """A serial chain. `origins` (axes, 4, 4) the joint frames at zero in the link before, `directions`
-    (axes, 3) unit axes in the joint frames, `flange` (4, 4) in the last link; mm. `order` (axes,) is which of the joint
-    values each joint takes, that of its own place when left out: of a chain that begins at the part and comes to the robot
-    by way of a positioner, the robot's values still come first. `sliding` (axes,) tells, in the order of the values, the
-    joints that slide, whose values are mm; none when left out."""
+    """A serial chain.
+
+    `origins` (axes, 4, 4): the joint frames at zero in the previous link. `directions` (axes,
+    3): unit axes in the joint frames. `flange` (4, 4) in the last link; mm. `order` (axes,):
+    the index of the joint value of each joint, by default its own: in a chain that begins at
+    the part and reaches the robot through a positioner, the robot's values still come first.
+    `sliding` (axes,): which joints, in the order of the values, are prismatic, with values in
+    mm; none by default.
+    """
 
     origins: Array
     directions: Array
@@ -97,12 +102,15 @@ class Chain:
         )
 
     def axes_at(self, q: ArrayLike) -> tuple[Array, Array]:
-        """The directions and origins of `frames` alone, each (axes, 3, n), for joint values `q` (n, axes)."""
+        """Return only the directions and origins of `frames`, each (axes, 3, n), for joint values
+        `q` (n, axes).
+        """
         return self._axes(self._by_joint(np.asarray(q, float)), None)
 
     def _axes(self, by_joint: Array, flange: Array | None) -> tuple[Array, Array]:
-        """Directions and origins (axes, 3, n) in the order of the values; flange poses (n, 4, 4) are filled in where there
-        are any."""
+        """Return directions and origins (axes, 3, n) in the order of the values; fill in flange
+        poses (n, 4, 4) if given.
+        """
         count = by_joint.shape[1]
         directions, origins = np.empty((self.axes, 3, count)), np.empty((self.axes, 3, count))
         for start in range(0, count, PIECE):
@@ -114,13 +122,17 @@ class Chain:
             directions, origins = directions[positions], origins[positions]
         return directions, origins
 
-    def seen(self, q: ArrayLike, point: Array) -> Array:
-        """A `point` (3,) of base_link as the flange sees it, (..., 3) mm, for joint values `q` (..., axes), rad and mm."""
-        return self._driven(q, point, range(self.axes), frames.inverse(self._links), -1.0)
+    def point_from_flange(self, q: ArrayLike, point: Array) -> Array:
+        """Return a `point` (3,) of base_link as seen from the flange, (..., 3) mm, for joint values
+        `q` (..., axes), rad and mm.
+        """
+        return self._transform_point(q, point, range(self.axes), frames.inverse(self._links), -1.0)
 
-    def placed(self, q: ArrayLike, point: Array) -> Array:
-        """A `point` (3,) of the flange in base_link, (..., 3) mm, for joint values `q` (..., axes), rad and mm."""
-        return self._driven(q, point, range(self.axes)[::-1], self._links[::-1], 1.0)
+    def point_position(self, q: ArrayLike, point: Array) -> Array:
+        """Return a `point` (3,) of the flange in base_link, (..., 3) mm, for joint values `q` (...,
+        axes), rad and mm.
+        """
+        return self._transform_point(q, point, range(self.axes)[::-1], self._links[::-1], 1.0)
 
     def links(self, q: ArrayLike) -> Array:
         """The frames (..., axes + 1, 4, 4) of the links in base_link for joint values `q` (..., axes), rad and mm: base_link
@@ -142,11 +154,15 @@ class Chain:
             result[..., joint + 1, :, :] = still @ frames.pose(*moved)
         return result
 
-    def _driven(
+    def _transform_point(
         self, q: ArrayLike, point: Array, order: range, links: Array, sense: float
     ) -> Array:
-        """A point taken through `links` (axes + 1, 4, 4) in turn, and through the joints in that order between them, in the
-        sense in which they turn or against it. A point alone takes a third of the time that a frame does."""
+        """Transform a point by `links` (axes + 1, 4, 4) in turn, and by the joints in that order
+        between them.
+
+        sense: 1 in the sense of the joints, -1 against it. A point takes a third of the time of a
+        frame.
+        """
         angles = np.asarray(q, float)
         by_joint = self._by_joint(angles)
         points = np.empty((by_joint.shape[1], 3))
@@ -172,7 +188,7 @@ class Chain:
 
     @property
     def _is_mixed(self) -> bool:
-        """Whether joints take other values than those of their own place."""
+        """Whether joints take values other than the one of their own index."""
         return bool((self.order[1:] < self.order[:-1]).any())
 
     def _by_joint(self, angles: Array) -> Array:
@@ -190,11 +206,12 @@ class Chain:
     def _run_piece(
         self, angles: Array, axes: tuple[Array, Array] | None, flange: Array | None
     ) -> None:
-        """Fill in directions and origins (axes, 3, n), and flange poses (n, 4, 4), those that are wanted, of angles
-        (axes, n)."""
+        """Fill in the requested directions and origins (axes, 3, n), and flange poses (n, 4, 4), for
+        angles (axes, n).
+        """
         sines, cosines = np.sin(angles), np.cos(angles)
         count = angles.shape[1]
-        # one row per column of the rotation, each holding x, y, z of all poses; the first link is the same in all
+        # one row per column of the rotation, each holding x, y, z of all poses; the first link is equal in all
         moved = np.empty((4, 3, count))
         moved[:] = self._links[0, :3].T[:, :, None]
         columns, position = moved[:3].reshape(3, 3 * count), moved[3].ravel()
@@ -249,7 +266,9 @@ class Piece(NamedTuple):
 
 
 def join_chains(sections: Sequence[Piece], end: Array) -> Chain:
-    """One chain of pieces in a row; `end` (4, 4) is its flange as seen from that of the last."""
+    """Return one chain of consecutive pieces; `end` (4, 4) is its flange as seen from the flange
+    of the last piece.
+    """
     origins: list[Array] = []
     flange = np.eye(4)
     for section in sections:

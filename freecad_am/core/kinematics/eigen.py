@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The smallest and the largest eigenvalue of many small symmetric matrices at once.
 
-A matrix at a time costs LAPACK more than half in calls. Here all matrices are brought to tridiagonal form by
-Householder reflections together, and Laguerre's iteration, which cannot pass a root from outside, runs from
-both sides to the outermost roots of all characteristic polynomials.
+For one matrix at a time LAPACK spends more than half of the time in calls. Here all
+matrices are brought to tridiagonal form by Householder reflections together, and
+Laguerre's iteration, which cannot pass a root from outside, runs from both sides to the
+outermost roots of all characteristic polynomials.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ def _iterate(diagonal: Array, squares: Array, roots: Array) -> None:
         going = (np.abs(step) > TOLERANCE).any(axis=0)
         remaining = np.count_nonzero(going)
         if 2 * remaining < len(columns):
-            # most are there: go on with the others alone
+            # most have converged: continue with the others
             roots[:, columns] = current
             if not remaining:
                 return

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""External axes: a robot and the mechanisms beside it as one machine.
+"""External axes: a robot and its mechanisms as one machine.
 
-Seen from where the part stands, robot and mechanisms are one chain: from what the last mechanism that carries it has on its
-face backwards through the positioner to the floor, or from the floor itself, and on through the track that carries the
-robot, and the robot, to its flange. So everything that drives a chain - limits,
-speeds, rapids, collisions, read-back - knows of external axes without being told; the robot's own inverse alone has to
-be told where its base then is.
+Seen from the part, robot and mechanisms are one chain: from the face of the last
+mechanism that carries the part backwards through the positioner to the floor, or from the
+floor itself, and on through the track that carries the robot, and the robot, to its
+flange. So all code that drives a chain (limits, speeds, rapids, collisions, read-back)
+handles external axes without special cases; only the robot's own inverse needs the
+position of its base.
 """
 
 from __future__ import annotations
@@ -33,24 +34,32 @@ MECHANISMS = machines.BUILT_IN / "mechanisms"
 
 @dataclass(frozen=True, eq=False)
 class Mechanism:
-    """One of the mechanisms beside a robot. place: (4, 4) where its chain begins, seen from the world, or from the face of
-    the mechanism it stands on, `under`, by its place among all. values: which of the external axes' values are its own."""
+    """One of the mechanisms of a cell.
+
+    frame: (4, 4) start of its chain, seen from the world, or from the face of the mechanism
+    below it, `under`, by its index. values: indices of its values among the external axes.
+    """
 
     machine: Machine
     carries: str
-    place: Array
+    frame: Array
     values: Index
     under: int | None
 
 
 @dataclass(frozen=True, eq=False)
 class ExternalAxes:
-    """The k external axes of a robot. robot: the machine without them. to_robot: the chain from where the part stands,
-    the platform's face or the world, to the robot's base_link. up: (3,) against gravity, in the world. turning: the unit
-    axes (3,) of the positioner in the world with all axes at zero, from the floor on, and `turned` which of the values these
-    are. at_zero: (3, 3) turns directions on the face into the world, at zero. along: (3,) the unit way of the track in the
-    world and `slides` its value's place, None where the robot stands. carriers: what carries the part, from the floor on.
-    mechanisms: all, in the order they are named in."""
+    """The k external axes of a robot.
+
+    robot: the machine without them. to_robot: the chain from the frame under the part, the
+    platform's face or the world, to the robot's base_link. up: (3,) against gravity, in the
+    world. turning: the unit axes (3,) of the positioner in the world with all axes at zero,
+    from the floor on; `turned`: their indices among the values. at_zero: (3, 3) rotates
+    directions on the face into the world, at zero. along: (3,) the unit direction of the
+    track in the world and `slides` the index of its value, None if the robot is fixed.
+    carriers: the machines that carry the part, from the floor on. mechanisms: all, in the
+    given order.
+    """
 
     robot: Machine
     to_robot: Chain
@@ -69,14 +78,16 @@ class ExternalAxes:
         return self.to_robot.axes
 
     def base(self, values: Array) -> Array:
-        """(n, 4, 4) the robot's base_link seen from where the part stands, mm, for values (n, k) rad and mm."""
+        """Return the robot's base_link (n, 4, 4) seen from the frame under the part, mm, for values
+        (n, k) rad and mm.
+        """
         return self.to_robot.forward(values)
 
     def links(self, values: Array) -> list[Array]:
         """(n, axes + 1, 4, 4) the frames of each mechanism's links in the world, its base first, for values (n, k)."""
         link_frames: list[Array] = []
         for mechanism in self.mechanisms:
-            start = mechanism.place
+            start = mechanism.frame
             if mechanism.under is not None:
                 start = (
                     link_frames[mechanism.under][:, -1:]
@@ -87,7 +98,9 @@ class ExternalAxes:
         return link_frames
 
     def upright(self, directions: Array, values: Array) -> Array:
-        """(n, 3) unit vectors seen from where the part stands (n, 3) in the world, for values (n, k) rad and mm."""
+        """Return unit vectors (n, 3), given in the frame under the part (n, 3), in the world, for
+        values (n, k) rad and mm.
+        """
         turned = directions @ self.at_zero.T
         for axis, angle in list(zip(self.turning, values.T[self.turned], strict=True))[::-1]:
             turned = np.einsum("nij,nj->ni", frames.rotation_about(axis, angle), turned)
@@ -101,10 +114,11 @@ def coupled(
     up: Sequence[float],
     folders: Sequence[str] = (),
 ) -> tuple[Machine, Limits, ExternalAxes]:
-    """The machine that a robot is together with its external axes, its limits, and these axes.
+    """Couple a robot with its external axes; returns the machine, its limits, and the axes.
 
-    Joint values are the robot's and then those of the mechanisms in the order of `named`; `up` (3,) is against gravity.
-    Raises InputError NOT_YET for what cannot be planned, UNKNOWN_MACHINE, BAD_MACHINE.
+    Joint values are the robot's and then the mechanisms' in the order of `named`; `up` (3,)
+    is against gravity. Raises InputError NOT_YET for cells that cannot be planned,
+    UNKNOWN_MACHINE, BAD_MACHINE.
     """
     loaded = [(named_axis, load(named_axis.machine, folders)) for named_axis in named]
     _check_names(robot, loaded)
@@ -127,7 +141,7 @@ def coupled(
     for k, (named_axis, machine) in enumerate(loaded):
         if named_axis.carries == ROBOT:
             start = frames.bryant(named_axis.pose) @ frames.inverse(machine.base)
-            # at zero the robot's base is that of the world
+            # at zero the robot's base is the base of the world
             in_world = frames.inverse(start @ machine.chain.forward(np.zeros(1))) @ in_world
             sections.append(Piece(start, machine.chain, values[k]))
             along, slides = (
@@ -245,7 +259,7 @@ def load(name: str, folders: Sequence[str] = ()) -> Machine:
         urdf_chain = urdf_machine.chain_of(description)
         called = f"{urdf_chain.name} {' - '.join(urdf_chain.joints)}"  # a file may describe several
         return dataclasses.replace(
-            machines.of_description(name, urdf_chain, None), id=called, title=called
+            machines.machine_of_description(name, urdf_chain, None), id=called, title=called
         )
     try:
         return machines.load(name, (*folders, MECHANISMS))
@@ -269,8 +283,11 @@ def upward(up: Sequence[float]) -> Array:
 
 
 def _chain(loaded: Sequence[tuple[External, Machine]]) -> tuple[Chain, Array]:
-    """The chain from the world to the face that carries the part, and that face (4, 4) at zero. Poses of mechanisms are
-    those they stand at in the world with all axes at zero."""
+    """Return the chain from the world to the face that carries the part, and that face (4, 4) at
+    zero.
+
+    Poses of mechanisms are those in the world with all axes at zero.
+    """
     sections: list[Piece] = []
     flange, begin = np.eye(4), 0
     for named_axis, machine in loaded:
@@ -290,7 +307,7 @@ def _chain(loaded: Sequence[tuple[External, Machine]]) -> tuple[Chain, Array]:
 def _mechanisms(
     loaded: Sequence[tuple[External, Machine]], values: Sequence[Index]
 ) -> tuple[Mechanism, ...]:
-    """The mechanisms where they stand: those that carry the part on one another."""
+    """Return the mechanisms with their frames: those that carry the part are on one another."""
     adjacent: list[Mechanism] = []
     under: int | None = None
     face = np.eye(4)

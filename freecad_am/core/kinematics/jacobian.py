@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The geometric Jacobian over arrays of joint vectors, and how far from singular it is.
+"""The geometric Jacobian over arrays of joint vectors, and its distance from singularity.
 
-A Jacobian mixes mm and rad, so every measure of it takes a characteristic length in mm that divides the
-translation rows (errata to Chalvin 2020, eq. 6). The condition is sigma_min / sigma_max of the scaled
-Jacobian: 1 is best, 0 is singular.
+A Jacobian mixes mm and rad, so every measure takes a characteristic length in mm that
+divides the translation rows (errata to Chalvin 2020, eq. 6). The condition is sigma_min /
+sigma_max of the scaled Jacobian: 1 is best, 0 is singular.
 
-Inside, an array holds one entry of the matrices of all poses.
+Internally an array holds one entry of the matrices of all poses.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ..types import Array, ArrayLike
 from . import eigen
 from .chain import Chain
 
-# poses done together: what they need stays in the processor's cache, and a call is not longer than its work
+# number of poses per batch: their data fits the processor's cache, and the call overhead stays small
 PIECE = 4096
 # the same of poses whose eigenvalues are found together: in other company they have other last bits
 MATRICES_PER_BATCH = 1024
@@ -53,12 +53,12 @@ def condition(jacobians: ArrayLike, length: float) -> Array:
     Through the eigenvalues of J J^T: accurate to about 1e-15 divided by the condition itself.
     """
 
-    def of_piece(scaled: Array) -> Array:
+    def compute_batch(scaled: Array) -> Array:
         low, high = eigen.extremes(np.einsum("ikn,jkn->ijn", scaled, scaled))
         result: Array = np.sqrt(np.maximum(low, 0.0) / high)
         return result
 
-    return _in_pieces(of_piece, jacobians, length)
+    return _in_pieces(compute_batch, jacobians, length)
 
 
 def condition_bound(jacobians: ArrayLike, length: float) -> Array:
@@ -71,16 +71,18 @@ def condition_bound(jacobians: ArrayLike, length: float) -> Array:
 
 
 def condition_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Array:
-    """The derivative (n,) of `condition` when the joints move with `rates` (n, 6), rad per unit of the parameter.
+    """Return the derivative (n,) of `condition` when the joints move with `rates` (n, 6), rad
+    per unit of the parameter.
 
-    The point moves with the last link; where the rates leave it in place, as the rotation about the tool axis
-    does, a point fixed in the base frame gives the same. From the singular vectors and the
-    derivative of the columns: joint j turns the columns after it, and moves the point of those before it. NaN where
-    sigma_min is 0; where it is a double value the derivative is one-sided and not unique.
+    The point moves with the last link; if the rates leave it in place, as the rotation about
+    the tool axis does, a point fixed in the base frame gives the same. Computed from the
+    singular vectors and the derivative of the columns: joint j turns the columns after it,
+    and moves the point of the columns before it. NaN where sigma_min is 0; where it is a
+    double value the derivative is one-sided and not unique.
     """
     rates = np.asarray(rates, float).T
 
-    def of_piece(scaled: Array, rows: slice) -> Array:
+    def compute_batch(scaled: Array, rows: slice) -> Array:
         change = _rate(scaled, rates[:, rows])
         values, vectors = np.linalg.eigh(np.einsum("ikn,jkn->nij", scaled, scaled))
         halves = []
@@ -96,17 +98,17 @@ def condition_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Arr
             result: Array = np.sqrt(low / high) * (halves[0] / low - halves[1] / high)
         return result
 
-    return _in_pieces(of_piece, jacobians, length, with_slice=True)
+    return _in_pieces(compute_batch, jacobians, length, with_slice=True)
 
 
 def manipulability(jacobians: ArrayLike, length: float) -> Array:
     """sqrt(det(J J^T)) (n,) of Jacobians (n, 6, 6) with translation rows divided by `length` mm; Yoshikawa 1985."""
 
-    def of_piece(scaled: Array) -> Array:
+    def compute_batch(scaled: Array) -> Array:
         result: Array = np.abs(np.linalg.det(scaled.transpose(2, 0, 1)))
         return result
 
-    return _in_pieces(of_piece, jacobians, length)
+    return _in_pieces(compute_batch, jacobians, length)
 
 
 def manipulability_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Array:
@@ -116,7 +118,7 @@ def manipulability_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -
     """
     rates = np.asarray(rates, float).T
 
-    def of_piece(scaled: Array, rows: slice) -> Array:
+    def compute_batch(scaled: Array, rows: slice) -> Array:
         matrices = np.ascontiguousarray(scaled.transpose(2, 0, 1))
         size = np.abs(np.linalg.det(matrices))
         singular = size == 0.0
@@ -128,7 +130,7 @@ def manipulability_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -
         relative *= size
         return relative
 
-    return _in_pieces(of_piece, jacobians, length, with_slice=True)
+    return _in_pieces(compute_batch, jacobians, length, with_slice=True)
 
 
 def _in_pieces(
@@ -138,7 +140,9 @@ def _in_pieces(
     size: int = MATRICES_PER_BATCH,
     with_slice: bool = False,
 ) -> Array:
-    """`function` of scaled Jacobians (6, axes, m), in pieces of that size, so that they stay in the processor's cache."""
+    """Return `function` of scaled Jacobians (6, axes, m), in batches of `size` that fit the
+    processor's cache.
+    """
     matrices = np.moveaxis(np.asarray(jacobians, float), 0, -1)
     result = np.empty(matrices.shape[2])
     for start in range(0, len(result), size):
@@ -147,7 +151,7 @@ def _in_pieces(
         scaled[:3] *= 1.0 / length
         unknown = np.isnan(scaled).any(axis=(0, 1)) if np.isnan(scaled.max()) else None
         if unknown is not None:
-            # LAPACK takes no NaN: anything stands in for it
+            # LAPACK rejects NaN: replace it by any finite matrix
             scaled[:, :, unknown] = np.eye(scaled.shape[0], scaled.shape[1])[:, :, None]
         result[rows] = function(scaled, rows) if with_slice else function(scaled)
         if unknown is not None:
@@ -178,9 +182,9 @@ def _frobenius(matrices: Array) -> Array:
         arm = _inverse3(matrices[:3, :3] - _product(carried, lower_left))
         right = _product(arm, carried)
         below = _product(wrist, lower_left)
-        left = _product(below, arm)
-        wrist += _product(left, carried)
-        squares = [_squared_norm(block) for block in (arm, right, left, wrist)]
+        lower_block = _product(below, arm)
+        wrist += _product(lower_block, carried)
+        squares = [_squared_norm(block) for block in (arm, right, lower_block, wrist)]
         bound = 1.0 / np.sqrt(_squared_norm(matrices) * sum(squares))
     bound[np.isnan(bound)] = 0.0
     return np.asarray(bound)
@@ -192,29 +196,27 @@ def _squared_norm(matrices: Array) -> Array:
     return result
 
 
-def _product(left: Array, right: Array) -> Array:
+def _product(a: Array, b: Array) -> Array:
     """Products (3, 3, n) of matrices (3, 3, n)."""
-    result: Array = left[:, 0, None] * right[None, 0]
+    result: Array = a[:, 0, None] * b[None, 0]
     spare = np.empty_like(result)
     for k in (1, 2):  # as einsum does it, in four fifths of its time
-        result += np.multiply(left[:, k, None], right[None, k], out=spare)
+        result += np.multiply(a[:, k, None], b[None, k], out=spare)
     return result
 
 
 def _inverse3(matrices: Array) -> Array:
     """Inverses of matrices (3, 3, n): the cross products of the rows are the columns of the adjugate."""
-    first, second, third = matrices
-    adjugate = np.stack(
-        (_cross(second, third), _cross(third, first), _cross(first, second)), axis=1
-    )
-    adjugate *= 1.0 / np.einsum("in,in->n", first, adjugate[:, 0])
+    row_a, row_b, row_c = matrices
+    adjugate = np.stack((_cross(row_b, row_c), _cross(row_c, row_a), _cross(row_a, row_b)), axis=1)
+    adjugate *= 1.0 / np.einsum("in,in->n", row_a, adjugate[:, 0])
     return adjugate
 
 
-def _cross(left: Array, right: Array) -> Array:
+def _cross(a: Array, b: Array) -> Array:
     """Cross products (3, ...) of vectors along the first dimension."""
-    result = np.empty(np.broadcast_shapes(left.shape, right.shape))
-    for row, (following, last) in enumerate(((1, 2), (2, 0), (0, 1))):
-        np.multiply(left[following], right[last], out=result[row])
-        result[row] -= left[last] * right[following]
+    result = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    for row, (following, preceding) in enumerate(((1, 2), (2, 0), (0, 1))):
+        np.multiply(a[following], b[preceding], out=result[row])
+        result[row] -= a[preceding] * b[following]
     return result

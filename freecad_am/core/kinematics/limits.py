@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Joint limits: of each axis, and of sums of axes that a linkage or a controller couples."""
+"""Joint limits: of each axis, and of sums of axes coupled by a linkage or a controller."""
 
 from __future__ import annotations
 
@@ -83,18 +83,21 @@ class Limits:
         )
 
     def smallest_share(self, q: Array) -> Array:
-        """(n,) the smallest of the `shares` of each joint vector (n, axes). Limit by limit, without an array as large as all
-        shares: new memory is what takes long."""
-        least = np.full(len(q), np.inf)
+        """Return the smallest (n,) of the `shares` of each joint vector (n, axes).
+
+        Computed limit by limit, without an array as large as all shares: allocating memory
+        dominates the time.
+        """
+        smallest = np.full(len(q), np.inf)
         for axis, (low, high) in enumerate(zip(self.lower, self.upper, strict=True)):
-            np.minimum(least, _share(q[:, axis], low, high), out=least)
+            np.minimum(smallest, _share(q[:, axis], low, high), out=smallest)
         for row, low, high in zip(
             self.coefficients, self.coupled_lower, self.coupled_upper, strict=True
         ):
-            some = np.flatnonzero(row)
-            coupled = sum((row[axis] * q[:, axis] for axis in some), np.zeros(len(q)))
-            np.minimum(least, _share(coupled, low, high), out=least)
-        return least
+            coupled_axes = np.flatnonzero(row)
+            coupled = sum((row[axis] * q[:, axis] for axis in coupled_axes), np.zeros(len(q)))
+            np.minimum(smallest, _share(coupled, low, high), out=smallest)
+        return smallest
 
     def smallest(self, q: ArrayLike) -> Smallest:
         """The smallest margin (...) of each joint vector (..., axes) and which limit it is to; NaN where q is."""
@@ -117,7 +120,7 @@ def margins(joints: Array, lower: Array, upper: Array) -> Array:
     share = np.empty_like(joints)
     for axis, (low, high) in enumerate(
         zip(lower, upper, strict=True)
-    ):  # what is as large as the joints takes long to get
+    ):  # arrays as large as the joints take long to allocate
         share[..., axis] = _share(joints[..., axis], low, high)
     return share
 
@@ -132,8 +135,9 @@ def _share(column: Array, low: float, high: float) -> Array:
 
 @dataclass(frozen=True)
 class Payload:
-    """What a machine carries at most: kg, and how far, mm, the centre of gravity of the load may be from the last axis;
-    infinite where the file does not tell it."""
+    """Maximum load of a machine: kg, and distance, mm, of the load's centre of gravity from the
+    last axis; infinite if unknown.
+    """
 
     kg: float = math.inf
     from_axis: float = math.inf

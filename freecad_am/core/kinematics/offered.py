@@ -20,46 +20,66 @@ from .urdf.machine import is_mechanism
 def positioners(
     robot: Machine, mass: float, radius: float, folders: Sequence[str] = ()
 ) -> list[Machine]:
-    """Those of one or two turning axes that carry a part of a mass, kg, as far as their files tell: first those whose table
-    is as wide as the part, `radius` mm about its axis, of these those whose speeds are known, then those of the robot's
-    maker, then those rated lowest."""
-    some = [
-        one for one in _known(folders) if not one.chain.sliding.any() and one.payload.kg >= mass
+    """Return positioners with one or two revolute axes that carry a part of a mass, kg, as far
+    as their files say.
+
+    The order: those with a table as wide as the part, `radius` mm about its axis; those with
+    known speeds; those of the robot's manufacturer; those with the lowest rating.
+    """
+    candidates = [
+        machine
+        for machine in _known(folders)
+        if not machine.chain.sliding.any() and machine.payload.kg >= mass
     ]
-    return sorted(some, key=lambda one: (_table(one) < radius, *_rank(robot, one)))
+    return sorted(
+        candidates, key=lambda machine: (_table(machine) < radius, *_rank(robot, machine))
+    )
 
 
 def tracks(robot: Machine, folders: Sequence[str] = ()) -> list[Machine]:
-    """Those of one axis that slides, of the robot's maker first."""
-    some = [one for one in _known(folders) if one.chain.axes == 1 and one.chain.sliding.all()]
-    return sorted(some, key=lambda one: _rank(robot, one))
+    """Return tracks with one prismatic axis, those of the robot's manufacturer first."""
+    candidates = [
+        machine
+        for machine in _known(folders)
+        if machine.chain.axes == 1 and machine.chain.sliding.all()
+    ]
+    return sorted(candidates, key=lambda machine: _rank(robot, machine))
 
 
-def _rank(robot: Machine, one: Machine) -> tuple[bool, bool, float, str]:
-    unknown = not np.isfinite(one.max_speed).all()
-    return unknown, one.title.split()[0] != robot.title.split()[0], one.payload.kg, one.id
+def _rank(robot: Machine, machine: Machine) -> tuple[bool, bool, float, str]:
+    unknown = not np.isfinite(machine.max_speed).all()
+    return (
+        unknown,
+        machine.title.split()[0] != robot.title.split()[0],
+        machine.payload.kg,
+        machine.id,
+    )
 
 
 def _known(folders: Sequence[str]) -> list[Machine]:
-    """All mechanisms of the user's folders and built in; files that are none, or wrong, are left out."""
-    found: dict[str, Machine] = {}
+    """Return all mechanisms in the user's folders and built in; files that are wrong or hold no
+    mechanism are left out.
+    """
+    mechanisms: dict[str, Machine] = {}
     for folder in [MECHANISMS, *map(Path, folders)]:
         for path in sorted(folder.expanduser().glob("*.json")):
             try:
-                one = machines.load(str(path))
+                machine = machines.load(str(path))
             except InputError:
                 continue
-            if is_mechanism(one.chain):
-                found[path.stem] = one
-    return list(found.values())
+            if is_mechanism(machine.chain):
+                mechanisms[path.stem] = machine
+    return list(mechanisms.values())
 
 
-def _table(one: Machine) -> float:
-    """mm from its last axis to where its last link ends; infinite where that is not known."""
-    pieces = [
-        piece.points for piece in (one.bodies[-1] if one.bodies else ()) if isinstance(piece, Solid)
+def _table(machine: Machine) -> float:
+    """Return the extent of the last link from its axis, mm; infinite if unknown."""
+    point_sets = [
+        solid.points
+        for solid in (machine.bodies[-1] if machine.bodies else ())
+        if isinstance(solid, Solid)
     ]
-    if not pieces:
+    if not point_sets:
         return math.inf
-    axis = one.chain.directions[-1]
-    return float(np.linalg.norm(np.cross(np.concatenate(pieces), axis), axis=1).max())
+    axis = machine.chain.directions[-1]
+    return float(np.linalg.norm(np.cross(np.concatenate(point_sets), axis), axis=1).max())

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where a part really stands, by three or more of its points that the robot has touched: `cell.touched`.
+"""The real pose of a part, from three or more of its points touched by the robot:
+`cell.touched`.
 
-The rigid motion with the least sum of squares (Arun, Huang, Blostein 1987, with the sign of Umeyama 1991). What is left at
-each point tells how well it was touched, and whether these are points of this part at all.
+The rigid motion with the smallest sum of squares (Arun, Huang, Blostein 1987, with the
+sign of Umeyama 1991). The residual at each point shows how well it was touched, and
+whether the points belong to this part at all.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ from ..types import Array
 from .arrangement import Arrangement
 
 CODE = "TOUCHED"
-LEAST = 3
+MIN_POINTS = 3
 LINE = 0.05  # of their spread that points are off a line at least
 SAME_SIZE = 0.01  # of the distances between points
 _UNITS = (
@@ -47,12 +49,14 @@ class WorkOffset:
         return np.concatenate([self.pose[:3, 3], np.degrees(frames.to_bryant(self.pose[:3, :3]))])
 
 
-def of_cell(parameters: CellParameters, arrangement: Arrangement) -> WorkOffset | None:
-    """Where the part of a cell stands by the points that were touched; None without any. InputError TOUCHED."""
+def offset_of_cell(parameters: CellParameters, arrangement: Arrangement) -> WorkOffset | None:
+    """Return the pose of the part of a cell from touched points; None without any. Raises
+    InputError TOUCHED.
+    """
     points = touched(parameters.touched)
     if not points:
         return None
-    carried = any(one.carries == PART for one in externals(parameters.external))
+    carried = any(external_axis.carries == PART for external_axis in externals(parameters.external))
     if arrangement.carries_part or carried:
         raise InputError(
             CODE,
@@ -64,21 +68,30 @@ def of_cell(parameters: CellParameters, arrangement: Arrangement) -> WorkOffset 
 
 
 def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
-    """Where the part stands. Raises InputError TOUCHED for fewer than three points, points on a line, of another size, and
-    where one is farther than `tolerance` mm from where it was touched."""
-    if len(points) < LEAST:
+    """Return the pose of the part.
+
+    Raises InputError TOUCHED for fewer than three points, points on a line, of another size,
+    and if one is farther than `tolerance` mm from where it was touched.
+    """
+    if len(points) < MIN_POINTS:
         raise InputError(
             CODE,
             WHERE,
             "{} point(s) do not determine where a part stands; touch {} or more, far from one "
             "another and not on a line",
             len(points),
-            LEAST,
+            MIN_POINTS,
         )
-    part, robot = (np.array([getattr(one, side) for one in points]) for side in ("part", "robot"))
-    here, there = part - part.mean(axis=0), robot - robot.mean(axis=0)
-    for side, seen in (("part", here), ("robot", there)):
-        spread = np.linalg.svd(seen, compute_uv=False)
+    part_points, robot_points = (
+        np.array([getattr(touched_point, side) for touched_point in points])
+        for side in ("part", "robot")
+    )
+    centred_part, centred_robot = (
+        part_points - part_points.mean(axis=0),
+        robot_points - robot_points.mean(axis=0),
+    )
+    for side, centred in (("part", centred_part), ("robot", centred_robot)):
+        spread = np.linalg.svd(centred, compute_uv=False)
         if not spread[1] > LINE * spread[0]:
             raise InputError(
                 CODE,
@@ -87,11 +100,11 @@ def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
                 "part is turned about it; touch one off that line",
                 Word("touched" if side == "robot" else "of the part"),
             )
-    _refuse_other_size(float(np.linalg.norm(there) / np.linalg.norm(here)))
-    left, _, right = np.linalg.svd(here.T @ there)
-    turn = (left @ np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))]) @ right).T
-    pose = frames.pose(turn, robot.mean(axis=0) - turn @ part.mean(axis=0))
-    residual = np.linalg.norm(part @ turn.T + pose[:3, 3] - robot, axis=1)
+    _refuse_other_size(float(np.linalg.norm(centred_robot) / np.linalg.norm(centred_part)))
+    u, _, vt = np.linalg.svd(centred_part.T @ centred_robot)
+    turn = (u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ vt))]) @ vt).T
+    pose = frames.pose(turn, robot_points.mean(axis=0) - turn @ part_points.mean(axis=0))
+    residual = np.linalg.norm(part_points @ turn.T + pose[:3, 3] - robot_points, axis=1)
     worst = int(np.argmax(residual))
     if residual[worst] > tolerance:
         text = ", ".join(f"{value:.3g}" for value in residual)
@@ -110,7 +123,7 @@ def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
 
 
 def _refuse_other_size(ratio: float) -> None:
-    """Of what was touched against what is planned."""
+    """Reject touched points of another size than the planned part."""
     if abs(ratio - 1.0) <= SAME_SIZE:
         return
     unit = next((name for factor, name in _UNITS if abs(ratio * factor - 1.0) <= SAME_SIZE), "")

@@ -19,7 +19,7 @@ from ..issues import ERROR, AmError, Issue
 from ..kinematics.cell import Cell
 from ..kinematics.inverse import opw
 from ..kinematics.links.contact import ArmContact
-from ..kinematics.links.distance import least_distance
+from ..kinematics.links.distance import min_distance
 from ..motion import Motion
 from ..parameters.cell import CellParameters
 from ..parameters.joints import OF_CELL, JointParameters
@@ -182,7 +182,7 @@ class Judge:
             for one in path.beads
         ]
         when = np.repeat(moment, [len(one.joints) for one in path.beads])
-        return least_distance(contact, path.joints, when, REACH)
+        return min_distance(contact, path.joints, when, REACH)
 
     def _time(self, path: JointPath, motion: Motion) -> float:
         """s of the whole job: its deposit as it was slowed here, its rapids as those between beads that follow each other

@@ -96,7 +96,7 @@ def _serves(task: Task, points: Points, phi: Array) -> tuple[Mask, Array]:
     for some in (first, ~first):
         row, column = np.nonzero(some & (margin >= FITS) & ~served)
         if len(row):
-            flange = points.frames.of(column).at(phi[row, column])
+            flange = points.frames.of(column).flange_poses(phi[row, column])
             kept = task.condition_at(flange, joints[row, column]) >= threshold[column]
             served[column[kept]] = True
     return served, margin

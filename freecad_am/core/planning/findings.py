@@ -81,7 +81,7 @@ def out_of_reach(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
         if values is None:
             return []
         to_part = frames.inverse(external.base(values)) @ frames.pose(
-            np.eye(3), cell.on_carrier(path.bead.points)
+            np.eye(3), cell.to_carrier(path.bead.points)
         )
         ahead = np.hypot(to_part[:, 0, 3], to_part[:, 1, 3]) - shoulder
         nearest = min(nearest, float(np.hypot(ahead, to_part[:, 2, 3] - height).min()))

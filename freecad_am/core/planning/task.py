@@ -123,7 +123,9 @@ class Task:
         """
         if phi.ndim == 1 and not self.arm.followed:
             return self._raw_joints_of_all(points, phi)
-        flange = points.frames.at(phi) if self.arm.followed else points.frames.by_entry(phi)
+        flange = (
+            points.frames.flange_poses(phi) if self.arm.followed else points.frames.by_entry(phi)
+        )
         if self.arm.followed and before is not None:
             joints = following.from_before(self.arm, flange, self.branch, self._own(before))
         elif self.arm.followed:
@@ -211,7 +213,7 @@ class Task:
         return (
             np.broadcast_to(np.eye(4), (len(phi), 4, 4))
             if self.cell.torch_stands
-            else poses.at(phi)
+            else poses.flange_poses(phi)
         )
 
     def condition(self, points: Points, phi: Array, joints: Array) -> Array:
@@ -225,7 +227,7 @@ class Task:
                     for some in in_pieces(len(points))
                 ]
             )
-        flange = points.frames.at(phi).reshape(-1, 4, 4)
+        flange = points.frames.flange_poses(phi).reshape(-1, 4, 4)
         return self.condition_at(flange, joints.reshape(-1, joints.shape[-1])).reshape(
             joints.shape[:-1]
         )

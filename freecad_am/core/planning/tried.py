@@ -63,7 +63,7 @@ class Tried:
     def cell(self, toolpath: Toolpath) -> cells.Cell:
         """The cell of a toolpath of it."""
         found = cells.resolve(self.settings, toolpath.frame, toolpath.family, self.folders)
-        adjacent = external_links(found.external, known=self.external_links)
+        adjacent = external_links(found.external, known_links=self.external_links)
         return dataclasses.replace(
             found, obstacles=self.obstacles, torch=self.torch, external_links=adjacent
         )

@@ -11,7 +11,7 @@ import numpy as np
 from ..issues import Issue, Text, Word, values_in
 from ..kinematics.cell import Cell
 from ..kinematics.links.contact import LINKS_MORE
-from ..kinematics.links.external_links import of_unknown_shape
+from ..kinematics.links.external_links import titles_without_shape
 from ..kinematics.links.rounds import NONE
 from ..motion import Motion
 from ..simulation.arm import ArmTouches
@@ -110,7 +110,7 @@ def external_links(
         return []
     what = "Positioner and track stay clear of nozzle, torch, robot and obstacles"
     names = [one.name for one in cell.external_links]
-    lacking = ", ".join(of_unknown_shape(cell.external, cell.external_links))
+    lacking = ", ".join(titles_without_shape(cell.external, cell.external_links))
     missing = Text("no file says what {} is made of", lacking) if lacking else ""
     if touches is None or not names:
         return [Promise(what, Text("not checked: no file says what {} is made of", lacking), None)]

@@ -113,8 +113,8 @@ def _from_axis(
     axis = to_flange[:3, :3] @ frames_at_rest.directions[-1]
     through = to_flange[:3, :3] @ frames_at_rest.origins[-1] + to_flange[:3, 3]
     middles = 0.5 * (position + np.concatenate([position[:1], position[:-1]]))
-    arms = np.cross(cell.on_carrier(np.nan_to_num(middles)) - through, axis)
-    own_moment = np.cross(cell.on_carrier(centre[None]) - through, axis)
+    arms = np.cross(cell.to_carrier(np.nan_to_num(middles)) - through, axis)
+    own_moment = np.cross(cell.to_carrier(centre[None]) - through, axis)
     return np.asarray(
         np.linalg.norm(bodies * own_moment + np.cumsum(deposited[:, None] * arms, axis=0), axis=1)
     )

@@ -64,7 +64,7 @@ def at_rest(cell: Cell, point: ArrayLike) -> Array:
     """
     target, chain = np.asarray(point, float), cell.machine.chain
     if not cell.machine.free:
-        on_flange, _ = cell.on_flange(target[None], cell.mount[None, :3, 2])
+        on_flange, _ = cell.to_flange(target[None], cell.mount[None, :3, 2])
         return np.asarray(
             FiveAxis(chain).place_points(np.zeros((1, TURNING)), on_flange, cell.station)[0]
         )

@@ -42,7 +42,7 @@ def solids(chain: Chain, radius: float = RADIUS, torch: float = 60.0) -> list[li
         solids_of_links[stands:],
     )
     back = frames.inverse(chain.links(np.zeros(chain.axes)))
-    return [[solid.moved(pose) for solid in link] for pose, link in zip(back, solids_of_links)]
+    return [[solid.move(pose) for solid in link] for pose, link in zip(back, solids_of_links)]
 
 
 def _head(directions: Array, origins: Array, torch: float, found: list[list[Solid]]) -> None:

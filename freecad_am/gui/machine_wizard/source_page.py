@@ -318,7 +318,7 @@ class SourcePage(Page):
         described = self.robot.between(*ends[1:])
         if urdf_machine.is_mechanism(described.chain):
             described = urdf_machine.external_chain(*ends)
-        draft = machine_draft.of_description(
+        draft = machine_draft.draft_of_description(
             described,
             f"URDF {os.path.basename(path)}, {self.base.currentText()} to {self.tip.currentText()}",
         )
@@ -350,7 +350,7 @@ class SourcePage(Page):
         chain = denavit_hartenberg.chain_of(
             denavit_hartenberg.Table(tuple(rows), before, after, craig)
         )
-        return machine_draft.of_chain(
+        return machine_draft.draft_of_chain(
             chain, f"{'modified' if craig else 'standard'} Denavit-Hartenberg table, as entered"
         )
 
@@ -365,9 +365,11 @@ class SourcePage(Page):
             offsets=tuple(np.radians(offsets).tolist()),
             signs=tuple(int(sign) for sign in signs),
         )
-        return machine_draft.of_chain(
+        return machine_draft.draft_of_chain(
             opw_recognition.chain_of(arm), "closed-form figures, as entered"
         )
 
     def _of_copy(self) -> Draft:
-        return machine_draft.of_machine(str(self.original.currentData()), user_machines.folders())
+        return machine_draft.draft_of_machine(
+            str(self.original.currentData()), user_machines.folders()
+        )

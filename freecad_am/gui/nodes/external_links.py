@@ -55,4 +55,4 @@ class ExternalLinkNodes:
 
 
 def _colour(link: ExternalLink) -> tuple[float, float, float]:
-    return STANDING if link.link == 0 else CARRYING if link.after == 0 else MOVING
+    return STANDING if link.link == 0 else CARRYING if link.axes_after == 0 else MOVING

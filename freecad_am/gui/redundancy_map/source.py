@@ -64,7 +64,7 @@ class Source:
     def arm(self) -> ArmContact:
         """The robot with what is around it and, in the order of the beads, the deposit; made in the background."""
         deposited = Beads.of(self.beads, self.width, self.toolpath.layer_height).solid(LINK_GRAIN)
-        cylinders = link_cylinders.of_robot(self.cell.robot.chain, self.shapes)
+        cylinders = link_cylinders.robot_cylinders(self.cell.robot.chain, self.shapes)
         return ArmContact(self.cell, cylinders, self.toolpath.surroundings, deposited)
 
     @property

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...core.kinematics.links.contact import BASE, DEPOSIT, OWN, PART, PLATFORM, TORCH
+from ...core.kinematics.links.contact import BASE, DEPOSIT, OWN_PREFIX, PART, PLATFORM, TORCH
 from ...core.kinematics.links.nozzle_body import NOZZLE
 from .translation import tr
 
@@ -17,8 +17,8 @@ def link_touches(link: str, what: str) -> str:
         TORCH: tr("the torch"),
     }
     names[BASE] = tr("the base")
-    if what.startswith(OWN):
-        names[what] = tr("the link of {axis}").format(axis=what[len(OWN) :])
+    if what.startswith(OWN_PREFIX):
+        names[what] = tr("the link of {axis}").format(axis=what[len(OWN_PREFIX) :])
     if " " in link:  # of positioner or track, by its own name
         return tr("{link} touches {what}").format(link=link, what=names.get(what, what))
     if link == BASE:

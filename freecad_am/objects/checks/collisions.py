@@ -52,7 +52,7 @@ def collision_issues(
     shapes = meshes_of(cell.machine)
     collisions = arm_collisions(
         cell,
-        link_cylinders.of_robot(cell.robot.chain, shapes),
+        link_cylinders.robot_cylinders(cell.robot.chain, shapes),
         toolpath.surroundings,
         deposit,
         joints,
@@ -91,7 +91,7 @@ def look(path: JointPath, cell: Cell, toolpath: Toolpath) -> list[Issue]:
     shapes = meshes_of(cell.machine)
     collisions = arm_collisions(
         cell,
-        link_cylinders.of_robot(cell.robot.chain, shapes),
+        link_cylinders.robot_cylinders(cell.robot.chain, shapes),
         toolpath.surroundings,
         deposit,
         path.joints,

@@ -28,7 +28,11 @@ def cylinders_of(cell: Cell) -> arm_kept.Cylinders:
     file describes well enough.
     """
     has_links = cell.arrangement.links_known
-    return link_cylinders.of_robot(cell.robot.chain, meshes_of(cell.machine)) if has_links else ()
+    return (
+        link_cylinders.robot_cylinders(cell.robot.chain, meshes_of(cell.machine))
+        if has_links
+        else ()
+    )
 
 
 def arm_of(
@@ -51,7 +55,7 @@ def arm_of(
         cell,
         toolpath,
         process,
-        link_cylinders.of_robot(cell.robot.chain, shapes),
+        link_cylinders.robot_cylinders(cell.robot.chain, shapes),
         max_positions,
         clearance,
     )

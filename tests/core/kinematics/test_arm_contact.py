@@ -46,7 +46,7 @@ def drawn(cell):
 
 
 def rods_of(cell):
-    return [link_rods.of_solids(link) for link in drawn(cell)]
+    return [link_rods.solid_cylinders(link) for link in drawn(cell)]
 
 
 def laid(points, width=8.0, height=2.0):
@@ -79,13 +79,13 @@ def test_what_is_drawn_does_not_reach_into_a_box_untold_and_what_is_told_is_near
         for link in looked:
             seen = seen_from_part(cell, q[k], link)
             for solid in links[link]:
-                points = solid.moved(seen).points
+                points = solid.move(seen).points
                 assert not ((points > low) & (points < low + SIZE)).all(axis=1).any(), (k, link)
     for k in told:
         seen = seen_from_part(cell, q[k], found.link[k])
         points = np.concatenate(
             [
-                solid.moved(seen).points[solid.triangles].mean(axis=1)
+                solid.move(seen).points[solid.triangles].mean(axis=1)
                 for solid in links[found.link[k]]
             ]
         )

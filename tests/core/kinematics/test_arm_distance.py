@@ -6,7 +6,7 @@ import pytest
 
 from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links.contact import ArmContact
-from freecad_am.core.kinematics.links.distance import least_distance
+from freecad_am.core.kinematics.links.distance import min_distance
 from freecad_am.core.simulation.placing import placing
 from tests.core.kinematics.test_arm_contact import (
     PART_ON_ROBOT,
@@ -27,7 +27,7 @@ REACH = 400.0
 @pytest.mark.always("part on robot")
 def test_the_least_distance_is_that_of_points_on_links(setup, low):
     cell = cell_of(setup)
-    rods = link_rods.of_robot(cell.robot.chain)
+    rods = link_rods.robot_cylinders(cell.robot.chain)
     # links that are looked at against what is carried, or what stands still; and of bodies in part coordinates
     contact = ArmContact(cell, rods, [box(low)])
     group = next(one for one in contact.groups if one.seen_from == "part")
@@ -41,12 +41,12 @@ def test_the_least_distance_is_that_of_points_on_links(setup, low):
                 points = on_rods(rods[number], 12.0) @ seen[:3, :3].T + seen[:3, 3]
                 outside = np.maximum(np.maximum(low - points, points - low - SIZE), 0.0)
                 best = min(best, float(np.linalg.norm(outside, axis=1).min()))
-        alone = least_distance(nozzle, q[None], np.zeros(1, dtype=np.int64), REACH)
-        found = least_distance(contact, q[None], np.zeros(1, dtype=np.int64), REACH)
+        alone = min_distance(nozzle, q[None], np.zeros(1, dtype=np.int64), REACH)
+        found = min_distance(contact, q[None], np.zeros(1, dtype=np.int64), REACH)
         # points are up to 12 mm apart, cylinders 0.2 mm larger; the nozzle may be nearer than the box
         assert min(best - 15.0, alone) - 1e-4 <= found <= min(best, alone) + 1e-6, q
         met += best <= alone - 15.0
     assert met > 5
-    together = least_distance(contact, every, np.zeros(len(every), dtype=np.int64), REACH)
-    each = [least_distance(contact, q[None], np.zeros(1, dtype=np.int64), REACH) for q in every]
+    together = min_distance(contact, every, np.zeros(len(every), dtype=np.int64), REACH)
+    each = [min_distance(contact, q[None], np.zeros(1, dtype=np.int64), REACH) for q in every]
     assert together == pytest.approx(min(each), abs=1e-4)

@@ -32,13 +32,13 @@ BOXES = [
 def looked_at(setup, low):
     cell = cell_of(setup)
     return cell, ArmContact(
-        cell, link_rods.of_robot(cell.robot.chain), [box(low)], clearance=CLEARANCE
+        cell, link_rods.robot_cylinders(cell.robot.chain), [box(low)], clearance=CLEARANCE
     )
 
 
 def every_gap(gaps, joints, rates):
     wanted = np.ones((len(gaps.pairs), len(joints)), dtype=bool)
-    return gaps.at(joints, rates, np.zeros(len(joints), dtype=np.int64), wanted)
+    return gaps.gaps_and_rates(joints, rates, np.zeros(len(joints), dtype=np.int64), wanted)
 
 
 @pytest.mark.parametrize(

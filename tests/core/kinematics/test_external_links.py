@@ -191,7 +191,7 @@ def test_what_is_not_told_to_touch_has_no_point_of_a_mechanism_in_it_and_what_is
     external,
 ):
     cell = cell_of(external)
-    rods = link_rods.of_robot(cell.robot.chain)
+    rods = link_rods.robot_cylinders(cell.robot.chain)
     arm = ArmContact(cell, rods)
     q = anywhere(cell, 1500, 2)
     found, beside = arm.touches(q), bodies_of(D500)
@@ -276,7 +276,7 @@ def test_a_mechanism_against_an_obstacle_and_the_part_against_what_carries_it_no
 def test_links_read_once_are_not_read_again():
     cell = cell_of(BOTH)
     moved = cell_of(text(D500, (900.0, 0.0, 0.0, 0.0, 0.0, 0.0), "part"))
-    again = external_links(moved.external, known=cell.external_links)
+    again = external_links(moved.external, known_links=cell.external_links)
     assert [
         one.body.vertices is other.body.vertices for one, other in zip(again, cell.external_links)
     ] == [True] * 3
@@ -342,7 +342,7 @@ def test_collision_bodies_of_a_urdf_go_with_their_links(tmp_path):
     seen = np.linalg.inv(cell.world(joints))[0] @ cell.external_link_frames(joints)[0]
     for one, frame in zip(cell.external_links, seen):
         corners = one.body.vertices @ frame[:3, :3].T + frame[:3, 3]
-        if one.after == 0 and one.carries == "part":
+        if one.axes_after == 0 and one.carries == "part":
             there = to_world @ at["plate"]
             expected = CORNERS @ there[:3, :3].T + there[:3, 3]
         else:
@@ -376,7 +376,7 @@ def test_a_machine_file_made_of_a_urdf_has_its_bodies(tmp_path):
     )
     q = np.radians([[0.0, 0.0], [20.0, -50.0], [-70.0, 130.0]])
     draft = dataclasses.replace(
-        machine_draft.of_description(described, "URDF bay.urdf"),
+        machine_draft.draft_of_description(described, "URDF bay.urdf"),
         id="mine",
         title="Mine",
         values=np.degrees(q),
@@ -475,7 +475,7 @@ def shortly(name):
 def test_pairs_that_are_left_out_are_these_and_no_others(external):
     """Of every pair of a link and a link beside the robot, or of such a one and the part, by name."""
     cell = cell_of(CELLS[external], platform_diameter=100.0)
-    arm = ArmContact(cell, link_rods.of_robot(cell.robot.chain))
+    arm = ArmContact(cell, link_rods.robot_cylinders(cell.robot.chain))
     names = [arm.links[number] for number in range(len(arm.links))]
     looked_at = {
         (shortly(names[number]).removeprefix("A"), shortly(what))
@@ -523,7 +523,9 @@ def test_link_1_meets_a_post_of_the_rail_it_turns_past(tmp_path):
     post = boxed((60.0, 60.0, 900.0), (0.0, 200.0, 450.0))
     rail = box_file(tmp_path, TRACK, {"base": post})
     cell = cell_of(text(rail, RAIL, "robot"))
-    rods = [[] if link != 1 else link_rods.of_robot(cell.robot.chain)[1] for link in range(7)]
+    rods = [
+        [] if link != 1 else link_rods.robot_cylinders(cell.robot.chain)[1] for link in range(7)
+    ]
     arm = ArmContact(cell, rods)
     q = np.zeros((501, 7))
     q[:, 6], q[:, 0] = (
@@ -557,7 +559,7 @@ def test_the_base_meets_what_a_positioner_swings_at_it_and_a_carriage_runs_into_
     )  # from the tilt axis towards the robot
     table = box_file(tmp_path, D500, {"joint_1": arm_of_table})
     cell = cell_of(text(table, (1300.0, 0.0, -250.0, 0.0, 0.0, 0.0), "part"))
-    rods = link_rods.of_robot(cell.robot.chain)
+    rods = link_rods.robot_cylinders(cell.robot.chain)
     arm = ArmContact(cell, [rods[0], *[[] for _ in range(6)]])
     q = np.zeros((3, 8))
     q[:, 6] = np.radians(

@@ -164,7 +164,7 @@ def draft(tmp_path, name="fanuc-arcmate120ic", **changes):
     """The draft of a shipped machine as the wizard makes it from its URDF."""
     path = tmp_path / "arm.urdf"
     path.write_text(urdf_text.text(machine.load(name)), encoding="utf-8")
-    found = machine_draft.of_description(
+    found = machine_draft.draft_of_description(
         urdf.Urdf(path).between("base_link", "tool0"), "URDF arm.urdf"
     )
     values, poses = seen(machine.load(name))
@@ -206,7 +206,7 @@ def test_what_stands_beside_a_robot_gets_a_file_too(tmp_path, name):
         for one in urdf_cell.UrdfCell(path).external()
         if (base := reference(one.machine).base).startswith(prefix)
     )
-    made_of = machine_draft.of_description(
+    made_of = machine_draft.draft_of_description(
         urdf.Urdf(path).between(meant, f"{prefix}_tool0"), "URDF cell.urdf"
     )
     given = external.load(name)
@@ -233,7 +233,7 @@ def test_what_stands_beside_a_robot_gets_a_file_too(tmp_path, name):
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_every_machine_can_be_copied(name, tmp_path):
-    copy = machine_draft.of_machine(name)
+    copy = machine_draft.draft_of_machine(name)
     (tmp_path / f"{copy.id}.json").write_text(machine_draft.text(copy), encoding="utf-8")
     made, original = machine.load(copy.id, [tmp_path]), machine.load(name)
     q = np.random.default_rng(3).uniform(-3, 3, (20, len(made.axes)))
@@ -312,7 +312,9 @@ def test_meshes_of_a_urdf_are_those_of_the_machine_file(tmp_path):
     )
     path = tmp_path / "arm.urdf"
     path.write_text(text, encoding="utf-8")
-    found = machine_draft.of_description(urdf.Urdf(path).between("base_link", "tool0"), "URDF")
+    found = machine_draft.draft_of_description(
+        urdf.Urdf(path).between("base_link", "tool0"), "URDF"
+    )
     values, poses = seen()
     content = json.loads(
         machine_draft.text(
@@ -332,7 +334,7 @@ def test_meshes_of_a_urdf_are_those_of_the_machine_file(tmp_path):
 
 
 def test_figures_of_an_arm_give_a_draft_of_that_arm():
-    found = machine_draft.of_chain(opw_recognition.chain_of(FANUC.opw), "figures")
+    found = machine_draft.draft_of_chain(opw_recognition.chain_of(FANUC.opw), "figures")
     arm = machine_draft.closed_form(found)
     assert (arm.a1, arm.a2, arm.c3, arm.signs) == (150.0, -250.0, 835.0, FANUC.opw.signs)
     assert np.array_equal(found.base, np.eye(4)) and np.isinf(found.upper).all()

@@ -154,9 +154,9 @@ def test_the_catalogue_tells_what_files_tell_and_leaves_out_what_they_do_not(tmp
     assert {entry.id for entry in known} == {*FILES, "mine"}
     mine = next(entry for entry in known if entry.id == "mine")
     assert (mine.reach, mine.payload, mine.posts) == (2050.0, 50.0, None)
-    assert mine in machine_catalogue.chosen(known, post="kuka", payload=50.0, reach=2050.0)
-    assert mine not in machine_catalogue.chosen(known, payload=50.1)
-    heavy = machine_catalogue.chosen(known, payload=1e-3)
+    assert mine in machine_catalogue.select_machines(known, post="kuka", payload=50.0, reach=2050.0)
+    assert mine not in machine_catalogue.select_machines(known, payload=50.1)
+    heavy = machine_catalogue.select_machines(known, payload=1e-3)
     assert heavy and all(entry.payload is not None for entry in heavy)
     with pytest.raises(InputError, match="'Acme'"):
-        machine_catalogue.chosen(known, maker="Acme")
+        machine_catalogue.select_machines(known, maker="Acme")

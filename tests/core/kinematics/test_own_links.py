@@ -8,7 +8,7 @@ import pytest
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links.contact import ArmContact
-from freecad_am.core.kinematics.links.distance import least_distance
+from freecad_am.core.kinematics.links.distance import min_distance
 from freecad_am.core.kinematics.links.own import OwnLinks, positions
 from freecad_am.core.kinematics.links.rounds import NONE
 from freecad_am.core.kinematics.machines import machine
@@ -22,7 +22,7 @@ SPACING, CLEARANCE = 12.0, 10.0
 def own_of(name, clearance=CLEARANCE):
     robot = machine.load(name)
     limits = robot.limits("maker")
-    rods = link_rods.of_robot(robot.chain)
+    rods = link_rods.robot_cylinders(robot.chain)
     return robot, limits, rods, OwnLinks.of(robot.chain, limits, rods, clearance)
 
 
@@ -88,7 +88,7 @@ def test_links_of_each_other_have_names_and_leave_no_distance():
         ),
         np.eye(4),
     )
-    rods = link_rods.of_robot(cell.robot.chain)
+    rods = link_rods.robot_cylinders(cell.robot.chain)
     contact = ArmContact(cell, rods)
     q = np.random.default_rng(7).uniform(-np.pi, np.pi, (600, 6))
     met = contact.touches(q)
@@ -96,6 +96,6 @@ def test_links_of_each_other_have_names_and_leave_no_distance():
     assert {("Elbow", "base"), ("Wrist 3", "link Elbow")} <= told
     near = met.what >= len(contact.groups)
     assert near.sum() > 20 and all(
-        least_distance(contact, q[[k]], np.zeros(1, dtype=np.int64), 500.0) == 0.0
+        min_distance(contact, q[[k]], np.zeros(1, dtype=np.int64), 500.0) == 0.0
         for k in np.flatnonzero(near)[:5]
     )

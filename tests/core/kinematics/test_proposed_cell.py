@@ -10,7 +10,7 @@ from freecad_am.core.kinematics.cell import resolve
 from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.kinematics.links import robot as robot_links
 from freecad_am.core.kinematics.machines import machine as machines
-from freecad_am.core.kinematics.proposed_cell import BALL, cell_of, proposed, searched
+from freecad_am.core.kinematics.proposed_cell import BALL, cell_of, proposed, search_cell
 from freecad_am.core.parameters.cell import CellParameters
 from tests.core.kinematics.arms import EXAMPLES
 
@@ -31,7 +31,11 @@ def test_every_robot_holds_a_dome_there_within_its_limits(name):
         [np.sin(tilt) * np.cos(round_about), np.sin(tilt) * np.sin(round_about), np.cos(tilt)]
     )
     phi = np.linspace(-np.pi, np.pi, 91)[:, None]
-    poses = cell.pose_frames(BALL * axes, axes).at(np.broadcast_to(phi, (91, 60))).reshape(-1, 4, 4)
+    poses = (
+        cell.pose_frames(BALL * axes, axes)
+        .flange_poses(np.broadcast_to(phi, (91, 60)))
+        .reshape(-1, 4, 4)
+    )
     joints = cell.machine.opw.inverse_branch(poses, cell.branch)
     good = np.isfinite(joints).all(axis=1)
     assert np.abs(cell.machine.chain.forward(joints[good]) - poses[good]).max() < 1e-6
@@ -58,7 +62,11 @@ def test_every_robot_deposits_round_a_dome_on_the_platform_that_is_proposed(name
         [np.sin(tilt) * np.cos(round_about), np.sin(tilt) * np.sin(round_about), np.cos(tilt)]
     )
     phi = np.linspace(-np.pi, np.pi, 73)[:, None]
-    poses = cell.pose_frames(BALL * axes, axes).at(np.broadcast_to(phi, (73, 40))).reshape(-1, 4, 4)
+    poses = (
+        cell.pose_frames(BALL * axes, axes)
+        .flange_poses(np.broadcast_to(phi, (73, 40)))
+        .reshape(-1, 4, 4)
+    )
     joints = cell.machine.opw.inverse_branch(poses, cell.branch)
     good = np.isfinite(joints).all(axis=1)
     tips = cell.machine.chain.forward(joints[good]) @ frames.bryant(tool)
@@ -87,7 +95,7 @@ def test_machines_with_rotary_axes_get_their_set_up_and_none_given_is_the_defaul
 
 
 def test_what_is_kept_for_the_usual_cell_is_what_is_found():
-    assert proposed(CellParameters()) == searched(CellParameters())
+    assert proposed(CellParameters()) == search_cell(CellParameters())
 
 
 def test_a_branch_of_ones_own_is_kept():
@@ -120,7 +128,9 @@ def clear_rotations(parameters, tilt):
         [ConvexHull(one.points).equations for one in link] for link in robot_links.solids(chain)
     ]
     axis = np.array([[np.sin(tilt), 0.0, np.cos(tilt)]])
-    poses = cell.pose_frames(BALL * axis, axis).at(np.linspace(-np.pi, np.pi, 16)[:, None])[:, 0]
+    poses = cell.pose_frames(BALL * axis, axis).flange_poses(
+        np.linspace(-np.pi, np.pi, 16)[:, None]
+    )[:, 0]
     joints = cell.machine.opw.inverse_branch(poses, cell.branch)
     good = np.isfinite(joints).all(axis=1)
     good[good] &= (cell.limits.margin(joints[good])[:, :5] > 0.0).all(axis=1)

@@ -135,9 +135,9 @@ def test_a_contact_is_where_torch_and_box_are(setup):
     rng = np.random.default_rng(3)
     points, size = samples(cell.torch.body, 6000), np.array([200.0, 160.0, 120.0])
     beyond = points[points[:, 2] > NOZZLE.length + 1.0]
-    rods = link_rods.of_robot(cell.robot.chain)
+    rods = link_rods.robot_cylinders(cell.robot.chain)
     joints = np.array([0.3, 0.4, -0.2, 0.5, 0.8, -0.4]) + rng.uniform(-0.12, 0.12, (2000, 6))
-    _, seen = ArmContact(cell, [[] for _ in rods]).seen(joints)
+    _, seen = ArmContact(cell, [[] for _ in rods]).link_frames(joints)
     in_part = np.linalg.inv(seen["part"]) @ seen["nozzle"]
     there = frames.pose(
         np.eye(3), in_part[0] @ [250.0, 0.0, 120.0, 1.0] @ np.eye(4, 3)

@@ -92,7 +92,7 @@ def test_points_of_the_toolpath_are_met_where_they_were_touched():
     settings = CellParameters(setup="tool-on-robot", branch=("front", "up", "flip"), touched=text)
     cell = cells.resolve(settings, frames.pose(np.eye(3), [3.0, -4.0, 10.0]))
     position, tool = POINTS + [0.0, 0.0, 20.0], np.tile([0.0, 0.0, 1.0], (4, 1))
-    flange = cell.pose_frames(position, tool).at(np.zeros(4))
+    flange = cell.pose_frames(position, tool).flange_poses(np.zeros(4))
     arm = KdlLinks(cell.machine)
     wanted = turn.apply(position) + move
     joints = cell.machine.arm.inverse_branch(flange, cell.branch)

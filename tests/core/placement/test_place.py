@@ -71,7 +71,9 @@ def job_of(toolpath):
         toolpath,
         lambda settings: cells.resolve(settings, toolpath.frame, toolpath.family),
         lambda cell: (
-            tuple(map(tuple, link_rods.of_robot(cell.robot.chain))) if cell.machine.free else ()
+            tuple(map(tuple, link_rods.robot_cylinders(cell.robot.chain)))
+            if cell.machine.free
+            else ()
         ),
         PROCESS,
         JointParameters(),

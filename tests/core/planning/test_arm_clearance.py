@@ -70,7 +70,10 @@ def box(low, size, name):
 
 def planned(toolpath, cell, method="layer-by-layer", **more):
     """The motion of a job, and its issues."""
-    rods, parameters = link_rods.of_robot(cell.robot.chain), JointParameters(method=method, **more)
+    rods, parameters = (
+        link_rods.robot_cylinders(cell.robot.chain),
+        JointParameters(method=method, **more),
+    )
     path = plan_joints(toolpath, cell, parameters, cylinders=rods)
     motion, rapids = assemble(
         path,
@@ -117,7 +120,7 @@ def nearest_of(joints, cell, low):
     mount = cell.station @ np.linalg.inv(cell.mount)
     links = [
         (number, on_rods(rods))
-        for number, rods in enumerate(link_rods.of_robot(cell.robot.chain))
+        for number, rods in enumerate(link_rods.robot_cylinders(cell.robot.chain))
         if number and rods
     ]
     for q in joints:
@@ -215,7 +218,7 @@ def test_what_came_too_near_is_refined_again_up_to_the_clearance(dome, monkeypat
     whole, low = beside_the_dome(dome, 120.0, 180.0)
     job = dataclasses.replace(whole, layers=whole.layers[:3])
     cell = cells.resolve(CellParameters(**CELL, branch=UP, arm_clearance=CLEARANCE), job.frame)
-    rods, parameters = link_rods.of_robot(cell.robot.chain), JointParameters(degree=3)
+    rods, parameters = link_rods.robot_cylinders(cell.robot.chain), JointParameters(degree=3)
     taken_back = []
 
     def kept(task, kept, points, places, start):
@@ -255,7 +258,7 @@ OWN = [("ur-ur5e", (470.0, 20.0, -80.0)), ("ur-ur10e", (590.0, -260.0, -180.0))]
 def apart(motion, cell):
     """The least mm between forearm and last link, by PyKDL, at ten places of each move of a motion."""
     arm = KdlLinks(cell.machine)
-    rods = link_rods.of_robot(cell.robot.chain)
+    rods = link_rods.robot_cylinders(cell.robot.chain)
     parts = [
         motion.joints[:-1] + share * np.diff(motion.joints, axis=0)
         for share in np.linspace(0.1, 1.0, 10)
@@ -310,7 +313,7 @@ def test_beads_that_no_rotation_serves_are_found_by_few_points_as_by_all(dome, m
     wall = box(np.array([-140.0, -60.0, -5.0]), np.array([12.0, 120.0, 420.0]), "wall")
     job = dataclasses.replace(dome, surroundings=(*dome.surroundings, wall))
     cell = cells.resolve(CellParameters(**CELL, branch=DOWN, arm_clearance=CLEARANCE), job.frame)
-    kept = arm_kept.build_arm_clearance(job, cell, link_rods.of_robot(cell.robot.chain))
+    kept = arm_kept.build_arm_clearance(job, cell, link_rods.robot_cylinders(cell.robot.chain))
     beads, places = [bead for _, _, bead in job], [(layer, index) for layer, index, _ in job]
     points = gather(beads, cell, arm_clear.POINTS_PER_BEAD)
     found, looked = [], []
@@ -340,9 +343,11 @@ def counting(asked, own=arm_kept.ArmKept.rotations_near):
 
 def test_pairs_of_links_are_found_once_for_the_same_robot_and_anew_for_another():
     robot = cells.resolve(CellParameters(machine="ur-ur5e"), np.eye(4)).robot
-    limits, rods = robot.limits("maker"), link_rods.of_robot(robot.chain)
+    limits, rods = robot.limits("maker"), link_rods.robot_cylinders(robot.chain)
     first = OwnLinks.of(robot.chain, limits, rods, CLEARANCE)
-    assert OwnLinks.of(robot.chain, limits, link_rods.of_robot(robot.chain), CLEARANCE) is first
+    assert (
+        OwnLinks.of(robot.chain, limits, link_rods.robot_cylinders(robot.chain), CLEARANCE) is first
+    )
     other = machine.load("ur-ur10e")
     thick = [[dataclasses.replace(rod, radius=4.0 * rod.radius) for rod in link] for link in rods]
     narrow = dataclasses.replace(
@@ -355,6 +360,8 @@ def test_pairs_of_links_are_found_once_for_the_same_robot_and_anew_for_another()
         (robot.chain, limits, rods, 8.0 * CLEARANCE),
     ]:
         found = OwnLinks.of(chain, among, links, clearance)
-        fresh = own._found.__wrapped__(own._Asked(chain, among, links, clearance))  # not remembered
+        fresh = own._find_pairs.__wrapped__(
+            own._Asked(chain, among, links, clearance)
+        )  # not remembered
         assert found is not first and (found.gap, found.pairs) == (fresh.gap, fresh.pairs)
     assert fresh.pairs != first.pairs

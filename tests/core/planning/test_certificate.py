@@ -63,7 +63,7 @@ def shortest(task, path):
     ).all(axis=2)
     ratio = np.stack(
         [
-            task.condition_at(points.frames.of(np.full(FINE, i)).at(phi), joints[i])
+            task.condition_at(points.frames.of(np.full(FINE, i)).flange_poses(phi), joints[i])
             for i in range(len(points))
         ]
     )
@@ -155,7 +155,7 @@ def test_the_best_course_closes_the_gap(planned):
             best.joints <= limits.upper + 1e-9
         ).all()
         assert np.degrees(np.abs(np.diff(best.phi)).max()) < 30.0
-        flange = points.frames.at(best.phi)
+        flange = points.frames.flange_poses(best.phi)
         np.testing.assert_allclose(task.cell.machine.chain.forward(best.joints), flange, atol=1e-6)
         assert (task.condition_at(flange, best.joints) >= best.threshold).all()
 
@@ -280,7 +280,7 @@ def test_objectives_of_points_one_by_one(planned, objective):
     each = points.each(every)
     turned = np.tile(phi, len(points))
     joints = task.in_range(task.raw_joints(each, turned), each)
-    flange = each.frames.at(turned)
+    flange = each.frames.flange_poses(turned)
     good = np.isfinite(joints).all(axis=1)
     value, ratio = np.full(len(joints), np.inf), np.zeros(len(joints))
     rows = points.each(every[good])

@@ -450,7 +450,7 @@ def test_cells_where_the_arm_touches_are_those_in_which_a_link_does(funnel, setu
     wall = disc(900.0, frames.pose(frames.about_y(np.pi / 2), (260.0, 0.0, 200.0)), "wall")
     task, found, picture = seen(funnel, spin_map.ROTATION, setup=setup)
     cell, at = task.cell, found.columns
-    rods = [link_rods.of_solids(link) for link in robot_links.solids(cell.machine.chain)]
+    rods = [link_rods.solid_cylinders(link) for link in robot_links.solids(cell.machine.chain)]
     beads = beads_of(funnel)[0]
     starts = np.concatenate([[0], np.cumsum([len(bead) for bead in beads])])
     moment = starts[at.bead] + at.point
@@ -563,7 +563,7 @@ def test_cells_beside_a_positioner_are_where_pykdl_finds_them(on_positioner, acr
     )
     whole, reached = KdlArm(cell.machine), 0
     for row, column in np.random.default_rng(3).integers(0, (25, len(at)), (60, 2)):
-        flange = at.points.each(np.array([column])).frames.at(found.phi[row, [column]])
+        flange = at.points.each(np.array([column])).frames.flange_poses(found.phi[row, [column]])
         for branch, q in enumerate(
             spin_map.joints_at(task, at, int(column), float(found.phi[row, column]))
         ):

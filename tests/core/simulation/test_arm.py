@@ -19,7 +19,7 @@ from freecad_am.core.simulation import arm as arms
 @pytest.fixture(scope="module")
 def contact():
     cell = cells.resolve(CellParameters(limits="paper", platform_diameter=0.0), np.eye(4))
-    rods = [link_rods.of_solids(link) for link in robot_links.solids(cell.machine.chain)]
+    rods = [link_rods.solid_cylinders(link) for link in robot_links.solids(cell.machine.chain)]
     return ArmContact(cell, rods, [disc(400.0, np.eye(4), "plate")])
 
 

@@ -35,7 +35,7 @@ def volume(solid):
 PRIMITIVES = {
     "cylinder": (solids.cylinder([1, 2, 3], [1, 2, 13], 5.0, bevel=0.0), np.pi * 25 * 10),
     "cone": (
-        solids.turned([(0, 0), (6, 0), (3, 1), (0, 1)], [5, 0, 0], [0, 12, 0]),
+        solids.revolve([(0, 0), (6, 0), (3, 1), (0, 1)], [5, 0, 0], [0, 12, 0]),
         np.pi * 13 / 3 * (36 + 18 + 9),
     ),
     "capsule": (solids.capsule([0, 0, 0], [0, 8, 0], 3.0, 3.0), np.pi * 9 * 8 + 4 / 3 * np.pi * 27),
@@ -75,10 +75,10 @@ def test_every_machine_is_drawn_where_its_axes_are(name):
                 np.isfinite(solid.points).all()
                 and np.abs(np.linalg.norm(solid.normals, axis=1) - 1.0).max() < 1e-9
             )
-            moved = solid.moved(pose)
+            moved = solid.move(pose)
             assert np.abs(moved.points - (solid.points @ pose[:3, :3].T + pose[:3, 3])).max() < 1e-9
     # the last link reaches the flange and not past it
-    last = np.concatenate([solid.moved(at[-1]).points for solid in made[-1]])
+    last = np.concatenate([solid.move(at[-1]).points for solid in made[-1]])
     flange = chain.forward(np.zeros(chain.axes))
     over = (last - flange[:3, 3]) @ flange[:3, 2]
     assert over.max() <= 1.0 and over.max() > -5.0
@@ -91,7 +91,7 @@ def test_neighbouring_links_of_robots_meet_whatever_the_joints(name):
     for q in np.random.default_rng(3).uniform(-2, 2, (3, 6)):
         at = loaded.chain.links(q)
         clouds = [
-            np.concatenate([solid.moved(pose).points for solid in link])
+            np.concatenate([solid.move(pose).points for solid in link])
             for pose, link in zip(at, made)
         ]
         for axis, (before, after) in enumerate(zip(clouds, clouds[1:])):
@@ -140,7 +140,7 @@ def test_of_tables_the_bearings_stand_still_and_the_last_axis_turns_the_disc_in_
 @pytest.mark.parametrize("name", ROBOTS)
 def test_rods_hold_all_that_is_drawn_of_a_link_and_little_more(name):
     loaded, made = links_of(name)
-    for link, rods in zip(made, link_rods.of_robot(loaded.chain)):
+    for link, rods in zip(made, link_rods.robot_cylinders(loaded.chain)):
         for solid in link:
             assert any(rod.holds(solid.points).all() for rod in rods)
         drawn = sum(volume(solid) for solid in link)
@@ -153,7 +153,10 @@ def test_of_links_with_a_shape_of_their_own_that_is_held():
     loaded, _ = links_of("kuka-kr16-2")
     block = solids.box([300.0, 0.0, 40.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], (700.0, 160.0, 120.0))
     shapes = [None, None, (block.points, block.triangles), None, None, None, None]
-    plain, made = link_rods.of_robot(loaded.chain), link_rods.of_robot(loaded.chain, shapes)
+    plain, made = (
+        link_rods.robot_cylinders(loaded.chain),
+        link_rods.robot_cylinders(loaded.chain, shapes),
+    )
     inside = np.random.default_rng(1).uniform([-50, -80, -20], [650, 80, 100], (2000, 3))
     for points in (block.points, inside):
         assert np.any([rod.holds(points) for rod in made[2]], axis=0).all()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the links of a mechanism beside a robot are made of: boxes and cylinders of its file, or files of shapes."""
+"""Bodies of the links of a mechanism: boxes and cylinders of its file, or shape files."""
 
 from __future__ import annotations
 
@@ -24,20 +24,21 @@ class Primitive(Solid):
     size: tuple[float, ...] = ()
     pose: Array | None = None
 
-    def moved(self, pose: Array) -> Primitive:
-        """The piece moved by a pose (4, 4)."""
-        solid = super().moved(pose)
-        at = pose if self.pose is None else pose @ self.pose
-        return replace(self, points=solid.points, normals=solid.normals, pose=at)
+    def move(self, pose: Array) -> Primitive:
+        """Return the piece moved by a pose (4, 4)."""
+        solid = super().move(pose)
+        new_pose = pose if self.pose is None else pose @ self.pose
+        return replace(self, points=solid.points, normals=solid.normals, pose=new_pose)
 
 
 def link_bodies(
     top: Node, joints: tuple[str, ...], shapes: tuple[LinkShape | None, ...]
 ) -> tuple[Pieces, ...]:
-    """The bodies (axes + 1) of a machine file's links, base first, each in the frame of its link: those under `bodies`, else
-    the file under `shapes` (axes + 1); none where neither tells.
+    """Return the bodies (axes + 1) of a machine file's links, base first, each in the frame of
+    its link.
 
-    Raises InputError 'BAD_MACHINE' for a link or a value that is wrong.
+    From `bodies`, otherwise the file under `shapes` (axes + 1); empty without either. Raises
+    InputError 'BAD_MACHINE' for a wrong link or value.
     """
     links = (BASE, *joints)
     if not top.has("bodies"):
@@ -45,14 +46,14 @@ def link_bodies(
     text = top["bodies"].only("source", *links)
     text["source"].text()
     return tuple(
-        tuple(_piece(piece, last=name == links[-1]) for piece in text[name].items())
+        tuple(_piece(node, is_last=name == links[-1]) for node in text[name].items())
         if text.has(name)
         else ()
         for name in links
     )
 
 
-def _piece(node: Node, last: bool) -> LinkShape | Solid:
+def _piece(node: Node, is_last: bool) -> LinkShape | Solid:
     if node.has("file"):
         return shape_of(node)
     node.only("box", "cylinder", "origin", "rpy")
@@ -63,8 +64,8 @@ def _piece(node: Node, last: bool) -> LinkShape | Solid:
             "give sizes larger than 0: of a box along x, y and z, of a cylinder its diameter and length"
         )
     pose = node.pose() if node.has("origin") or node.has("rpy") else np.eye(4)
-    tone = BRIGHT if last else BODY
-    return (box if kind == "box" else cylinder)(size, tone).moved(pose)
+    tone = BRIGHT if is_last else BODY
+    return (box if kind == "box" else cylinder)(size, tone).move(pose)
 
 
 def box(size: Array, tone: str = BODY) -> Primitive:
@@ -80,7 +81,7 @@ def cylinder(size: Array, tone: str = BODY) -> Primitive:
     radius, half = 0.5 * float(size[0]) / np.cos(np.pi / solids.SIDES), 0.5 * float(size[1])
     outline = [(0.0, 0.0), (radius, 0.0), (radius, 1.0), (0.0, 1.0)]
     return _primitive(
-        solids.turned(outline, [0.0, 0.0, -half], [0.0, 0.0, half], tone), "cylinder", size
+        solids.revolve(outline, [0.0, 0.0, -half], [0.0, 0.0, half], tone), "cylinder", size
     )
 
 

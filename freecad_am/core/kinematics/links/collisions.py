@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Collisions of the arm, and of the platform, with what stands in the cell, whether or not planning kept clearances.
+"""Collisions of the arm, and of the platform, with objects in the cell, whether or not
+planning kept clearances.
 
-As links are drawn, less `PENETRATION`, they tell what comes near. Links that no manufacturer's shape is known of are drawn
-from the kinematics alone, and the cylinders about a true shape are wider than it is; so an error needs the core of a link,
-`CORE` of its radius, in something. The core lies about the line that a link has to follow: from the elbow on, where axes
-meet at angles; before it, links of parallel axes may stand aside of it. A forearm that is hollow, forked or bent aside is
-not along all of that line: of 186 robots built in, the maker's range of the wrist lets the flanges of 13 pass through the line
-itself, those of 19 through a third of what is drawn about it, those of 23, the default robot's among them, through half.
-Where the flange passes through the core, the core proves nothing. What is in the inner half of a link, `DEEP`, may be in the link.
+Links as drawn, less `PENETRATION`, show near objects. Links without a manufacturer's
+shape are drawn from the kinematics only, and the cylinders around a true shape are wider
+than it; so an error needs the core of a link, `CORE` of its radius, inside an object. The
+core follows the line that a link has to follow: from the elbow on, where axes meet at
+angles; before it, links of parallel axes may be beside that line. A hollow, forked or
+bent forearm does not follow all of that line: of 186 built-in robots, the manufacturer's
+range of the wrist lets the flanges of 13 pass through the line itself, of 19 through a
+third of the drawn width, of 23, including the default robot, through half. Where the
+flange passes through the core, the core proves nothing. An object in the inner half of a
+link, `DEEP`, may be in the link.
 """
 
 from __future__ import annotations
@@ -29,17 +33,19 @@ from ...types import Array, Index
 from ..cell import Cell
 from ..machines.machine import MAKER, Machine
 from .contact import PLATFORM, ArmContact, Touches
-from .own import placed
+from .own import place_cylinder
 from .robot import flange_radius
-from .rounds import NONE, Solid, of_cylinder
+from .rounds import NONE, Solid, round_solid
 
-PENETRATION = 0.5  # mm; faces are triangles, and what is no deeper rests on one another
+PENETRATION = 0.5  # mm; faces are triangles, and a shallower overlap is contact, not collision
 CORE = 1.0 / 3.0  # of the radius of a link
 DEEP = 0.5  # of the radius of a link
-CERTAIN = 4  # the first link from the elbow on, which runs along the line drawn of it
-PLATFORM_DEPTH = 5.0  # mm below its plane that a platform which stands is made of, at the least
+CERTAIN = 4  # the first link from the elbow on, which follows its drawn line
+PLATFORM_DEPTH = 5.0  # minimum thickness of a fixed platform, mm
 FACE = 0.1  # mm, how thick the face of a flange is
-WRIST_STEP = np.radians(2.0)  # of the positions at which a flange is looked at against the forearm
+WRIST_STEP = np.radians(
+    2.0
+)  # step of the positions at which a flange is tested against the forearm
 NOZZLE_AFTER = 2  # the number of the nozzle in `ArmContact.links`, after the axes
 
 Cylinders = Sequence[Sequence[Cylinder]]
@@ -47,9 +53,12 @@ Cylinders = Sequence[Sequence[Cylinder]]
 
 @dataclass(frozen=True)
 class Collision:
-    """A link, or the platform, in something. rows: (n,) the joint vectors at which, rising, empty of the platform, which is in
-    it all the time. sure: whether the core of the link is in it, and the link surely is where its core is; deep: whether the
-    inner half of what is drawn of the link is."""
+    """A link, or the platform, inside an object.
+
+    rows: (n,) the joint vectors of the collision, rising, empty for the platform, which is
+    inside it all the time. sure: whether the core of the link is inside and the link surely
+    is where its core is. deep: whether the inner half of the drawn link is inside.
+    """
 
     link: str
     what: str
@@ -65,43 +74,59 @@ def arm_collisions(
     deposit: Obstacles | None,
     joints: Array,
     moment: Index,
-    known: Sequence[bool] = (),
+    true_shapes: Sequence[bool] = (),
 ) -> list[Collision]:
-    """What the links are in with joints (k, axes), when `moment` (k,) points of the deposit are there: one entry for each
-    link and thing, sure ones first. cylinders: of each link, base first. known: whether a link has its true shape, none
-    where this is not given."""
+    """Return the objects that the links are in with joints (k, axes), with `moment` (k,) points
+    of the deposit present.
+
+    One entry for each link and object, sure ones first. cylinders: for each link, base first.
+    true_shapes: whether a link has its true shape, none by default.
+    """
     drawn = _contact(cell, cylinders, bodies, deposit, 1.0)
-    near = drawn.touches(joints, moment)
-    rows = np.flatnonzero(near.any)
+    touching = drawn.touches(joints, moment)
+    rows = np.flatnonzero(touching.any)
     if not len(rows):
         return []
     contact = _contact(cell, cylinders, bodies, deposit, CORE)
     core = contact.touches(joints[rows], moment[rows])
-    proofs = [_proves(contact, number, known) for number in range(len(contact.links))]
-    found = [
-        Collision(contact.links[link], contact.names[what], here, True, True)
-        for link, what, here in _pairs(core, rows)
+    proofs = [_is_proof(contact, number, true_shapes) for number in range(len(contact.links))]
+    collisions = [
+        Collision(contact.links[link], contact.names[what], hit_rows, True, True)
+        for link, what, hit_rows in _pairs(core, rows)
         if proofs[link] and _is_known(contact, what, proofs)
     ]
-    if not found:
+    if not collisions:
         inner = _contact(cell, cylinders, bodies, deposit, DEEP).touches(joints[rows], moment[rows])
-        deep = {(link, what): here for link, what, here in _pairs(inner, rows)}
-        found = [
+        deep = {(link, what): hit_rows for link, what, hit_rows in _pairs(inner, rows)}
+        collisions = [
             Collision(
                 drawn.links[link],
                 drawn.names[what],
-                deep.get((link, what), here),
+                deep.get((link, what), hit_rows),
                 False,
                 (link, what) in deep,
             )
-            for link, what, here in _pairs(Touches(near.link[rows], near.what[rows]), rows)
+            for link, what, hit_rows in _pairs(
+                Touches(touching.link[rows], touching.what[rows]), rows
+            )
         ]
-    return sorted(found, key=lambda one: (not one.deep, -len(one.rows), one.link, one.what))
+    return sorted(
+        collisions,
+        key=lambda collision: (
+            not collision.deep,
+            -len(collision.rows),
+            collision.link,
+            collision.what,
+        ),
+    )
 
 
 def platform_collisions(cell: Cell, bodies: Sequence[Body]) -> list[Collision]:
-    """The bodies that reach into the platform: the plate below its plane, down to the flange where a robot carries it. What is
-    deposited below it is rejected before beads are planned."""
+    """Return the bodies that reach into the platform: the plate below its plane, down to the
+    flange if a robot carries it.
+
+    Deposit below the plane is rejected before beads are planned.
+    """
     plate = plate_of(cell)
     if plate is None:
         return []
@@ -118,14 +143,16 @@ def platform_collisions(cell: Cell, bodies: Sequence[Body]) -> list[Collision]:
 
 
 def plate_of(cell: Cell) -> Solid | None:
-    """The platform in the frame that sits on it, smaller by what may be in it; None without one."""
+    """Return the platform in its own frame, reduced by the allowed penetration; None without
+    one.
+    """
     radius = 0.5 * cell.platform_diameter - PENETRATION
     if radius <= 0.0:
         return None
     depth = float(cell.carried[2, 3]) if cell.arrangement.carries_part else PLATFORM_DEPTH
     below = max(depth, 2.0 * PENETRATION)
     plate = Cylinder(np.array([0.0, 0.0, -below]), np.array([0.0, 0.0, -PENETRATION]), radius)
-    return of_cylinder(plate, 0.0)
+    return round_solid(plate, 0.0)
 
 
 def _contact(
@@ -135,8 +162,8 @@ def _contact(
     deposit: Obstacles | None,
     share: float,
 ) -> ArmContact:
-    """What the links touch, of a share of their radius."""
-    inner = [[_inner(one, share) for one in link] for link in cylinders]
+    """Return the contact test for links with a share of their radius."""
+    inner = [[_inner(cylinder, share) for cylinder in link] for link in cylinders]
     return ArmContact(cell, inner, bodies, deposit, -PENETRATION, holders=True)
 
 
@@ -145,32 +172,44 @@ def _inner(cylinder: Cylinder, share: float) -> Cylinder:
 
 
 def _pairs(touches: Touches, rows: Index) -> list[tuple[int, int, Index]]:
-    """Each pair of link and thing that touch, by their numbers, with those of the rows at which they do."""
+    """Return each pair of touching link and object, by their numbers, with the rows at which
+    they touch.
+    """
     link, what = touches.link, touches.what
     pairs = sorted({pair for pair in zip(link.tolist(), what.tolist()) if pair[0] != NONE})
-    return [(one, other, rows[(link == one) & (what == other)]) for one, other in pairs]
+    return [
+        (link_number, object_number, rows[(link == link_number) & (what == object_number)])
+        for link_number, object_number in pairs
+    ]
 
 
-def _proves(contact: ArmContact, link: int, known: Sequence[bool]) -> bool:
-    """Whether a core that is in something tells that the link is. Part, torch and what stands beside the robot are known by
-    cylinders about them alone; nozzles by themselves."""
+def _is_proof(contact: ArmContact, link: int, true_shapes: Sequence[bool]) -> bool:
+    """Return whether a core inside an object proves that the link is.
+
+    Part, torch and external links are known only by cylinders around them; nozzles exactly.
+    """
     axes = contact.cell.robot.chain.axes
     if link > axes:
         return link == axes + NOZZLE_AFTER
-    if link < CERTAIN and not (link < len(known) and known[link]):
+    if link < CERTAIN and not (link < len(true_shapes) and true_shapes[link]):
         return False
     return link != axes - 2 or not flange_passes(contact.cell.robot, contact.solids[link])
 
 
 def _is_known(contact: ArmContact, what: int, proofs: Sequence[bool]) -> bool:
-    """Whether a thing that is touched is where it is looked at: links of the robot where their cores are proofs."""
-    other = what - len(contact.groups)
-    return other < 0 or proofs[other]
+    """Return whether a touched object is certainly where it is modelled: links of the robot if
+    their cores are proofs.
+    """
+    link_number = what - len(contact.groups)
+    return link_number < 0 or proofs[link_number]
 
 
 def flange_passes(robot: Machine, forearm: Sequence[Solid]) -> bool:
-    """Whether the maker's range of the last axis but one lets the face of the flange pass through the link before that axis,
-    as these solids in its frame show it."""
+    """Return whether the manufacturer's range of the last axis but one lets the flange face pass
+    through the link before it.
+
+    forearm: the solids of that link in its frame.
+    """
     chain, wrist = robot.chain, robot.chain.axes - 2
     limits = robot.limit_sets.get(MAKER, next(iter(robot.limit_sets.values())))
     low, high = limits.lower[wrist], limits.upper[wrist]
@@ -179,6 +218,8 @@ def flange_passes(robot: Machine, forearm: Sequence[Solid]) -> bool:
     joints[:, wrist] = np.linspace(low, high, len(joints))
     links = chain.links(joints)
     point, out = chain.flange[:3, 3], chain.flange[:3, 2]
-    disc = of_cylinder(Cylinder(point - FACE * out, point, flange_radius(chain)), 0.0)
-    face = placed(disc, links[:, -1])
-    return any(bool(nearer(face, placed(one, links[:, wrist]), FACE).any()) for one in forearm)
+    disc = round_solid(Cylinder(point - FACE * out, point, flange_radius(chain)), 0.0)
+    face = place_cylinder(disc, links[:, -1])
+    return any(
+        bool(nearer(face, place_cylinder(solid, links[:, wrist]), FACE).any()) for solid in forearm
+    )

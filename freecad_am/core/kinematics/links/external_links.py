@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The links of the mechanisms beside a robot, positioner and track, as bodies that move with their axes."""
+"""The links of positioner and track as bodies that move with their axes."""
 
 from __future__ import annotations
 
@@ -20,17 +20,18 @@ from .shape import LinkShape
 from .solids import Solid
 
 Read = Callable[[LinkShape], Mesh | None]
-EDGE = 50.0  # mm, longest edge of a triangle that nozzles are looked at against
-STANDS = -1  # in place of the axis of a link that stands on the floor
+EDGE = 50.0  # mm, longest edge of a triangle against which nozzles are tested
+STANDS = -1  # in place of the axis of a link fixed to the floor
 
 
 @dataclass(frozen=True, eq=False)
 class ExternalLink:
-    """A link of a mechanism: `body`, by the name that messages call it, and the cylinders that hold it, in its frame.
+    """A link of a mechanism: `body`, named as in messages, and the cylinders around it, in its
+    frame.
 
-    machine: the id of the mechanism; mechanism, link: its place among all, and which of its links it is, 0 its base.
-    axis: of those beside the robot the one that moves it last, STANDS where none does. carries: `part` or `robot`; after:
-    how many axes are between it and what it carries.
+    machine: the id of the mechanism. mechanism, link: its index among all, and the index of
+    the link, 0 for its base. axis: the external axis that moves it last, STANDS if none does.
+    carries: `part` or `robot`. axes_after: number of axes between it and its load.
     """
 
     machine: str
@@ -38,13 +39,13 @@ class ExternalLink:
     link: int
     axis: int
     carries: str
-    after: int
+    axes_after: int
     body: Body
     cylinders: tuple[Cylinder, ...]
 
     @cached_property
     def solid(self) -> Bodies:
-        """The body as nozzles are looked at against it."""
+        """The body as tested against nozzles."""
         return build_bodies([self.body], self.body.vertices, 0.0, EDGE)
 
     @property
@@ -54,74 +55,97 @@ class ExternalLink:
 
 
 def external_links(
-    external: ExternalAxes | None, read: Read | None = None, known: Sequence[ExternalLink] = ()
+    external: ExternalAxes | None,
+    read_shape: Read | None = None,
+    known_links: Sequence[ExternalLink] = (),
 ) -> tuple[ExternalLink, ...]:
-    """The links of all mechanisms whose files tell what they are made of. read: of a file of shapes its triangles in the
-    frame of the link, None where there are none; those of mechanisms that are `known` are not read again."""
+    """Return the links of all mechanisms whose files describe them.
+
+    read_shape: returns the triangles of a shape file in the frame of the link, None without
+    any. Mechanisms among `known_links` are not read again.
+    """
     if external is None:
         return ()
-    found = []
-    for number, one in enumerate(external.mechanisms):
-        pieces = one.machine.bodies or ((),) * (one.machine.chain.axes + 1)
-        for link, parts in enumerate(pieces):
-            before = next(
-                (each for each in known if (each.machine, each.link) == (one.machine.id, link)),
+    links = []
+    for number, mechanism in enumerate(external.mechanisms):
+        pieces_of_links = mechanism.machine.bodies or ((),) * (mechanism.machine.chain.axes + 1)
+        for link, link_pieces in enumerate(pieces_of_links):
+            known_link = next(
+                (
+                    candidate
+                    for candidate in known_links
+                    if (candidate.machine, candidate.link) == (mechanism.machine.id, link)
+                ),
                 None,
             )
-            made = (before.body, before.cylinders) if before is not None else _made(parts, read)
-            if made is None:
+            body_and_cylinders = (
+                (known_link.body, known_link.cylinders)
+                if known_link is not None
+                else _merge_pieces(link_pieces, read_shape)
+            )
+            if body_and_cylinders is None:
                 continue
-            name = f"{one.machine.title} {'base' if link == 0 else f'e{one.values[link - 1] + 1}'}"
-            found.append(
+            name = f"{mechanism.machine.title} {'base' if link == 0 else f'e{mechanism.values[link - 1] + 1}'}"
+            links.append(
                 ExternalLink(
-                    one.machine.id,
+                    mechanism.machine.id,
                     number,
                     link,
                     _axis(external, number, link),
-                    one.carries,
+                    mechanism.carries,
                     _after(external, number, link),
-                    dataclasses.replace(made[0], name=name),
-                    made[1],
+                    dataclasses.replace(body_and_cylinders[0], name=name),
+                    body_and_cylinders[1],
                 )
             )
-    return tuple(found)
+    return tuple(links)
 
 
-def of_unknown_shape(external: ExternalAxes, links: Sequence[ExternalLink]) -> list[str]:
-    """Titles of the mechanisms of which nothing is known to be kept clear; links: those that are known."""
-    known = {one.mechanism for one in links}
+def titles_without_shape(external: ExternalAxes, links: Sequence[ExternalLink]) -> list[str]:
+    """Return the titles of mechanisms without known shape; links: the known ones."""
+    described = {link.mechanism for link in links}
     return [
-        one.machine.title for number, one in enumerate(external.mechanisms) if number not in known
+        link.machine.title
+        for number, link in enumerate(external.mechanisms)
+        if number not in described
     ]
 
 
 def _axis(external: ExternalAxes, number: int, link: int) -> int:
-    """Which of the external axes moves a link of a mechanism last."""
-    one = external.mechanisms[number]
+    """Return the index of the external axis that moves a link of a mechanism last."""
+    mechanism = external.mechanisms[number]
     if link:
-        return int(one.values[link - 1])
-    return STANDS if one.under is None else int(external.mechanisms[one.under].values[-1])
+        return int(mechanism.values[link - 1])
+    return (
+        STANDS if mechanism.under is None else int(external.mechanisms[mechanism.under].values[-1])
+    )
 
 
 def _after(external: ExternalAxes, number: int, link: int) -> int:
-    """How many axes are between a link of a mechanism and what it carries in the end."""
-    above = [one for one in external.mechanisms if one.under == number]
+    """Return the number of axes between a link of a mechanism and its final load."""
+    above = [mechanism for mechanism in external.mechanisms if mechanism.under == number]
     count = external.mechanisms[number].machine.chain.axes - link
-    return count + sum(one.machine.chain.axes for one in above)
+    return count + sum(mechanism.machine.chain.axes for mechanism in above)
 
 
-def _made(pieces: Pieces, read: Read | None) -> tuple[Body, tuple[Cylinder, ...]] | None:
-    """The pieces of a link as one body, without a name, and the cylinders that hold them; None without any."""
-    meshes = [mesh for mesh in (_mesh(piece, read) for piece in pieces) if mesh is not None]
+def _merge_pieces(
+    shapes: Pieces, read_shape: Read | None
+) -> tuple[Body, tuple[Cylinder, ...]] | None:
+    """Return the shapes of a link as one unnamed body, and the cylinders around them; None
+    without any.
+    """
+    meshes = [mesh for mesh in (_mesh(shape, read_shape) for shape in shapes) if mesh is not None]
     if not meshes:
         return None
-    first = np.cumsum([0, *(len(points) for points, _ in meshes)])
-    triangles = [triangles + start for (_, triangles), start in zip(meshes, first, strict=False)]
+    first_point = np.cumsum([0, *(len(points) for points, _ in meshes)])
+    triangles = [
+        triangles + start for (_, triangles), start in zip(meshes, first_point, strict=False)
+    ]
     body = Body("", np.concatenate([points for points, _ in meshes]), np.concatenate(triangles))
     return body, tuple(cylinder for mesh in meshes for cylinder in enclosing_row(*mesh))
 
 
-def _mesh(piece: LinkShape | Solid, read: Read | None) -> Mesh | None:
-    if isinstance(piece, Solid):
-        return piece.points, piece.triangles
-    return None if read is None else read(piece)
+def _mesh(shape: LinkShape | Solid, read_shape: Read | None) -> Mesh | None:
+    if isinstance(shape, Solid):
+        return shape.points, shape.triangles
+    return None if read_shape is None else read_shape(shape)

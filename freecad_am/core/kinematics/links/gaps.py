@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""By how much links clear what they are looked at against, and how that changes while the joints move.
+"""Clearance of links from the objects tested against them, and its rate while the joints
+move.
 
-A gap is that between what `ArmContact` says to touch: 0 is where it begins to. Where two solids meet it is less than 0, by
-how far they reach into each other along the direction in which something smaller than the link is nearest: exactly that
-where a flat face or the side of a link is met, no less where edges are.
+A gap is 0 where contact begins in the sense of `ArmContact`. Where two solids overlap it
+is negative: their penetration along the direction in which a reduced link is nearest.
+That is exact where a flat face or the side of a link is met, and never smaller where
+edges are.
 """
 
 from __future__ import annotations
@@ -21,21 +23,24 @@ from ...geometry.columns import dots, lengths
 from ...types import Array, Index, Mask
 from .contact import PART, TORCH, ArmContact, Group
 from .nozzle_body import NOZZLE
-from .own import placed
+from .own import place_cylinder
 from .rounds import Solid
 
 OFF_RADIUS, OFF_END = (
     0.9,
     0.4,
-)  # shares that what is smaller than a link may lack of its radius, and of its length at an end
-SHARES = (0.2, 1.0)  # of these, one after the other
-DEEPEST = 1e-3  # mm that two solids which meet reach into each other, at the least
+)  # shares by which a reduced link is smaller in radius, and in length at an end
+SHARES = (0.2, 1.0)  # shares of these, tried in turn
+MIN_DEPTH = 1e-3  # mm that two solids which meet reach into each other, at the least
 
 
 @dataclass(frozen=True)
 class Pair:
-    """A link, by its number, and what it is looked at against: a group, or another link, by its number too. moved: by how
-    many joints of the robot, from its base on, the link and the other are moved."""
+    """A link, by its number, and its counterpart: a group, or another link by its number.
+
+    moved: number of joints of the robot, from its base on, that move the link and the
+    counterpart.
+    """
 
     link: int
     against: Group | int
@@ -44,7 +49,7 @@ class Pair:
 
 @dataclass(frozen=True)
 class Gaps:
-    """Links of a robot in its cell, looked at as far as `reach` mm."""
+    """Links of a robot in its cell, tested up to `reach` mm."""
 
     contact: ArmContact
     reach: float
@@ -53,17 +58,17 @@ class Gaps:
     def pairs(self) -> tuple[Pair, ...]:
         """All that can touch."""
         of_group = [
-            Pair(link, group, (self._moved(link), self._moved_group(group)))
+            Pair(link, group, (self._moving_joints(link), self._moved_group(group)))
             for group in self.contact.groups
             for link in group.links
             if self.contact.solids[link]
         ]
         return (
             *of_group,
-            *(Pair(outer, inner, (outer, inner)) for outer, inner in self.contact.own.pairs),
+            *(Pair(outer, inner, (outer, inner)) for outer, inner in self.contact.own_links.pairs),
         )
 
-    def _moved(self, link: int) -> int:
+    def _moving_joints(self, link: int) -> int:
         axes = self.contact.cell.robot.chain.axes
         if link <= axes:
             return link
@@ -74,151 +79,181 @@ class Gaps:
         carried = PART if self.contact.cell.torch_stands else NOZZLE
         return self.contact.cell.robot.chain.axes if group.seen_from == carried else 0
 
-    def at(self, joints: Array, rates: Array, moment: Index, wanted: Mask) -> tuple[Array, Array]:
-        """With joints (k, axes) that change by rates (k, axes), where so many points (k,) of the deposit are there: the gaps
-        of all pairs (p, k), mm, and how these change; `reach` and 0 of those that are not wanted (p, k), or farther off."""
-        links, seen_from = self.contact.seen(joints)
+    def gaps_and_rates(
+        self, joints: Array, rates: Array, moment: Index, is_requested: Mask
+    ) -> tuple[Array, Array]:
+        """Return the gaps of all pairs (p, k), mm, and their rates, for joints (k, axes) with rates
+        (k, axes).
+
+        moment: (k,) number of points of the deposit present. `reach` and 0 for pairs not
+        requested (p, k), or farther away.
+        """
+        links, seen_from = self.contact.link_frames(joints)
         axes = self.contact.cell.machine.chain.frames(joints)
-        gap, change = np.full(wanted.shape, self.reach), np.zeros(wanted.shape)
+        gap, change = np.full(is_requested.shape, self.reach), np.zeros(is_requested.shape)
         for row, pair in enumerate(self.pairs):
-            some = np.flatnonzero(wanted[row])
-            some = some[self._near(pair, links[some], seen_from, some)]
-            if not len(some):
+            rows = np.flatnonzero(is_requested[row])
+            rows = rows[self._near(pair, links[rows], seen_from, rows)]
+            if not len(rows):
                 continue
             if isinstance(pair.against, Group):
-                found = self._from_group(
-                    pair, links[some], seen_from[pair.against.seen_from][some], moment[some]
+                pair_gaps = self._from_group(
+                    pair, links[rows], seen_from[pair.against.seen_from][rows], moment[rows]
                 )
             else:
-                found = self._from_link(pair, links[some])
-            gap[row, some], normal, place = found
+                pair_gaps = self._from_link(pair, links[rows])
+            gap[row, rows], normal, position = pair_gaps
             motion = sum(
                 sign
                 * _velocity(
-                    axes.directions[some],
-                    axes.origins[some],
-                    place,
-                    rates[some],
+                    axes.directions[rows],
+                    axes.origins[rows],
+                    position,
+                    rates[rows],
                     moved,
                     self._sliding,
                 )
                 for sign, moved in zip((1.0, -1.0), pair.moved)
                 if moved
             )
-            change[row, some] = dots(normal, np.broadcast_to(motion, normal.shape))
+            change[row, rows] = dots(normal, np.broadcast_to(motion, normal.shape))
         return gap, change
 
     @property
     def _sliding(self) -> Mask:
         return self.contact.cell.machine.chain.sliding
 
-    def _near(self, pair: Pair, links: Array, seen_from: dict[str, Array], some: Index) -> Mask:
-        """(k,) whether balls about both are within reach."""
+    def _near(self, pair: Pair, links: Array, seen_from: dict[str, Array], rows: Index) -> Mask:
+        """Return whether (k,) balls around both are within reach."""
         if isinstance(pair.against, Group):
-            frame, other = (
-                seen_from[pair.against.seen_from][some],
+            frame, other_ball = (
+                seen_from[pair.against.seen_from][rows],
                 (pair.against.centre, pair.against.radius),
             )
-            ball, more = self.contact.balls[pair.link], 0.0
+            ball, extra = self.contact.balls[pair.link], 0.0
         else:
-            own = self.contact.own
-            frame, other = links[:, pair.against], own.balls[pair.against]
-            ball, more = own.balls[pair.link], own.gap
+            own_links = self.contact.own_links
+            frame, other_ball = links[:, pair.against], own_links.balls[pair.against]
+            ball, extra = own_links.balls[pair.link], own_links.gap
         link = links[:, pair.link]
-        away = (
+        offset = (
             link[:, :3, :3] @ ball[0]
             + link[:, :3, 3]
-            - frame[:, :3, :3] @ other[0]
+            - frame[:, :3, :3] @ other_ball[0]
             - frame[:, :3, 3]
         )
-        near: Mask = lengths(away) - ball[1] - other[1] - more < self.reach
-        return near
+        is_near: Mask = lengths(offset) - ball[1] - other_ball[1] - extra < self.reach
+        return is_near
 
     def _from_group(
         self, pair: Pair, link: Array, frame: Array, moment: Index
     ) -> tuple[Array, Array, Array]:
-        """Gaps (k,), directions (k, 3) in which they open and the places (k, 3) of the link where they are."""
+        """Return gaps (k,), directions (k, 3) in which they open and the positions (k, 3) of the
+        link where they are.
+        """
         assert isinstance(pair.against, Group)
-        seen = frames.inverse(frame) @ link[:, pair.link]
-        found = [
-            self._of_solid(pair.against, one, seen, moment)
-            for one in self.contact.solids[pair.link]
+        link_frame = frames.inverse(frame) @ link[:, pair.link]
+        solid_gaps = [
+            self._solid_gap(pair.against, solid, link_frame, moment)
+            for solid in self.contact.solids[pair.link]
         ]
-        gap, normal, place = _least(found)
+        gap, normal, position = _smallest_gap(solid_gaps)
         turn = frame[:, :3, :3]
-        return gap, _turned(turn, normal), _turned(turn, place) + frame[:, :3, 3]
+        return gap, _rotate(turn, normal), _rotate(turn, position) + frame[:, :3, 3]
 
-    def _of_solid(
-        self, group: Group, one: Solid, seen: Array, moment: Index
+    def _solid_gap(
+        self, group: Group, solid: Solid, link_frame: Array, moment: Index
     ) -> tuple[Array, Array, Array]:
-        turn = seen[:, :3, :3]
-        tip, axis = turn @ one.tip + seen[:, :3, 3], turn @ one.axis
-        gap, normal, place = group.scene.nearest(one.solid, tip, axis, moment, self.reach)
+        turn = link_frame[:, :3, :3]
+        tip, axis = turn @ solid.tip + link_frame[:, :3, 3], turn @ solid.axis
+        gap, normal, position = group.scene.nearest(solid.solid, tip, axis, moment, self.reach)
         for share in SHARES:
             met = np.flatnonzero(gap == 0.0)
             if len(met):
-                gap[met], normal[met], place[met] = _reaching(
-                    group, one.solid, share, tip[met], axis[met], moment[met]
+                gap[met], normal[met], position[met] = _penetration_gap(
+                    group, solid.solid, share, tip[met], axis[met], moment[met]
                 )
-        gap[gap == 0.0] = -one.solid.reach
-        return gap, normal, place
+        gap[gap == 0.0] = -solid.solid.reach
+        return gap, normal, position
 
     def _from_link(self, pair: Pair, link: Array) -> tuple[Array, Array, Array]:
         assert isinstance(pair.against, int)
-        own, found = self.contact.own, []
-        for one in own.solids[pair.link]:
-            for other in own.solids[pair.against]:
-                there, way = nearest(
-                    placed(one, link[:, pair.link]), placed(other, link[:, pair.against])
+        own_links, solid_gaps = self.contact.own_links, []
+        for solid_a in own_links.solids[pair.link]:
+            for solid_b in own_links.solids[pair.against]:
+                foot, separation = nearest(
+                    place_cylinder(solid_a, link[:, pair.link]),
+                    place_cylinder(solid_b, link[:, pair.against]),
                 )
-                size = lengths(way)
-                found.append(
-                    (size - own.gap, way / np.where(size > 0.0, size, 1.0)[:, None], there + way)
+                size = lengths(separation)
+                solid_gaps.append(
+                    (
+                        size - own_links.gap,
+                        separation / np.where(size > 0.0, size, 1.0)[:, None],
+                        foot + separation,
+                    )
                 )
-        gap, normal, place = _least(found)
-        return np.minimum(gap, self.reach), np.where(gap[:, None] < self.reach, normal, 0.0), place
+        gap, normal, position = _smallest_gap(solid_gaps)
+        return (
+            np.minimum(gap, self.reach),
+            np.where(gap[:, None] < self.reach, normal, 0.0),
+            position,
+        )
 
 
-def _reaching(
+def _penetration_gap(
     group: Group, solid: Frustum, share: float, tip: Array, axis: Array, moment: Index
 ) -> tuple[Array, Array, Array]:
-    """Of solids (k,) that meet a group, as `Scene.nearest` tells it of what is smaller than they are by a share of what it
-    may lack; the gaps those of the solids themselves along these directions. 0 where what is smaller meets the group too."""
+    """Return, for solids (k,) that meet a group, the gaps of the solids along the directions of
+    `Scene.nearest`.
+
+    Those directions are for reduced solids, smaller by a share of the allowed reduction. The
+    gap is 0 where the reduced solid meets the group too.
+    """
     thin = share * OFF_RADIUS * (solid.radius + solid.slope * float(np.min(solid.low)))
     short = share * OFF_END * (solid.high - float(np.min(solid.low)))
     smaller = Frustum(solid.radius - thin, solid.slope, solid.low + short, solid.high - short)
-    gap, normal, place = group.scene.nearest(smaller, tip, axis, moment, 2.0 * (thin + short))
+    gap, normal, position = group.scene.nearest(smaller, tip, axis, moment, 2.0 * (thin + short))
     along = dots(normal, axis)
     across = normal - along[:, None] * axis
     size = lengths(across)
-    gap = np.where(gap > 0.0, np.minimum(gap - thin * size - short * np.abs(along), -DEEPEST), 0.0)
-    place = (
-        place
+    gap = np.where(
+        gap > 0.0, np.minimum(gap - thin * size - short * np.abs(along), -MIN_DEPTH), 0.0
+    )
+    position = (
+        position
         - thin * across / np.where(size > 0.0, size, 1.0)[:, None]
         - (short * np.sign(along))[:, None] * axis
     )
-    return gap, normal, place
+    return gap, normal, position
 
 
-def _least(found: Sequence[tuple[Array, Array, Array]]) -> tuple[Array, Array, Array]:
-    """Of gaps (k,), directions and places (k, 3) those of the least gap each."""
-    which, each = np.argmin([gap for gap, _, _ in found], axis=0), np.arange(len(found[0][0]))
-    gap, normal, place = (np.stack(columns)[which, each] for columns in zip(*found))
-    return gap, normal, place
+def _smallest_gap(candidates: Sequence[tuple[Array, Array, Array]]) -> tuple[Array, Array, Array]:
+    """Return, of several gaps (k,), directions and positions (k, 3), those of the smallest gap."""
+    best, row = (
+        np.argmin([gap for gap, _, _ in candidates], axis=0),
+        np.arange(len(candidates[0][0])),
+    )
+    gap, normal, position = (np.stack(columns)[best, row] for columns in zip(*candidates))
+    return gap, normal, position
 
 
-def _turned(turn: Array, vectors: Array) -> Array:
-    """Vectors (k, 3) turned by matrices (k, 3, 3)."""
+def _rotate(turn: Array, vectors: Array) -> Array:
+    """Rotate vectors (k, 3) by matrices (k, 3, 3)."""
     return np.asarray(np.einsum("kij,kj->ki", turn, vectors))
 
 
 def _velocity(
-    directions: Array, origins: Array, place: Array, rates: Array, moved: int, sliding: Mask
+    directions: Array, origins: Array, position: Array, rates: Array, moved: int, sliding: Mask
 ) -> Array:
-    """(k, 3) at what rate places (k, 3) move with the first `moved` joints, whose axes are at (k, axes, 3)."""
-    total = np.zeros_like(place)
+    """Return the velocities (k, 3) of positions (k, 3) moved by the first `moved` joints, with
+    axes at (k, axes, 3).
+    """
+    total = np.zeros_like(position)
     for joint in range(moved):
         direction = directions[:, joint]
-        way = direction if sliding[joint] else np.cross(direction, place - origins[:, joint])
-        total += rates[:, joint, None] * way
+        velocity = (
+            direction if sliding[joint] else np.cross(direction, position - origins[:, joint])
+        )
+        total += rates[:, joint, None] * velocity
     return total

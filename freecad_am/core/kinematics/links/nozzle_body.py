@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The nozzle as triangles, for links to be looked at against it."""
+"""The nozzle as triangles, for tests of links against it."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ def nozzle_body(nozzle: NozzleParameters) -> Body:
             [[0.0, 0.0, 0.0], [0.0, 0.0, length]],
         ]
     )
-    here = np.arange(SIDES)
-    on = np.roll(here, -1)
+    index = np.arange(SIDES)
+    on = np.roll(index, -1)
     triangles = np.concatenate(
         [
-            np.stack([here, on, on + SIDES], axis=1),
-            np.stack([here, on + SIDES, here + SIDES], axis=1),
-            np.stack([on, here, np.full(SIDES, 2 * SIDES)], axis=1),
-            np.stack([here + SIDES, on + SIDES, np.full(SIDES, 2 * SIDES + 1)], axis=1),
+            np.stack([index, on, on + SIDES], axis=1),
+            np.stack([index, on + SIDES, index + SIDES], axis=1),
+            np.stack([on, index, np.full(SIDES, 2 * SIDES)], axis=1),
+            np.stack([index + SIDES, on + SIDES, np.full(SIDES, 2 * SIDES + 1)], axis=1),
         ]
     )
     return Body(NOZZLE, vertices, triangles.astype(np.int64))

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Links of a robot against each other.
 
-Left out are links that a joint connects; base and upper arm, and the flange and the link two before it, which the stops of
-one axis keep apart, however plump both are drawn; and pairs that come too near in more than half of all positions that the
-limits allow, as the links of a wrist do to a clearance wider than the wrist. Nothing else is left out.
+Three kinds of pairs are left out: links connected by a joint; base and upper arm, and the
+flange and the link two before it, which the stops of one axis keep apart, however plump
+both are drawn; and pairs that are too near in more than half of all positions within the
+limits, as the links of a wrist are for a clearance wider than the wrist. Nothing else is
+left out.
 """
 
 from __future__ import annotations
@@ -24,20 +26,21 @@ from ...geometry.spread import spread_points
 from ...types import Array, Index, Mask
 from ..chain import Chain
 from ..limits import Limits
-from .rounds import NONE, Solid, about_link, of_cylinder
+from .rounds import NONE, Solid, about_link, round_solid
 
 POSITIONS, LEFT_OUT = (
     128,
     0.5,
-)  # looked at to see which pairs are left out, and the share at which they are not yet
-EVERY = 4  # one position in so many is looked at first
-REMEMBERED = 8  # robots whose pairs are known: a job asks while planning, for its rapids, and when all is looked at again
+)  # positions that decide which pairs are left out, and the share at which they are still tested
+SAMPLE_STRIDE = 4  # stride of the positions tested first
+REMEMBERED = 8  # robots with cached pairs: a job needs them while planning, for its rapids, and in the final check
 
 
 @dataclass(frozen=True, eq=False)
 class OwnLinks:
-    """solids: of each link, base first, in its frame; balls: centre and radius of one about these; gap: mm, links that are
-    nearer to each other touch; pairs: of links (outer, inner) that are looked at."""
+    """solids: of each link, base first, in its frame. balls: centre and radius of a ball around
+    these. gap: mm, nearer links touch. pairs: tested links (outer, inner).
+    """
 
     solids: tuple[tuple[Solid, ...], ...]
     balls: tuple[tuple[Array, float], ...]
@@ -48,34 +51,47 @@ class OwnLinks:
     def of(
         cls, chain: Chain, limits: Limits, cylinders: Sequence[Sequence[Cylinder]], clearance: float
     ) -> OwnLinks:
-        """The links of a robot of these cylinders, each (axes + 1) in the frame of the link, that are to be kept clearance
-        mm apart; of the limits the first ones are its own."""
-        return _found(_Asked(chain, limits, cylinders, clearance))
+        """Return the links of a robot with these cylinders, each (axes + 1) in the frame of its
+        link, to be kept clearance mm apart.
+
+        The first limits are the robot's own.
+        """
+        return _find_pairs(_Asked(chain, limits, cylinders, clearance))
 
     def touches(self, links: Array) -> tuple[Index, Index]:
-        """Of frames (k, links, 4, 4), the first of them the robot's own from the base on: the outer (k,) and the inner (k,)
-        of two links that touch, the pair nearest to the base; NONE in both where none does."""
+        """Return the outer (k,) and the inner (k,) link of the touching pair nearest to the base;
+        NONE without contact.
+
+        links: frames (k, links, 4, 4), the robot's own first, from the base on.
+        """
         outer, inner = np.full((2, len(links)), NONE, dtype=np.int64)
         middles = self._middles(links)
-        for one, other in self.pairs:
-            near = self._near(one, other, middles)
-            near = near[outer[near] == NONE]
-            if len(near):
-                met = near[self._touch(one, other, links[near, one], links[near, other])]
-                outer[met], inner[met] = one, other
+        for outer_link, inner_link in self.pairs:
+            nearby = self._near(outer_link, inner_link, middles)
+            nearby = nearby[outer[nearby] == NONE]
+            if len(nearby):
+                met = nearby[
+                    self._touch(
+                        outer_link, inner_link, links[nearby, outer_link], links[nearby, inner_link]
+                    )
+                ]
+                outer[met], inner[met] = outer_link, inner_link
         return outer, inner
 
     def often(
         self, pair: tuple[int, int], links: Array, middles: Sequence[Array], share: float
     ) -> bool:
-        """Whether two links touch with more than a share of frames. Most are near each other with fewer, by their balls or
-        the axes of their cylinders: then that is known without a closer look."""
-        most, rows = share * len(links), self._near(*pair, middles)
+        """Return whether two links touch with more than a share of the frames.
+
+        Most pairs are near in fewer frames, by their balls or the axes of their cylinders, so no
+        exact test is needed.
+        """
+        max_count, rows = share * len(links), self._near(*pair, middles)
         for look in (self._close, self._touch):
-            if len(rows) <= most:
+            if len(rows) <= max_count:
                 return False
             rows = rows[look(*pair, *(links[rows, number] for number in pair))]
-        return len(rows) > most
+        return len(rows) > max_count
 
     def _middles(self, links: Array) -> list[Array]:
         """(k, 3) where the middles of the balls are, of each link."""
@@ -84,30 +100,43 @@ class OwnLinks:
         ]
 
     def _near(self, outer: int, inner: int, middles: Sequence[Array]) -> Index:
-        """With which frames the balls of two links are nearer than the links may be."""
-        away = lengths(middles[outer] - middles[inner])
-        return np.flatnonzero(away - self.balls[outer][1] - self.balls[inner][1] < self.gap)
+        """Return the frames with which the balls of two links are nearer than the links may be."""
+        separation = lengths(middles[outer] - middles[inner])
+        return np.flatnonzero(separation - self.balls[outer][1] - self.balls[inner][1] < self.gap)
 
     def _close(self, outer: int, inner: int, a: Array, b: Array) -> Mask:
-        """(k,) whether axes of cylinders of two links, with frames (k, 4, 4) of each, are as near as these are wide."""
+        """Return whether (k,) axes of cylinders of two links, with frames (k, 4, 4) of each, are as
+        near as their radii.
+        """
         close = np.zeros(len(a), dtype=bool)
-        others = [placed(other, b) for other in self.solids[inner]]
-        for one in (placed(one, a) for one in self.solids[outer]):
-            for other in others:
-                close |= axes_apart(one, other) < self.gap + one.radius + other.radius
+        inner_cylinders = [
+            place_cylinder(inner_cylinder, b) for inner_cylinder in self.solids[inner]
+        ]
+        for outer_cylinder in (
+            place_cylinder(outer_cylinder, a) for outer_cylinder in self.solids[outer]
+        ):
+            for inner_cylinder in inner_cylinders:
+                close |= (
+                    axes_apart(outer_cylinder, inner_cylinder)
+                    < self.gap + outer_cylinder.radius + inner_cylinder.radius
+                )
         return close
 
     def _touch(self, outer: int, inner: int, a: Array, b: Array) -> Mask:
-        """(k,) whether two links touch, with frames (k, 4, 4) of each."""
+        """Return whether (k,) two links touch, with frames (k, 4, 4) of each."""
         touch = np.zeros(len(a), dtype=bool)
-        others = [placed(other, b) for other in self.solids[inner]]
-        for one in (placed(one, a) for one in self.solids[outer]):
-            for other in others:
+        inner_cylinders = [
+            place_cylinder(inner_cylinder, b) for inner_cylinder in self.solids[inner]
+        ]
+        for outer_cylinder in (
+            place_cylinder(outer_cylinder, a) for outer_cylinder in self.solids[outer]
+        ):
+            for inner_cylinder in inner_cylinders:
                 rows = np.flatnonzero(~touch)
                 if len(rows) == len(touch):
-                    touch = nearer(one, other, self.gap)
+                    touch = nearer(outer_cylinder, inner_cylinder, self.gap)
                 else:
-                    touch[rows] = nearer(one.of(rows), other.of(rows), self.gap)
+                    touch[rows] = nearer(outer_cylinder.of(rows), inner_cylinder.of(rows), self.gap)
         return touch
 
 
@@ -122,50 +151,55 @@ class _Asked(ByNumbers):
 
 
 @lru_cache(REMEMBERED)
-def _found(asked: _Asked) -> OwnLinks:
+def _find_pairs(query: _Asked) -> OwnLinks:
     solids = tuple(
-        tuple(of_cylinder(cylinder, 0.0) for cylinder in link) for link in asked.cylinders
+        tuple(round_solid(cylinder, 0.0) for cylinder in link) for link in query.cylinders
     )
-    last = len(solids) - 1
-    stopped = {(2, 0), (last, last - 2)}
-    every = [
-        (one, other)
-        for one in range(2, last + 1)
-        for other in range(one - 1)
-        if (one, other) not in stopped
+    last_link = len(solids) - 1
+    stopped = {(2, 0), (last_link, last_link - 2)}
+    all_pairs = [
+        (outer, inner)
+        for outer in range(2, last_link + 1)
+        for inner in range(outer - 1)
+        if (outer, inner) not in stopped
     ]
-    gap = asked.clearance + 2.0 * ABOUT_FACES
-    found = OwnLinks(solids, tuple(about_link(link) for link in solids), gap, ())
-    links = asked.chain.links(positions(asked.limits, asked.chain.axes))
+    gap = query.clearance + 2.0 * ABOUT_FACES
+    untested = OwnLinks(solids, tuple(about_link(link) for link in solids), gap, ())
+    links = query.chain.links(positions(query.limits, query.chain.axes))
     if not len(links):
-        return OwnLinks(solids, found.balls, gap, tuple(every))
-    # most pairs are seen by a few positions to be far below that share
-    middles = found._middles(links)
-    some = [middle[::EVERY] for middle in middles]
+        return OwnLinks(solids, untested.balls, gap, tuple(all_pairs))
+    # for most pairs a few positions show that they are far below that share
+    middles = untested._middles(links)
+    sampled_middles = [middle[::SAMPLE_STRIDE] for middle in middles]
     usual = {
         pair
-        for pair in every
-        if found.often(pair, links[::EVERY], some, 0.5 * LEFT_OUT)
-        and found.often(pair, links, middles, LEFT_OUT)
+        for pair in all_pairs
+        if untested.often(pair, links[::SAMPLE_STRIDE], sampled_middles, 0.5 * LEFT_OUT)
+        and untested.often(pair, links, middles, LEFT_OUT)
     }
-    return OwnLinks(solids, found.balls, gap, tuple(pair for pair in every if pair not in usual))
+    return OwnLinks(
+        solids, untested.balls, gap, tuple(pair for pair in all_pairs if pair not in usual)
+    )
 
 
 def positions(limits: Limits, axes: int) -> Array:
-    """(k, axes) joints spread evenly over all that the limits of so many axes allow, the same each time; of axes without end
-    over one turn."""
+    """Return joints (k, axes) spread evenly over the limits of the first `axes` axes, always the
+    same.
+
+    Continuous axes cover one turn.
+    """
     continuous = limits.continuous[:axes]
     low = np.where(continuous, -np.pi, limits.lower[:axes])
     high = np.where(continuous, np.pi, limits.upper[:axes])
-    found = low + spread_points(POSITIONS, axes) * (high - low)
-    coupled = found @ limits.coefficients[:, :axes].T
+    samples = low + spread_points(POSITIONS, axes) * (high - low)
+    coupled = samples @ limits.coefficients[:, :axes].T
     return np.asarray(
-        found[((coupled >= limits.coupled_lower) & (coupled <= limits.coupled_upper)).all(axis=1)]
+        samples[((coupled >= limits.coupled_lower) & (coupled <= limits.coupled_upper)).all(axis=1)]
     )
 
 
-def placed(solid: Solid, frame: Array) -> PlacedCylinders:
-    """The cylinder that a solid is, with frames (k, 4, 4) of its link."""
+def place_cylinder(solid: Solid, frame: Array) -> PlacedCylinders:
+    """Return the cylinder of a solid with frames (k, 4, 4) of its link."""
     turn = frame[:, :3, :3]
     return PlacedCylinders(
         turn @ solid.tip + frame[:, :3, 3], turn @ solid.axis, solid.solid.high, solid.solid.radius

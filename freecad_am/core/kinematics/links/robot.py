@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the links of a robot look like, from its kinematic chain alone: plain solids that go through its axes.
+"""The links of a robot from its kinematic chain only: plain solids along its axes.
 
-Along each axis there is a run from where the common perpendicular with the axis before meets it to where that with the
-next axis does. Long runs are tubes, such as column and forearm; axes without one are drums, such as shoulder and elbow.
+Along each axis there is a run between the common perpendiculars with the previous and the
+next axis. Long runs are tubes, such as column and forearm; axes without one are drums,
+such as shoulder and elbow.
 """
 
 from __future__ import annotations
@@ -14,12 +15,12 @@ import numpy as np
 from ...geometry import frames
 from ...types import Array
 from ..chain import Chain
-from .solids import BRIGHT, DARK, Solid, capsule, cylinder, strut, turned
+from .solids import BRIGHT, DARK, Solid, capsule, cylinder, revolve, strut
 
 # radii of the first and the last joint as shares of the arm's whole length, tapering between; the last such that flanges of
 # robots from 0.7 to 3 m are about as wide as the plates of ISO 9409-1 are: 40 to 125 mm
 THICK, THIN = 0.068, 0.016
-FLANGE = 1.045  # radius of the flange, in that of the last joint
+FLANGE = 1.045  # radius of the flange, relative to the last joint
 # half the length of a drum, in radii
 DRUM = 0.85
 # runs shorter than this share of the arm are none
@@ -43,12 +44,14 @@ class Skeleton:
     size: float
 
     def radius(self, axis: int) -> float:
-        """Of the joint of an axis, mm."""
+        """Return the radius of the joint of an axis, mm."""
         share = axis / max(1, len(self.directions) - 1)
         return float(self.size * THICK * (THIN / THICK) ** share)
 
     def run(self, axis: int) -> float:
-        """Length of the run along an axis, mm; 0 where it is short, but for the last one, which ends at the flange."""
+        """Return the length of the run along an axis, mm; 0 if it is short, except for the last one,
+        which ends at the flange.
+        """
         length = float(np.linalg.norm(self.leave[axis] - self.enter[axis]))
         short = LEAST_SHARE if axis + 1 < len(self.directions) else _NONE
         return length if length > short * self.size else 0.0
@@ -59,12 +62,12 @@ def skeleton(chain: Chain) -> Skeleton:
     at_zero = chain.frames(np.zeros(chain.axes))
     directions, origins, flange = at_zero.directions, at_zero.origins, at_zero.flange[:3, 3]
     enter, leave = np.empty((chain.axes, 3)), np.empty((chain.axes, 3))
-    enter[0] = _on_axis(np.zeros(3), origins[0], directions[0])
+    enter[0] = _project_onto_axis(np.zeros(3), origins[0], directions[0])
     for axis in range(chain.axes - 1):
         leave[axis], enter[axis + 1] = _feet(
             origins[axis], directions[axis], origins[axis + 1], directions[axis + 1], enter[axis]
         )
-    leave[-1] = _on_axis(flange, origins[-1], directions[-1])
+    leave[-1] = _project_onto_axis(flange, origins[-1], directions[-1])
     runs = (
         np.linalg.norm(leave - enter, axis=1).sum()
         + np.linalg.norm(enter[1:] - leave[:-1], axis=1).sum()
@@ -73,17 +76,19 @@ def skeleton(chain: Chain) -> Skeleton:
 
 
 def solids(chain: Chain) -> list[list[Solid]]:
-    """The solids of each link (axes + 1), base first, in the frame of the link: that of its joint, turned with it."""
+    """Return the solids of each link (axes + 1), base first, in the frame of the link, which
+    turns with its joint.
+    """
     bones = skeleton(chain)
-    found: list[list[Solid]] = [[] for _ in range(chain.axes + 1)]
-    _base(bones, found[0])
+    solids_of_links: list[list[Solid]] = [[] for _ in range(chain.axes + 1)]
+    _base(bones, solids_of_links[0])
     for axis in range(chain.axes):
-        _joint(bones, axis, found[axis], found[axis + 1])
+        _joint(bones, axis, solids_of_links[axis], solids_of_links[axis + 1])
         if axis + 1 < chain.axes:
-            _between(bones, axis, found[axis + 1])
-    _flange(bones, found[-1])
+            _between(bones, axis, solids_of_links[axis + 1])
+    _flange(bones, solids_of_links[-1])
     back = frames.inverse(chain.links(np.zeros(chain.axes)))
-    return [[solid.moved(pose) for solid in link] for pose, link in zip(back, found)]
+    return [[solid.move(pose) for solid in link] for pose, link in zip(back, solids_of_links)]
 
 
 def _base(bones: Skeleton, base: list[Solid]) -> None:
@@ -95,27 +100,27 @@ def _base(bones: Skeleton, base: list[Solid]) -> None:
         base.append(capsule(foot, bones.enter[0], 1.2 * radius, radius))
 
 
-def _joint(bones: Skeleton, axis: int, before: list[Solid], own: list[Solid]) -> None:
-    """The joint of an axis: its housing on the link before, what turns in it on its own link."""
+def _joint(bones: Skeleton, axis: int, previous_link: list[Solid], link: list[Solid]) -> None:
+    """Add the joint of an axis: its housing to the previous link, its rotor to its own link."""
     start, direction, radius = bones.enter[axis], bones.directions[axis], bones.radius(axis)
     run = bones.run(axis)
     if not run and axis + 1 == len(bones.directions):
         return
     if not run:
         half = DRUM * radius * direction
-        before.append(cylinder(start - half, start + half, radius))
-        own.append(cylinder(start - 1.14 * half, start + 1.14 * half, 0.72 * radius, DARK))
+        previous_link.append(cylinder(start - half, start + half, radius))
+        link.append(cylinder(start - 1.14 * half, start + 1.14 * half, 0.72 * radius, DARK))
         return
     along = (bones.leave[axis] - start) / run
     middle, end = start + STILL * run * along, bones.leave[axis]
     slim = radius * (0.8 if axis else 1.0)
-    last = bones.radius(min(axis + 1, len(bones.directions) - 1)) if axis else slim
+    end_radius = bones.radius(min(axis + 1, len(bones.directions) - 1)) if axis else slim
     # the housing of a forearm begins behind its elbow
     back = start - 0.9 * slim * along if axis and axis + 1 < len(bones.directions) else start
-    before.append(
+    previous_link.append(
         cylinder(back, middle, 1.08 * slim)
         if axis
-        else turned(
+        else revolve(
             [
                 (0.0, 0.0),
                 (1.45 * slim, 0.0),
@@ -129,31 +134,44 @@ def _joint(bones: Skeleton, axis: int, before: list[Solid], own: list[Solid]) ->
         )
     )
     seam = min(0.06 * run, 0.2 * slim)
-    own.append(cylinder(middle, middle + seam * along, 0.98 * slim, DARK, 0.02))
-    own.append(
-        turned(
-            [(0.0, 0.0), (slim, 0.0), (0.92 * last, 1.0), (0.0, 1.0)], middle + seam * along, end
+    link.append(cylinder(middle, middle + seam * along, 0.98 * slim, DARK, 0.02))
+    link.append(
+        revolve(
+            [(0.0, 0.0), (slim, 0.0), (0.92 * end_radius, 1.0), (0.0, 1.0)],
+            middle + seam * along,
+            end,
         )
     )
 
 
-def _between(bones: Skeleton, axis: int, own: list[Solid]) -> None:
-    """The link from an axis to the next one."""
+def _between(bones: Skeleton, axis: int, link: list[Solid]) -> None:
+    """Add the link from an axis to the next one."""
     start, end = bones.leave[axis], bones.enter[axis + 1]
-    first, last = bones.radius(axis), bones.radius(axis + 1)
+    start_radius, end_radius = bones.radius(axis), bones.radius(axis + 1)
     length = float(np.linalg.norm(end - start))
     if length < _NONE * bones.size:
         return
     if (
         np.linalg.norm(np.cross(bones.directions[axis], bones.directions[axis + 1])) < _PARALLEL
-        and length > first - last
+        and length > start_radius - end_radius
     ):
-        own.append(strut(start, end, bones.directions[axis], 0.9 * first, 0.9 * last, 1.1 * last))
+        link.append(
+            strut(
+                start,
+                end,
+                bones.directions[axis],
+                0.9 * start_radius,
+                0.9 * end_radius,
+                1.1 * end_radius,
+            )
+        )
     else:
-        own.append(capsule(start, end, 0.82 * min(first, 1.3 * last), 0.82 * last))
+        link.append(
+            capsule(start, end, 0.82 * min(start_radius, 1.3 * end_radius), 0.82 * end_radius)
+        )
 
 
-def _flange(bones: Skeleton, last: list[Solid]) -> None:
+def _flange(bones: Skeleton, last_link: list[Solid]) -> None:
     radius = bones.radius(len(bones.directions) - 1)
     direction = (
         bones.directions[-1]
@@ -162,7 +180,7 @@ def _flange(bones: Skeleton, last: list[Solid]) -> None:
             (bones.leave[-1] - bones.enter[-1]) / np.linalg.norm(bones.leave[-1] - bones.enter[-1])
         )
     )
-    last.append(
+    last_link.append(
         cylinder(
             bones.flange - 0.285 * radius * direction, bones.flange, FLANGE * radius, BRIGHT, 0.05
         )
@@ -174,20 +192,22 @@ def flange_radius(chain: Chain) -> float:
     return FLANGE * skeleton(chain).radius(chain.axes - 1)
 
 
-def _on_axis(point: Array, origin: Array, direction: Array) -> Array:
-    """The point of an axis nearest to another point."""
+def _project_onto_axis(point: Array, origin: Array, direction: Array) -> Array:
+    """Return the point of an axis nearest to another point."""
     return np.asarray(origin + ((point - origin) @ direction) * direction)
 
 
 def _feet(
-    first: Array, along: Array, second: Array, other: Array, at: Array
+    origin_a: Array, direction_a: Array, origin_b: Array, direction_b: Array, through: Array
 ) -> tuple[Array, Array]:
-    """Where the common perpendicular of two axes meets them; of parallel ones that through the point `at`."""
-    normal = np.cross(along, other)
+    """Return the feet of the common perpendicular of two axes; for parallel axes the one through
+    the point `through`.
+    """
+    normal = np.cross(direction_a, direction_b)
     square = float(normal @ normal)
     if square < _PARALLEL**2:
-        return at, _on_axis(at, second, other)
-    between = second - first
-    s = float(np.cross(between, other) @ normal) / square
-    t = float(np.cross(between, along) @ normal) / square
-    return np.asarray(first + s * along), np.asarray(second + t * other)
+        return through, _project_onto_axis(through, origin_b, direction_b)
+    between = origin_b - origin_a
+    s = float(np.cross(between, direction_b) @ normal) / square
+    t = float(np.cross(between, direction_a) @ normal) / square
+    return np.asarray(origin_a + s * direction_a), np.asarray(origin_b + t * direction_b)

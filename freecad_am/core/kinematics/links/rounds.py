@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Links as they are looked at: solids of revolution about their cylinders, and balls about these."""
+"""Links as tested: solids of revolution around their cylinders, and balls around these."""
 
 from __future__ import annotations
 
@@ -17,8 +17,9 @@ NONE = -1  # no link
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """A solid of revolution that a link is, or a piece of it: tip and unit axis (3,) in the frame of the link, and the ball
-    about it."""
+    """A solid of revolution, a link or a piece of one: tip and unit axis (3,) in the frame of
+    the link, and the ball around it.
+    """
 
     solid: Frustum
     tip: Array
@@ -27,28 +28,30 @@ class Solid:
     radius: float
 
 
-def of_cylinder(cylinder: Cylinder, more: float) -> Solid:
-    """A rod, larger by so many mm on all sides."""
+def round_solid(cylinder: Cylinder, growth: float) -> Solid:
+    """Return a cylinder enlarged by `growth` mm on all sides."""
     centre, axis = (
         0.5 * (cylinder.start + cylinder.end),
         (cylinder.end - cylinder.start) / cylinder.length,
     )
-    solid = Frustum(cylinder.radius + more, 0.0, -more, cylinder.length + more)
+    solid = Frustum(cylinder.radius + growth, 0.0, -growth, cylinder.length + growth)
     return Solid(
         solid,
         cylinder.start,
         axis,
         centre,
-        float(np.hypot(0.5 * cylinder.length + more, cylinder.radius + more)),
+        float(np.hypot(0.5 * cylinder.length + growth, cylinder.radius + growth)),
     )
 
 
 def about_link(link: Sequence[Solid]) -> tuple[Array, float]:
-    """Centre and radius of a ball about the solids of a link."""
+    """Return centre and radius of a ball around the solids of a link."""
     if not link:
         return np.zeros(3), 0.0
-    centre, _ = ball(np.array([one.centre for one in link]))
-    return centre, max(float(np.linalg.norm(one.centre - centre)) + one.radius for one in link)
+    centre, _ = ball(np.array([solid.centre for solid in link]))
+    return centre, max(
+        float(np.linalg.norm(solid.centre - centre)) + solid.radius for solid in link
+    )
 
 
 def ball(points: Array) -> tuple[Array, float]:

@@ -29,10 +29,11 @@ class LinkShape:
 
 
 def link_shapes(top: Node, joints: tuple[str, ...]) -> tuple[LinkShape | None, ...]:
-    """The shapes (axes + 1) of a machine file's links, base first, None where there is none.
+    """Return the shapes (axes + 1) of a machine file's links, base first, None for links without
+    a shape.
 
-    Raises InputError 'BAD_MACHINE' for a link, a format or a value that is wrong; whether the files are there is looked at
-    when they are drawn, for a machine can be planned for without its looks.
+    Raises InputError 'BAD_MACHINE' for a wrong link, format or value. Whether the files exist
+    is checked when they are drawn: planning does not need them.
     """
     links = (BASE, *joints)
     if not top.has("shapes"):

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Plain solids as triangles with normals: turned about an axis, cylinders between two discs, boxes. For drawing alone."""
+"""Plain solids as triangles with normals: revolved about an axis, cylinders between two
+discs, boxes. Only for drawing.
+"""
 
 from __future__ import annotations
 
@@ -16,58 +18,61 @@ SIDES = 40
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """points, normals: (n, 3) mm and unit vectors that point outwards; triangles: (m, 3) indices; tone: what it is like."""
+    """points, normals: (n, 3) mm and outward unit vectors; triangles: (m, 3) indices; tone: its
+    kind of surface.
+    """
 
     points: Array
     normals: Array
     triangles: Integers
     tone: str = BODY
 
-    def moved(self, pose: Array) -> Solid:
-        """The solid moved by a pose (4, 4)."""
+    def move(self, pose: Array) -> Solid:
+        """Return the solid moved by a pose (4, 4)."""
         turn = pose[:3, :3].T
         return Solid(
             self.points @ turn + pose[:3, 3], self.normals @ turn, self.triangles, self.tone
         )
 
 
-def turned(
+def revolve(
     outline: ArrayLike, start: ArrayLike, end: ArrayLike, tone: str = BODY, sides: int = SIDES
 ) -> Solid:
-    """A solid of revolution whose axis runs from `start` to `end` (3,), mm.
+    """Return a solid of revolution whose axis runs from `start` to `end` (3,), mm.
 
-    outline: (k, 2) of (radius in mm, place on the axis: 0 at its start, 1 at its end), along the outside from start to
-    end. Every stretch of it keeps its own normals, so that edges stay sharp.
+    outline: (k, 2) of (radius in mm, position on the axis: 0 at its start, 1 at its end),
+    along the outside from start to end. Each stretch has its own normals, so edges stay
+    sharp.
     """
-    shape, first, last = (
+    shape, begin, stop = (
         np.asarray(outline, float),
         np.asarray(start, float),
         np.asarray(end, float),
     )
-    length = float(np.linalg.norm(last - first))
+    length = float(np.linalg.norm(stop - begin))
     shape = np.column_stack([shape[:, 0], shape[:, 1] * length])
     angle = np.linspace(0.0, 2.0 * np.pi, sides + 1)
     ring = np.column_stack([np.cos(angle), np.sin(angle)])
     run, rise = np.diff(shape, axis=0).T
     size = np.hypot(run, rise)
-    kept = np.flatnonzero(size >= 1e-9)
-    run, rise, size = run[kept], rise[kept], size[kept]
-    ends = np.stack([shape[kept], shape[kept + 1]], axis=1)
+    valid = np.flatnonzero(size >= 1e-9)
+    run, rise, size = run[valid], rise[valid], size[valid]
+    ends = np.stack([shape[valid], shape[valid + 1]], axis=1)
     # of each stretch a ring at its start and one at its end
     count = len(ring)
-    points, normals = np.empty((2, len(kept), 2, count, 3))
+    points, normals = np.empty((2, len(valid), 2, count, 3))
     points[..., :2], points[..., 2] = ends[:, :, None, :1] * ring, ends[:, :, None, 1]
     normals[..., :2], normals[..., 2] = (
         (rise / size)[:, None, None, None] * ring,
         (-run / size)[:, None, None],
     )
-    i = np.arange(count - 1) + 2 * count * np.arange(len(kept))[:, None]
+    i = np.arange(count - 1) + 2 * count * np.arange(len(valid))[:, None]
     halves = [(i, i + 1, i + count), (i + 1, i + count + 1, i + count)]
     triangles = np.stack([np.stack(half, axis=2) for half in halves], axis=1)
-    pose = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), (last - first) / length), first)
+    pose = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), (stop - begin) / length), begin)
     return Solid(
         points.reshape(-1, 3), normals.reshape(-1, 3), triangles.reshape(-1, 3), tone
-    ).moved(pose)
+    ).move(pose)
 
 
 def cylinder(
@@ -85,44 +90,52 @@ def cylinder(
         (radius - cut, 1),
         (0, 1),
     ]
-    return turned(outline, start, end, tone)
+    return revolve(outline, start, end, tone)
 
 
-def capsule(start: ArrayLike, end: ArrayLike, first: float, last: float, tone: str = BODY) -> Solid:
-    """A tapered tube with round ends, of radii `first` and `last` mm."""
+def capsule(
+    start: ArrayLike, end: ArrayLike, start_radius: float, end_radius: float, tone: str = BODY
+) -> Solid:
+    """Return a tapered tube with round ends, of radii `start_radius` and `end_radius` mm."""
     begin, stop = np.asarray(start, float), np.asarray(end, float)
     length = float(np.linalg.norm(stop - begin))
     quarter = np.linspace(0.0, 0.5 * np.pi, 8)
-    low = np.column_stack([first * np.sin(quarter), -first * np.cos(quarter) / length])
-    high = np.column_stack([last * np.cos(quarter), 1.0 + last * np.sin(quarter) / length])
-    return turned(np.concatenate([low, high]), begin, stop, tone)
+    low = np.column_stack(
+        [start_radius * np.sin(quarter), -start_radius * np.cos(quarter) / length]
+    )
+    high = np.column_stack(
+        [end_radius * np.cos(quarter), 1.0 + end_radius * np.sin(quarter) / length]
+    )
+    return revolve(np.concatenate([low, high]), begin, stop, tone)
 
 
 def strut(
     start: ArrayLike,
     end: ArrayLike,
     axis: ArrayLike,
-    first: float,
-    last: float,
+    start_radius: float,
+    end_radius: float,
     thick: float,
     tone: str = BODY,
 ) -> Solid:
-    """A plate `thick` mm along the unit `axis`, as wide as two discs of radii `first` and `last` mm at its ends."""
+    """Return a plate `thick` mm along the unit `axis`, as wide as two discs of radii
+    `start_radius` and `end_radius` mm at its ends.
+    """
     begin, stop, normal = (np.asarray(value, float) for value in (start, end, axis))
-    way = stop - begin
-    way = way - (way @ normal) * normal
-    length = float(np.linalg.norm(way))
-    along = way / length
+    chord = stop - begin
+    chord = chord - (chord @ normal) * normal
+    length = float(np.linalg.norm(chord))
+    along = chord / length
     across = np.cross(normal, along)
     # where the common tangents of both discs touch
-    lean = float(np.arccos(np.clip((first - last) / length, -1.0, 1.0)))
+    lean = float(np.arccos(np.clip((start_radius - end_radius) / length, -1.0, 1.0)))
     low, high = np.linspace(lean, 2.0 * np.pi - lean, 24), np.linspace(-lean, lean, 24)
     outline = np.concatenate(
         [
-            begin + first * (np.cos(low)[:, None] * along + np.sin(low)[:, None] * across),
+            begin + start_radius * (np.cos(low)[:, None] * along + np.sin(low)[:, None] * across),
             begin
             + along * length
-            + last * (np.cos(high)[:, None] * along + np.sin(high)[:, None] * across),
+            + end_radius * (np.cos(high)[:, None] * along + np.sin(high)[:, None] * across),
         ]
     )
     angle = np.concatenate([low, high])
@@ -157,8 +170,8 @@ def box(
     tone: str = BODY,
 ) -> Solid:
     """A box about its centre (3,) with edges along unit vectors x, y and x cross y, of `size` mm."""
-    first, second = np.asarray(x, float), np.asarray(y, float)
-    axes = np.stack([first, second, np.cross(first, second)])
+    axis_x, axis_y = np.asarray(x, float), np.asarray(y, float)
+    axes = np.stack([axis_x, axis_y, np.cross(axis_x, axis_y)])
     points: list[Array] = []
     normals: list[Array] = []
     triangles: list[Integers] = []

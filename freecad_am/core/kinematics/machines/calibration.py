@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The calibration of one robot of Universal Robots, as ROS' `ur_calibration` writes it from the controller.
+"""The calibration of one robot of Universal Robots, as ROS' `ur_calibration` writes it from
+the controller.
 
-The file has, of every joint, the pose of its frame in the link before: `kinematics: forearm: {x, y, z, roll, pitch, yaw}` in
-m and rad, in block style; the first is seen from the maker's base frame. It says nothing else, so the rest is the machine
-file's.
+For every joint the file has the pose of its frame in the previous link: `kinematics:
+forearm: {x, y, z, roll, pitch, yaw}` in m and rad, in block style; the first is seen from
+the manufacturer's base frame. Everything else comes from the machine file.
 """
 
 from __future__ import annotations
@@ -22,10 +23,10 @@ from ...issues import InputError
 from ...types import Array
 from ..chain import Chain
 
-LARGEST = 1  # MB
+MAX_FILE_MB = 1  # MB
 JOINTS = ("shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3")
 NUMBERS = ("x", "y", "z", "roll", "pitch", "yaw")
-# farther than this from the machine file it is that of another robot: mm and rad
+# farther than this from the machine file it belongs to another robot: mm and rad
 FAR_MM, FAR_RAD = 30.0, math.radians(3.0)
 _NAMED = re.compile(r"(?P<machine>.+?)\s+calibration=(?P<file>.+)")
 _ENTRY = re.compile(r"(?P<indent> *)(?P<key>[^\s:#]+):(?:\s+(?P<value>.*))?")
@@ -43,13 +44,14 @@ class Named:
 
 
 def named(text: str) -> Named | None:
-    """What a text says, None where it names no calibration."""
-    found = _NAMED.fullmatch(text.strip())
-    return None if found is None else Named(found["machine"], found["file"])
+    """Return the calibration that a text names, None if it names none."""
+    match = _NAMED.fullmatch(text.strip())
+    return None if match is None else Named(match["machine"], match["file"])
 
 
 def read(path: Path) -> tuple[Array, str]:
-    """The poses (6, 4, 4) of the joint frames in the links before, mm, and the robot's `hash`, empty where there is none.
+    """Return the poses (6, 4, 4) of the joint frames in the previous links, mm, and the robot's
+    `hash`, empty if absent.
 
     Raises InputError UNKNOWN_MACHINE without the file, BAD_CALIBRATION naming line or key.
     """
@@ -62,7 +64,7 @@ def read(path: Path) -> tuple[Array, str]:
             path,
         )
     try:
-        text = read_content(path, LARGEST, "BAD_CALIBRATION", str(path)).decode("utf-8")
+        text = read_content(path, MAX_FILE_MB, "BAD_CALIBRATION", str(path)).decode("utf-8")
     except (OSError, ValueError) as error:
         raise InputError(
             "BAD_CALIBRATION",
@@ -76,9 +78,10 @@ def read(path: Path) -> tuple[Array, str]:
 
 
 def calibrated(chain: Chain, base: Array, poses: Array, path: Path) -> Chain:
-    """The chain of a robot with the joint frames of its calibration; `base` (4, 4) is the maker's base frame in base_link.
+    """Return the chain of a robot with the joint frames of its calibration.
 
-    Raises InputError BAD_CALIBRATION where they are far from the chain's, as those of another robot are.
+    base: (4, 4) the manufacturer's base frame in base_link. Raises InputError BAD_CALIBRATION
+    if they are far from the chain's, as for another robot.
     """
     origins = poses.copy()
     origins[0] = base @ poses[0]
@@ -100,14 +103,14 @@ def calibrated(chain: Chain, base: Array, poses: Array, path: Path) -> Chain:
 
 
 def _entries(text: str, path: Path) -> dict[str, str]:
-    """The values of a file of nested keys, by their keys joined with points."""
-    found: dict[str, str] = {}
+    """Return the values of a file of nested keys, by their keys joined with points."""
+    values: dict[str, str] = {}
     open_: list[tuple[int, str]] = []
     for number, line in enumerate(text.splitlines(), 1):
-        shown = line.split(" #")[0].rstrip()
-        if not shown or shown.startswith(("#", "---", "%")):
+        content = line.split(" #")[0].rstrip()
+        if not content or content.startswith(("#", "---", "%")):
             continue
-        entry = _ENTRY.fullmatch(shown)
+        entry = _ENTRY.fullmatch(content)
         if entry is None:
             raise InputError(
                 "BAD_CALIBRATION",
@@ -119,16 +122,16 @@ def _entries(text: str, path: Path) -> dict[str, str]:
         while open_ and open_[-1][0] >= indent:
             open_.pop()
         key = ".".join([*(name for _, name in open_), entry["key"]])
-        if key in found:
+        if key in values:
             raise InputError(
                 "BAD_CALIBRATION",
                 f"{path}: line {number}",
                 "the key {} is there twice; give the file as ur_calibration wrote it",
                 key,
             )
-        found[key] = entry["value"] or ""
+        values[key] = entry["value"] or ""
         open_.append((indent, entry["key"]))
-    return found
+    return values
 
 
 def _pose(entries: dict[str, str], joint: str, path: Path) -> Array:

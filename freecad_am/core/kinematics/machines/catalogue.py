@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The machines known with what one chooses by: maker, reach, payload, posts. Their geometry is not looked at."""
+"""The known machines with figures for choosing one: manufacturer, reach, payload, posts.
+Their geometry is not read.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ from .file import Node, read
 
 @dataclass(frozen=True)
 class Entry:
-    """A machine file's figures. reach: mm, payload: kg, None where the file does not tell. posts: None for any."""
+    """A machine file's figures. reach: mm, payload: kg, None if the file does not state them.
+    posts: None for any.
+    """
 
     id: str
     title: str
@@ -24,11 +28,14 @@ class Entry:
     posts: tuple[str, ...] | None
 
     def is_of(self, maker: str) -> bool:
-        """Whether title or id begin with the words of a maker, as 'Yaskawa' and 'motoman' of a Yaskawa; accents and
-        capitals do not count."""
-        wanted = _plain(maker)
+        """Return whether title or id begin with the words of a manufacturer, as 'Yaskawa' and
+        'motoman' for a Yaskawa.
+
+        Accents and capitals do not count.
+        """
+        maker_name = _plain(maker)
         return any(
-            _plain(name).startswith(f"{wanted} ")
+            _plain(name).startswith(f"{maker_name} ")
             for name in (self.title, self.id.replace("-", " "))
         )
 
@@ -44,17 +51,21 @@ def entries(folders: Sequence[Path | str] = ()) -> list[Entry]:
     return [_entry(name, read(machine.file_of(name, folders))) for name in names]
 
 
-def chosen(
-    known: Sequence[Entry],
+def select_machines(
+    entries: Sequence[Entry],
     maker: str | None = None,
     reach: float = 0.0,
     payload: float = 0.0,
     post: str | None = None,
 ) -> list[Entry]:
-    """Those of a maker, that reach and carry so much at least (mm, kg), and whose controllers read a post; where a file does
-    not tell a figure that is asked for, its machine is left out. InputError USAGE for a maker that no machine is of."""
-    if maker is not None and not any(entry.is_of(maker) for entry in known):
-        makers = ", ".join(sorted({entry.title.split()[0] for entry in known}))
+    """Return the machines of a manufacturer with at least this reach and payload (mm, kg) whose
+    controllers read a post.
+
+    A machine whose file does not state a required figure is left out. Raises InputError USAGE
+    for an unknown manufacturer.
+    """
+    if maker is not None and not any(entry.is_of(maker) for entry in entries):
+        makers = ", ".join(sorted({entry.title.split()[0] for entry in entries}))
         raise InputError(
             "USAGE",
             "freecad-am machines",
@@ -64,7 +75,7 @@ def chosen(
         )
     return [
         entry
-        for entry in known
+        for entry in entries
         if (maker is None or entry.is_of(maker))
         and (reach <= 0.0 or (entry.reach is not None and entry.reach >= reach))
         and (payload <= 0.0 or (entry.payload is not None and entry.payload >= payload))

@@ -19,8 +19,9 @@ MOST_ROUNDING = (0.5, 0.1)  # that may be claimed for a check pose, mm and deg
 
 
 def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
-    """Refuse a file (InputError BAD_MACHINE) whose check poses, `node`, are not those of its own geometry: of its chain, and
-    of its closed form where it has one."""
+    """Reject a file (InputError BAD_MACHINE) whose check poses, `node`, do not match its chain
+    and its closed form, if any.
+    """
     poses = [pose.only("q", "origin", "rotation", "within") for pose in node.items()]
     if len(poses) < 3:
         raise node.bad(
@@ -31,15 +32,15 @@ def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
     )
     if not (q == 0.0).all(axis=1).any():
         raise node.bad("the pose at all zeros is missing; add it")
-    wanted = np.stack(
+    expected = np.stack(
         [frames.pose(pose["rotation"].matrix(3, 3), pose["origin"].numbers(3)) for pose in poses]
     )
-    allowed = np.array([_within(pose) for pose in poses])
+    allowed = np.array([_tolerance_of(pose) for pose in poses])
     solvers = {"the joint frames give": chain.forward}
     if opw is not None:
         solvers["opw gives"] = opw.forward
     for solver_gives, forward in solvers.items():
-        off = np.abs(forward(q) - wanted)
+        off = np.abs(forward(q) - expected)
         position, rotation = off[:, :3, 3].max(axis=1), off[:, :3, :3].max(axis=(1, 2))
         wrong = (position > allowed[:, 0]) | (rotation > allowed[:, 1])
         if wrong.any():
@@ -55,22 +56,23 @@ def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
             )
 
 
-def _within(pose: Node) -> tuple[float, float]:
-    """How far the rounding of a check pose may leave it, mm and as entries of the rotation: what `within` says of one
-    that was read from a display."""
+def _tolerance_of(pose: Node) -> tuple[float, float]:
+    """Return the tolerance of a check pose, mm and as entries of the rotation: `within` for a
+    pose read from a display.
+    """
     if not pose.has("within"):
         return POSITION_TOLERANCE, ROTATION_TOLERANCE
     node = pose["within"].only("mm", "deg")
-    found = []
-    for key, most in zip(("mm", "deg"), MOST_ROUNDING, strict=True):
+    values = []
+    for key, max_value in zip(("mm", "deg"), MOST_ROUNDING, strict=True):
         value = node[key].number()
-        if not 0.0 <= value <= most:
+        if not 0.0 <= value <= max_value:
             raise node[key].bad(
                 Text(
                     "{:g} is more than the rounding of a display leaves; give 0 to {:g}",
                     value,
-                    most,
+                    max_value,
                 )
             )
-        found.append(value)
-    return max(found[0], POSITION_TOLERANCE), max(math.radians(found[1]), ROTATION_TOLERANCE)
+        values.append(value)
+    return max(values[0], POSITION_TOLERANCE), max(math.radians(values[1]), ROTATION_TOLERANCE)

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tables of Denavit and Hartenberg, standard and modified, as chains of joint frames, and chains as such tables.
+"""Tables of Denavit and Hartenberg, standard and modified, as chains of joint frames, and
+chains as such tables.
 
-Standard (Denavit, Hartenberg 1955; Spong): link = Rot(z, theta) Trans(z, d) Trans(x, a) Rot(x, alpha). Modified (Craig):
-link = Rot(x, alpha) Trans(x, a) Rot(z, theta) Trans(z, d). Both stand between a pose before the first row and
-one after the last, which such a table cannot hold.
+Standard (Denavit, Hartenberg 1955; Spong): link = Rot(z, theta) Trans(z, d) Trans(x, a)
+Rot(x, alpha). Modified (Craig): link = Rot(x, alpha) Trans(x, a) Rot(z, theta) Trans(z,
+d). Both are between a pose before the first row and one after the last, which such a
+table cannot hold.
 """
 
 from __future__ import annotations
@@ -37,7 +39,9 @@ class Row:
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Rows with the poses (4, 4) before the first and after the last of them, mm. `modified`: by Craig."""
+    """Rows with the poses (4, 4) before the first and after the last row, mm. `modified`: by
+    Craig.
+    """
 
     rows: tuple[Row, ...]
     before: Array
@@ -46,25 +50,31 @@ class Table:
 
 
 def chain_of(table: Table) -> Chain:
-    """The chain of joint frames of a table. Raises InputError BAD_TABLE for no rows, signs other than 1 and -1 and what
-    is not finite."""
+    """Return the chain of joint frames of a table.
+
+    Raises InputError BAD_TABLE for no rows, signs other than 1 and -1 and values that are not
+    finite.
+    """
     _check(table)
-    origins, rest = [], table.before
+    origins, since_joint = [], table.before
     for row in table.rows:
-        first, last = _row(row, table.modified)
-        origins.append(rest @ first)
-        rest = last
+        before_joint, after_joint = _row(row, table.modified)
+        origins.append(since_joint @ before_joint)
+        since_joint = after_joint
     return Chain(
         np.stack(origins),
         np.array([[0.0, 0.0, float(row.sign)] for row in table.rows]),
-        rest @ table.after,
+        since_joint @ table.after,
         np.array([row.sliding for row in table.rows]),
     )
 
 
 def table_of(chain: Chain, modified: bool = False) -> Table:
-    """The table of a chain; all signs are 1, for each z lies along its axis. The frames of a table are free to
-    slide along parallel axes: there d is 0 in a standard table, and before the axis in a modified one."""
+    """Return the table of a chain; all signs are 1, because each z is along its axis.
+
+    The frames of a table are free along parallel axes: there d is 0 in a standard table, and
+    before the axis in a modified one.
+    """
     at_rest = chain.frames(np.zeros(chain.axes))
     axes = list(zip(at_rest.directions, at_rest.origins, strict=True))
     placed = _modified_frames(axes) if modified else _standard_frames(axes)
@@ -89,7 +99,7 @@ def _check(table: Table) -> None:
 
 
 def _row(row: Row, modified: bool) -> tuple[Array, Array]:
-    """What stands before and after the motion of a row's joint."""
+    """Return the poses before and after the motion of a row's joint."""
     about_z = frames.pose(frames.about_z(row.theta), (0.0, 0.0, row.d))
     about_x = frames.pose(frames.about_x(row.alpha), (row.a, 0.0, 0.0))
     return (about_x, about_z) if modified else (np.eye(4), about_z @ about_x)
@@ -109,13 +119,14 @@ def _standard_frames(axes: Sequence[Axis]) -> list[Array]:
 
 
 def _modified_frames(axes: Sequence[Axis]) -> list[Array]:
-    """Frame i lies on axis i: its z along it, its x along the common normal to the next; the first is there
-    twice."""
+    """Return frames on the axes: z along the axis, x along the common normal to the next; the
+    first frame appears twice.
+    """
     placed: list[Array] = []
     for index, (direction, origin) in enumerate(axes):
         if index + 1 < len(axes):
-            known = placed[-1] if placed else _frame(direction, _any_normal(direction), origin)
-            foot, normal = _normal((direction, origin), axes[index + 1], known)
+            reference = placed[-1] if placed else _frame(direction, _any_normal(direction), origin)
+            foot, normal = _normal((direction, origin), axes[index + 1], reference)
             placed.append(_frame(direction, normal, foot[0]))
         else:
             foot, normal = (
@@ -139,19 +150,24 @@ def _parameters(link: Array, modified: bool, sliding: bool) -> Row:
     return Row(float(theta), float(link[2, 3]), float(a), float(alpha), 1, sliding)
 
 
-def _normal(first: Axis, second: Axis, before: Array) -> tuple[tuple[Array, Array], Array]:
-    """The feet of the common normal of two axes, on either, and its direction. Of parallel axes the normal through the
-    origin of the frame `before`, of those that meet the one that is normal to both; its sense follows the x before."""
-    (z1, p1), (z2, p2) = first, second
+def _normal(axis_a: Axis, axis_b: Axis, previous: Array) -> tuple[tuple[Array, Array], Array]:
+    """Return the feet of the common normal of two axes, on either, and its direction.
+
+    For parallel axes it is the normal through the origin of the frame `previous`, for
+    intersecting ones the normal to both; its sense follows the previous x.
+    """
+    (z1, p1), (z2, p2) = axis_a, axis_b
     cross = np.cross(z1, z2)
     size = float(np.linalg.norm(cross))
     if size < PARALLEL:
-        start: Array = p1 + z1 * float(z1 @ (before[:3, 3] - p1))
+        start: Array = p1 + z1 * float(z1 @ (previous[:3, 3] - p1))
         between = (p2 - start) - z1 * float(z1 @ (p2 - start))
         length = float(np.linalg.norm(between))
-        # parallel axes without a distance are one: any normal will do, best the one before
+        # parallel axes without a distance coincide: any normal is valid, preferably the previous one
         normal: Array = (
-            between / length if length > 1e-9 else before[:3, 0] - z1 * float(z1 @ before[:3, 0])
+            between / length
+            if length > 1e-9
+            else previous[:3, 0] - z1 * float(z1 @ previous[:3, 0])
         )
         return (start, start + between), np.asarray(normal / np.linalg.norm(normal))
     across = p2 - p1
@@ -162,12 +178,12 @@ def _normal(first: Axis, second: Axis, before: Array) -> tuple[tuple[Array, Arra
     along = float(normal @ (foot2 - foot1))
     if abs(along) > 1e-9:
         return (foot1, foot2), normal * np.sign(along)
-    return (foot1, foot2), normal * (1.0 if float(normal @ before[:3, 0]) >= -1e-9 else -1.0)
+    return (foot1, foot2), normal * (1.0 if float(normal @ previous[:3, 0]) >= -1e-9 else -1.0)
 
 
 def _any_normal(direction: Array) -> Array:
-    least = np.eye(3)[int(np.argmin(np.abs(direction)))]
-    normal: Array = least - direction * float(direction @ least)
+    smallest_axis = np.eye(3)[int(np.argmin(np.abs(direction)))]
+    normal: Array = smallest_axis - direction * float(direction @ smallest_axis)
     return normal / np.linalg.norm(normal)
 
 

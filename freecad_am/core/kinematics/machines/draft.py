@@ -36,14 +36,15 @@ _ROUNDINGS = ((0.01, 0.001), (0.05, 0.01), (0.1, 0.05), check_poses.MOST_ROUNDIN
 
 @dataclass(frozen=True, eq=False)
 class Draft:
-    """What a machine file is made of.
+    """The content of a machine file.
 
-    Per axis: `joints` names, `lower`, `upper`, `max_speed`, `max_acceleration`, `max_jerk` (axes,) rad and mm and per s,
-    infinite where endless or not known. `horizontal`: the range, deg, of axis 3 as it is shown against the horizontal, None
-    without. `base` (4, 4): the maker's base frame in base_link. `values` (n, axes) as the controller shows them, deg and mm,
-    with flange `poses` (n, 4, 4) in base_link. `notes`: what a user should know of the source; `remarks` go into the file.
-    `labels`: what the pendant calls the axes, None where it numbers them. `bodies` (axes + 1): what the links of
-    a mechanism beside a robot are made of.
+    Per axis: `joints` names, `lower`, `upper`, `max_speed`, `max_acceleration`, `max_jerk`
+    (axes,) rad and mm and per s, infinite where continuous or not known. `horizontal`: the
+    displayed range, deg, of axis 3 against the horizontal, None without. `base` (4, 4): the
+    manufacturer's base frame in base_link. `values` (n, axes) as the controller shows them,
+    deg and mm, with flange `poses` (n, 4, 4) in base_link. `notes`: notes on the source for
+    the user; `remarks` go into the file. `labels`: the pendant's names of the axes, None if
+    it numbers them. `bodies` (axes + 1): the bodies of the links of a mechanism.
     """
 
     id: str
@@ -76,24 +77,24 @@ class Draft:
         return machines.unit_values(self.chain.sliding)
 
 
-def of_description(described: Description, source: str) -> Draft:
-    """The draft of what a URDF describes; limits are those of the file."""
-    found = urdf_machine.ground_description(described)
-    draft = _bare(found.chain, found.joints, found.name, source)
+def draft_of_description(described: Description, source: str) -> Draft:
+    """Return the draft of a URDF description; limits come from the file."""
+    description = urdf_machine.ground_description(described)
+    draft = _bare(description.chain, description.joints, description.name, source)
     return replace(
         draft,
-        lower=found.lower,
-        upper=found.upper,
-        max_speed=found.max_speed,
-        base=np.eye(4) if found.base is None else found.base,
-        shapes=found.shapes,
-        notes=found.notes,
-        bodies=found.bodies,
+        lower=description.lower,
+        upper=description.upper,
+        max_speed=description.max_speed,
+        base=np.eye(4) if description.base is None else description.base,
+        shapes=description.shapes,
+        notes=description.notes,
+        bodies=description.bodies,
     )
 
 
-def of_chain(chain: Chain, source: str) -> Draft:
-    """The draft of a bare chain, of a table or of closed-form figures."""
+def draft_of_chain(chain: Chain, source: str) -> Draft:
+    """Return the draft of a bare chain, from a table or closed-form figures."""
     grounded, moved = urdf_machine.grounded_chain(chain)
     draft = _bare(
         grounded, tuple(f"joint_{number}" for number in range(1, chain.axes + 1)), "", source
@@ -101,11 +102,12 @@ def of_chain(chain: Chain, source: str) -> Draft:
     return replace(draft, base=moved)
 
 
-def of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
-    """The draft of a copy of a machine of the list, with its check poses and its limits `maker`.
+def draft_of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
+    """Return the draft of a copy of a listed machine, with its check poses and its limits
+    `maker`.
 
-    Raises InputError as `machine.load` does, and BAD_MACHINE where the controller shows axes in a way that a draft cannot
-    say.
+    Raises InputError as `machine.load` does, and BAD_MACHINE if the controller displays axes
+    in a way that a draft cannot express.
     """
     machine = machines.load(name, folders)
     checks = machine_file.read(machines.file_of(name, folders))["check_poses"].items()
@@ -117,7 +119,7 @@ def of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
         ]
     )
     count, limits = len(machine.axes), machine.limits(machines.MAKER)
-    shown = _shown(machine)
+    display = _display_of(machine)
     coupled = [
         span
         for span, row in zip(
@@ -125,7 +127,7 @@ def of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
             limits.coefficients,
             strict=True,
         )
-        if shown.coupling == pendant.HORIZONTAL and np.allclose(row, machine.controller_matrix[2])
+        if display.coupling == pendant.HORIZONTAL and np.allclose(row, machine.controller_matrix[2])
     ]
     names = (
         machine.axes
@@ -143,10 +145,10 @@ def of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
         max_acceleration=machine.max_acceleration,
         max_jerk=machine.max_jerk,
         base=machine.base,
-        shown=shown,
+        shown=display,
         shapes=machine.shapes,
         sources=(f"copy of {machine.id}", *machine.sources),
-        horizontal=(coupled[0][0] + shown.zeros[2], coupled[0][1] + shown.zeros[2])
+        horizontal=(coupled[0][0] + display.zeros[2], coupled[0][1] + display.zeros[2])
         if coupled
         else None,
         posts=machine.posts,
@@ -159,13 +161,16 @@ def of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
 
 
 def closed_form(draft: Draft) -> SerialArm | None:
-    """The inverse of a draft, as `urdf_machine.closed_form` has it; None too of what stands beside a robot."""
+    """Return the inverse of a draft, as `urdf_machine.closed_form` does; None for a mechanism."""
     return None if urdf_machine.is_mechanism(draft.chain) else urdf_machine.closed_form(draft.chain)
 
 
 def text(draft: Draft) -> str:
-    """The machine file. Raises InputError: BAD_NAME; NO_CLOSED_FORM; BAD_MACHINE naming the key that is wrong, such as check
-    poses that are missing or missed."""
+    """Return the machine file.
+
+    Raises InputError: BAD_NAME; NO_CLOSED_FORM; BAD_MACHINE naming the wrong key, such as
+    check poses that are missing or not met.
+    """
     if not NAME.fullmatch(draft.id):
         raise InputError(
             "BAD_NAME",
@@ -200,9 +205,9 @@ def text(draft: Draft) -> str:
         content["bodies"] = {
             "source": draft.sources[0],
             **{
-                name: [_piece(one) for one in pieces]
-                for name, pieces in zip((BASE, *draft.joints), draft.bodies, strict=True)
-                if pieces
+                name: [_piece(body_piece) for body_piece in body_pieces]
+                for name, body_pieces in zip((BASE, *draft.joints), draft.bodies, strict=True)
+                if body_pieces
             },
         }
     content["check_poses"] = _check_poses(draft)
@@ -230,16 +235,16 @@ def _bare(chain: Chain, joints: tuple[str, ...], title: str, source: str) -> Dra
     )
 
 
-def _shown(machine: Machine) -> Shown:
-    """How a machine's controller shows its axes, from matrix and offset."""
+def _display_of(machine: Machine) -> Shown:
+    """Return how a machine's controller displays its axes, from matrix and offset."""
     zeros = tuple(_figures(machine.controller_offset / machine.unit_values))
     signs = tuple(int(np.sign(value)) for value in np.diag(machine.controller_matrix))
     for coupling in (pendant.NONE, pendant.HORIZONTAL) if len(signs) == 6 else (pendant.NONE,):
-        shown = Shown(signs, zeros, coupling)
+        display = Shown(signs, zeros, coupling)
         if 0 not in signs and np.allclose(
-            pendant.matrix(shown, machine.chain)[0], machine.controller_matrix
+            pendant.matrix(display, machine.chain)[0], machine.controller_matrix
         ):
-            return shown
+            return display
     raise InputError(
         "BAD_MACHINE",
         Text("{}: controller.matrix", machine.id),
@@ -248,7 +253,7 @@ def _shown(machine: Machine) -> Shown:
 
 
 def _joints(draft: Draft) -> list[dict[str, Any]]:
-    found = []
+    joints = []
     for index, name in enumerate(draft.joints):
         joint: dict[str, Any] = {"name": name}
         if draft.labels is not None:
@@ -259,11 +264,11 @@ def _joints(draft: Draft) -> list[dict[str, Any]]:
         joint["axis"] = _figures(draft.chain.directions[index])
         joint["max_speed"] = _known(draft.max_speed[index] / draft.units[index])
         for key in ("max_acceleration", "max_jerk"):
-            most = getattr(draft, key)[index]
-            if math.isfinite(most):
-                joint[key] = _known(most / draft.units[index])
-        found.append(joint)
-    return found
+            max_value = getattr(draft, key)[index]
+            if math.isfinite(max_value):
+                joint[key] = _known(max_value / draft.units[index])
+        joints.append(joint)
+    return joints
 
 
 def _controller(draft: Draft) -> dict[str, Any]:
@@ -271,31 +276,31 @@ def _controller(draft: Draft) -> dict[str, Any]:
     remark = "as shown in the check poses"
     if draft.shown.coupling == pendant.HORIZONTAL:
         remark += f"; J3 is shown against the horizontal, {_coupled_label(matrix[2])}"
-    found: dict[str, Any] = {
+    content: dict[str, Any] = {
         "matrix": [_figures(row) for row in matrix],
         "offset": _figures(offset),
         "remark": remark,
     }
     if draft.pulses_per_degree:
-        found["pulses_per_degree"] = list(draft.pulses_per_degree)
+        content["pulses_per_degree"] = list(draft.pulses_per_degree)
     if draft.speed_unit:
-        found["speed_unit"] = draft.speed_unit
-    return found if draft.posts is None else {"posts": list(draft.posts), **found}
+        content["speed_unit"] = draft.speed_unit
+    return content if draft.posts is None else {"posts": list(draft.posts), **content}
 
 
 def _limits(draft: Draft) -> dict[str, Any]:
     spans = np.column_stack((draft.lower / draft.units, draft.upper / draft.units))
-    found: dict[str, Any] = {
+    content: dict[str, Any] = {
         "axes": [None if not np.isfinite(span).all() else _figures(span) for span in spans]
     }
     if draft.shown.coupling == pendant.HORIZONTAL and draft.horizontal is not None:
         row = pendant.matrix(draft.shown, draft.chain)[0][2]
         label = f"J3 as shown ({_coupled_label(row)})"
         span = np.array(draft.horizontal) - draft.shown.zeros[2]
-        found["coupled"] = [
+        content["coupled"] = [
             {"label": label, "coefficients": _figures(row), "range": _figures(span)}
         ]
-    return {**found, "source": "entered when the machine was made"}
+    return {**content, "source": "entered when the machine was made"}
 
 
 def _coupled_label(row: Array) -> str:
@@ -308,18 +313,18 @@ def _shapes(draft: Draft) -> dict[str, Any]:
 
 
 def _shape(shape: LinkShape) -> dict[str, Any]:
-    found: dict[str, Any] = {"file": str(shape.path), **_pose(shape.pose), "scale": shape.scale}
+    content: dict[str, Any] = {"file": str(shape.path), **_pose(shape.pose), "scale": shape.scale}
     if shape.colour is not None:
-        found["colour"] = [round(value, 4) for value in shape.colour]
-    return found
+        content["colour"] = [round(value, 4) for value in shape.colour]
+    return content
 
 
-def _piece(piece: Any) -> dict[str, Any]:
-    """A part of a body, as `links.bodies` reads it."""
-    if isinstance(piece, LinkShape):
-        return _shape(piece)
-    assert isinstance(piece, Primitive) and piece.pose is not None
-    return {piece.kind: _figures(piece.size), **_pose(piece.pose)}
+def _piece(body_piece: Any) -> dict[str, Any]:
+    """Return a part of a body, as `links.bodies` reads it."""
+    if isinstance(body_piece, LinkShape):
+        return _shape(body_piece)
+    assert isinstance(body_piece, Primitive) and body_piece.pose is not None
+    return {body_piece.kind: _figures(body_piece.size), **_pose(body_piece.pose)}
 
 
 def _check_poses(draft: Draft) -> list[dict[str, Any]]:
@@ -327,7 +332,7 @@ def _check_poses(draft: Draft) -> list[dict[str, Any]]:
         return []
     q = pendant.serial(draft.shown, draft.chain, draft.values)
     off = pendant.deviations(draft.chain, draft.shown, draft.values, draft.poses)
-    found = []
+    checks = []
     for angles, pose, deviation in zip(q / draft.units, draft.poses, off, strict=True):
         check = {
             "q": _figures(angles),
@@ -341,8 +346,8 @@ def _check_poses(draft: Draft) -> list[dict[str, Any]]:
         ]
         if fits and (deviation.position > 0.5e-6 or deviation.angle > 1e-8):
             check["within"] = {"mm": fits[0][0], "deg": fits[0][1]}
-        found.append(check)
-    return found
+        checks.append(check)
+    return checks
 
 
 def _pose(pose: Array) -> dict[str, Any]:
@@ -369,8 +374,10 @@ def _known(value: float) -> float | None:
 
 
 def _compact(text: str) -> str:
-    """JSON with lists of numbers, and objects of such lists alone, in one line each."""
+    """Return JSON with lists of numbers, and objects that hold only such lists, on one line
+    each.
+    """
     lists = re.compile(r"\[\s+((?:-?[\d.eE+-]+|null),?\s*)+\]")
     return lists.sub(
-        lambda found: re.sub(r"\s+", " ", found[0]).replace("[ ", "[").replace(" ]", "]"), text
+        lambda match: re.sub(r"\s+", " ", match[0]).replace("[ ", "[").replace(" ]", "]"), text
     )

@@ -19,20 +19,20 @@ from ..limits import Limits, Payload
 from .file import Node
 
 SPEED_UNITS = ("mm/s", "cm/min", "mm/min")
-# what a warning may apply to: positions of Cartesian programs, joint values of joint programs, the limits of all sets or,
+# possible scopes of a warning: positions of Cartesian programs, joint values of joint programs, the limits of all sets or,
 # behind a dot, of one, and the speeds of the axes
 WARNED = ("base", "joint", "limits", "speeds")
 
 
 class MachineWarning(NamedTuple):
-    """A doubt about a machine file that may change a program: what it applies to, and in words."""
+    """A doubt about a machine file that may change a program: its scope, and its text."""
 
     applies_to: str
     text: str
 
 
 def warnings_of(top: Node) -> tuple[MachineWarning, ...]:
-    """The warnings of a machine file, none where it has no such key."""
+    """Return the warnings of a machine file, empty without the key."""
     return (
         tuple(_warning(node, top) for node in top["warnings"].items())
         if top.has("warnings")
@@ -56,7 +56,7 @@ def _warning(node: Node, top: Node) -> MachineWarning:
 
 
 def pulses_of(controller: Node, count: int) -> tuple[float, ...]:
-    """The pulses of each axis, none where the file does not tell them."""
+    """Return the pulses of each axis, empty if the file does not state them."""
     if not controller.has("pulses_per_degree"):
         return ()
     node = controller["pulses_per_degree"]
@@ -103,27 +103,31 @@ def slides(joint: Node) -> bool:
     return kind == "prismatic"
 
 
-def most_of(joint: Node, key: str, what: str) -> float:
+def maximum_of(joint: Node, key: str, what: str) -> float:
     if not joint.has(key):
         return math.inf
-    most = joint[key].number()
-    if most <= 0.0:
+    maximum = joint[key].number()
+    if maximum <= 0.0:
         raise joint[key].bad(
-            Text("{:g} is not {}; give more than 0, or null where not known", most, what)
+            Text("{:g} is not {}; give more than 0, or null where not known", maximum, what)
         )
-    return most
+    return maximum
 
 
 def payload_of(top: Node) -> Payload:
-    """What a machine carries, as far as its file tells it."""
+    """Return the payload of a machine, as far as its file states it."""
     if not top.has("payload"):
         return Payload()
     payload = top["payload"].only("kg", "from_axis", "source")
-    return Payload(most_of(payload, "kg", "a mass"), most_of(payload, "from_axis", "a distance"))
+    return Payload(
+        maximum_of(payload, "kg", "a mass"), maximum_of(payload, "from_axis", "a distance")
+    )
 
 
-def recognised(chain: Chain) -> tuple[SerialArm | None, str]:
-    """The inverse of a robot whose file has no `opw`, or why there is none; that of rotary axes is in `five_axis`."""
+def recognise_arm(chain: Chain) -> tuple[SerialArm | None, str]:
+    """Return the inverse of a robot whose file has no `opw`, or the reason for having none;
+    `five_axis` handles five-axis machines.
+    """
     if is_five_axis(chain.sliding):
         return None, ""
     try:

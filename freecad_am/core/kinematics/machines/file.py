@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Typed access to the JSON of a machine file: every mistake is named by file, key and value.
+"""Typed access to the JSON of a machine file: every error names file, key and value.
 
-What the keys mean is in docs/machines.md.
+docs/machines.md explains the keys.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ...geometry.file_content import read_content
 from ...issues import InputError, Text, Word
 from ...types import Array
 
-LARGEST = 16  # MB
+MAX_FILE_MB = 16  # MB
 LARGEST_NUMBER = 1e300
 
 
@@ -35,19 +35,19 @@ class Node:
             "BAD_MACHINE", f"{self.path}{': ' if self.key else ''}{self.key}", message
         )
 
-    def only(self, *known: str) -> Node:
-        """Itself, if it is an object without unknown keys."""
+    def only(self, *allowed: str) -> Node:
+        """Return the node, if it is an object without unknown keys."""
         if not isinstance(self.value, dict):
             raise self.bad(
                 Text(
                     "{} is not an object with the keys {}; write it as one in braces",
                     _short(self.value),
-                    ", ".join(known),
+                    ", ".join(allowed),
                 )
             )
         for key in self.value:
-            if key not in known:
-                raise self.bad(Text("the key {!r} is not known; use {}", key, ", ".join(known)))
+            if key not in allowed:
+                raise self.bad(Text("the key {!r} is not known; use {}", key, ", ".join(allowed)))
         return self
 
     def has(self, key: str) -> bool:
@@ -115,7 +115,9 @@ class Node:
         return np.array([item.number() for item in self.items(length)])
 
     def span(self, unit: float = math.radians(1.0)) -> tuple[float, float]:
-        """A range of two numbers times `unit`: of angles in degrees, in rad; null is endless."""
+        """Return a range of two numbers times `unit`: angles in degrees become rad; null is
+        unlimited.
+        """
         if self.value is None:
             return -math.inf, math.inf
         lower, upper = (item.number() for item in self.items(2))
@@ -138,15 +140,15 @@ class Node:
 
 
 def _once(pairs: list[tuple[str, Any]], path: Path) -> dict[str, Any]:
-    """An object, each key of which stands once."""
-    known: dict[str, Any] = {}
+    """Return an object, each key of which occurs once."""
+    entries: dict[str, Any] = {}
     for key, value in pairs:
-        if key in known:
+        if key in entries:
             raise InputError(
                 "BAD_MACHINE", str(path), "the key {!r} stands there twice; remove one", key
             )
-        known[key] = value
-    return known
+        entries[key] = value
+    return entries
 
 
 def read(path: Path) -> Node:
@@ -154,7 +156,7 @@ def read(path: Path) -> Node:
     try:
         return Node(
             json.loads(
-                read_content(path, LARGEST, "BAD_MACHINE", str(path)).decode("utf-8-sig"),
+                read_content(path, MAX_FILE_MB, "BAD_MACHINE", str(path)).decode("utf-8-sig"),
                 object_pairs_hook=lambda pairs: _once(pairs, path),
             ),
             path,

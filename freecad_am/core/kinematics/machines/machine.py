@@ -42,7 +42,7 @@ MAKER = "maker"
 BASE_NOT_KNOWN = "The maker's own base frame is not known: base_link is used in its place."
 UNKNOWN_REMARK = "a URDF does not say what the controller shows"
 REFUSED = (
-    "BAD_MACHINE: "  # begins what stands in place of the title of a file that is not a machine file
+    "BAD_MACHINE: "  # prefix of the text in place of the title of a file that is not a machine file
 )
 KEYS = (
     "id",
@@ -67,18 +67,21 @@ KEYS = (
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """A machine. Joint values are serial ones, rad, and mm of joints that slide; lengths mm.
+    """A machine. Joint values are serial ones, rad, and mm for prismatic joints; lengths mm.
 
-    `arm` is the inverse of a robot, None of a machine with rotary axes and where `no_arm` tells why it cannot be planned
-    for; `opw` that of a spherical wrist. `base` (4, 4) is the maker's base frame in base_link, the frame of the floor plate
-    in which `chain` and `arm` speak. `max_speed` (axes,) rad/s or mm/s, infinite where not known.
-    `controller_matrix` (axes, axes) and `controller_offset` (axes,) rad give what the controller shows:
-    C q + c0; `controller_remark` says how well that is known. `posts` are the posts its controller can read, None where
-    the file does not say; `pulses_per_degree` (axes,) and the `speed_unit` of its path speeds, empty where it does not say.
-    `max_acceleration`, `max_jerk` (axes,) rad or mm and per s^2, s^3, infinite where not known.
-    `shapes` (axes + 1) are the files a user gave the links to be drawn from, base first. `external`: how many of the axes,
-    the last ones, are not the robot's own (`external.coupled`). `bodies` (axes + 1): what its links are made of. `of_urdf`:
-    whether that is the file that tells of it. `warnings`: doubts that may change a program.
+    `arm` is the inverse of a robot, None for a five-axis machine and where `no_arm` says why
+    it cannot be planned; `opw` the inverse of a spherical wrist. `base` (4, 4) is the
+    manufacturer's base frame in base_link, the frame of the floor plate that `chain` and
+    `arm` use. `max_speed` (axes,) rad/s or mm/s, infinite where not known.
+    `controller_matrix` (axes, axes) and `controller_offset` (axes,) rad give the displayed
+    values: C q + c0; `controller_remark` says how certain that is. `posts` are the posts its
+    controller can read, None if the file does not say; `pulses_per_degree` (axes,) and the
+    `speed_unit` of its path speeds, empty if it does not say. `max_acceleration`, `max_jerk`
+    (axes,) rad or mm and per s^2, s^3, infinite where not known. `shapes` (axes + 1) are the
+    files from which the user has the links drawn, base first. `external`: number of the axes,
+    the last ones, that are external (`external.coupled`). `bodies` (axes + 1): the bodies of
+    its links. `of_urdf`: whether it comes from a URDF. `warnings`: doubts that may change a
+    program.
     """
 
     id: str
@@ -114,7 +117,7 @@ class Machine:
 
     @property
     def arrangements(self) -> tuple[Arrangement, ...]:
-        """What it can do in a cell, the usual one first."""
+        """The arrangements it can have in a cell, the usual one first."""
         return (
             OF_FIVE_AXES
             if is_five_axis(self.chain.sliding[: len(self.axes) - self.external])
@@ -123,25 +126,29 @@ class Machine:
 
     @property
     def free(self) -> int:
-        """How many coordinates point and tool axis leave free: a robot's rotation about the tool, and axes beside it."""
+        """Number of coordinates that point and tool axis leave free: a robot's rotation about the
+        tool, and external axes.
+        """
         return self.arrangements[0].free + self.external
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """What tables call the axes: q1 to q6 for every robot, so that whoever reads them needs to know no machine."""
+        """Names of the axes in tables: q1 to q6 for every robot, so that reading them requires no
+        machine.
+        """
         if self.arrangements[0].named_axes:
             return self.axes
-        own = len(self.axes) - self.external
-        return (*(f"q{index + 1}" for index in range(own)), *self.axes[own:])
+        robot_axes = len(self.axes) - self.external
+        return (*(f"q{index + 1}" for index in range(robot_axes)), *self.axes[robot_axes:])
 
     @property
     def base_is_known(self) -> bool:
-        """Whether `base` is the manufacturer's own base frame; False where base_link stands for it."""
+        """Whether `base` is the manufacturer's own base frame; False if base_link replaces it."""
         return BASE_NOT_KNOWN not in self.remarks and not self.warnings_of("base")
 
     def warnings_of(self, *applies_to: str) -> tuple[str, ...]:
-        """The texts of the warnings that apply to these, see entries.WARNED."""
-        return tuple(one.text for one in self.warnings if one.applies_to in applies_to)
+        """Return the texts of the warnings with these scopes, see entries.WARNED."""
+        return tuple(warning.text for warning in self.warnings if warning.applies_to in applies_to)
 
     @property
     def units(self) -> tuple[str, ...]:
@@ -154,7 +161,7 @@ class Machine:
         return unit_values(self.chain.sliding)
 
     def limits(self, name: str) -> Limits:
-        """The set of limits of that name; InputError 'UNKNOWN_LIMITS' when there is none."""
+        """Return the set of limits with this name; InputError 'UNKNOWN_LIMITS' if it does not exist."""
         if name not in self.limit_sets:
             raise InputError(
                 "UNKNOWN_LIMITS",
@@ -171,22 +178,24 @@ class Machine:
         result: Array = np.asarray(q, float) @ self.controller_matrix.T + self.controller_offset
         return result
 
-    def from_controller(self, shown: ArrayLike) -> Array:
-        """The serial angles (..., axes) of what the controller shows (..., axes), rad."""
+    def from_controller(self, displayed: ArrayLike) -> Array:
+        """Return the serial angles (..., axes) for displayed values (..., axes), rad."""
         back = np.linalg.inv(self.controller_matrix)
-        result: Array = (np.asarray(shown, float) - self.controller_offset) @ back.T
+        result: Array = (np.asarray(displayed, float) - self.controller_offset) @ back.T
         return result
 
 
 def unit_values(sliding: Mask) -> Array:
-    """rad of a degree for axes (axes,) that turn, 1 for those that slide."""
+    """Return rad per degree for revolute axes (axes,), 1 for prismatic ones."""
     return np.where(sliding, 1.0, math.radians(1.0))
 
 
 def known(folders: Sequence[Path | str] = ()) -> list[tuple[str, str]]:
-    """Id and title of every machine, built in and in the user's `folders`, in order of id.
+    """Return id and title of every machine, built in and in the user's `folders`, in order of
+    id.
 
-    A file that is not a machine file stands among them with what is wrong in place of a title: `load` refuses it alone.
+    A file that is not a machine file is included with its error in place of a title: only
+    `load` rejects it.
     """
     return [(name, _title(path)) for name, path in sorted(_files(folders).items())]
 
@@ -199,11 +208,14 @@ def _title(path: Path) -> str:
 
 
 def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
-    """The machine of an id, of the path of a machine file, with the calibration of one robot (`calibration.Named`) or
-    without, or of a URDF (`urdf_machine.Reference`). A file of the user's `folders` goes before a built-in one.
+    """Return the machine of an id, a machine file path, or a URDF (`urdf_machine.Reference`).
 
-    Raises InputError: UNKNOWN_MACHINE when there is none; BAD_MACHINE, naming file, key and value, when the file is
-    wrong or does not give its own check poses; BAD_CALIBRATION; BAD_URDF, and NO_CLOSED_FORM with the reason.
+    A machine file may have the calibration of one robot (`calibration.Named`). A file in the
+    user's `folders` goes before a built-in one.
+
+    Raises InputError: UNKNOWN_MACHINE if it does not exist; BAD_MACHINE, naming file, key and
+    value, if the file is wrong or does not meet its own check poses; BAD_CALIBRATION;
+    BAD_URDF, and NO_CLOSED_FORM with the reason.
     """
     text = str(name)
     measured = calibration.named(text)
@@ -219,9 +231,9 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
                 text,
             )
         return _parse(read(path))
-    meant = reference(text)
-    if meant is not None:
-        return of_description(f"{meant}", *urdf_machine.describe(meant))
+    urdf_reference = reference(text)
+    if urdf_reference is not None:
+        return machine_of_description(f"{urdf_reference}", *urdf_machine.describe(urdf_reference))
     path = file_of(text, folders)
     machine = (
         _built_in(path, locate(path).stat().st_mtime_ns)
@@ -241,12 +253,16 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
 
 @functools.lru_cache(maxsize=8)
 def _built_in(path: Path, _: int) -> Machine:
-    """One of ours, read once: every stage of a job asks for it, and what it is made of stands in its file alone."""
+    """Return a built-in machine, read once: every stage of a job asks for it, and its file is
+    its only source.
+    """
     return _parse(read(path))
 
 
 def file_of(name: str, folders: Sequence[Path | str] = ()) -> Path:
-    """The file of a machine of this id; InputError UNKNOWN_MACHINE when there is none."""
+    """Return the file of the machine with this id; InputError UNKNOWN_MACHINE if it does not
+    exist.
+    """
     for folder in (*folders, BUILT_IN):
         path = Path(folder).expanduser() / f"{name}.json"
         if path.stem == name and is_there(path):  # a name may be too long for a file
@@ -259,7 +275,8 @@ def file_of(name: str, folders: Sequence[Path | str] = ()) -> Path:
 
 
 def parse(text: str, path: Path) -> Machine:
-    """The machine of the text of a machine file, which need not be there yet; `path` names it, and places its shapes.
+    """Return the machine of the text of a machine file, which need not exist yet; `path` names
+    it, and locates its shapes.
 
     Raises InputError BAD_MACHINE as `load` does.
     """
@@ -267,10 +284,10 @@ def parse(text: str, path: Path) -> Machine:
 
 
 def _files(folders: Sequence[Path | str]) -> dict[str, Path]:
-    found = {path.stem: path for path in BUILT_IN.glob("*.json")}
+    files = {path.stem: path for path in BUILT_IN.glob("*.json")}
     for folder in reversed(folders):
-        found.update((path.stem, path) for path in Path(folder).expanduser().glob("*.json"))
-    return found
+        files.update((path.stem, path) for path in Path(folder).expanduser().glob("*.json"))
+    return files
 
 
 def _parse(top: Node) -> Machine:
@@ -292,7 +309,7 @@ def _parse(top: Node) -> Machine:
     count = len(joints)
     sliding = np.array([entry.slides(joint) for joint in joints])
     units = unit_values(sliding)
-    # the axes of a robot go by number unless the file has what its pendant shows; those of a machine tool have names
+    # the axes of a robot are numbered unless the file has the pendant's labels; the axes of a machine tool have names
     names = tuple(
         entry.name_of(joint, f"q{index + 1}", bool(sliding.any()))
         for index, joint in enumerate(joints)
@@ -309,7 +326,7 @@ def _parse(top: Node) -> Machine:
     links = tuple(joint["name"].text() for joint in joints)
     shapes = link_shapes(top, links)
     arm, no_arm = (
-        (entry.opw_arm(top["opw"], count), "") if top.has("opw") else entry.recognised(chain)
+        (entry.opw_arm(top["opw"], count), "") if top.has("opw") else entry.recognise_arm(chain)
     )
     machine = Machine(
         id=top["id"].text(),
@@ -319,7 +336,7 @@ def _parse(top: Node) -> Machine:
         arm=arm,
         no_arm=no_arm,
         base=top["base"].only("origin", "rpy").pose() if top.has("base") else np.eye(4),
-        max_speed=np.array([entry.most_of(joint, "max_speed", "a speed") for joint in joints])
+        max_speed=np.array([entry.maximum_of(joint, "max_speed", "a speed") for joint in joints])
         * units,
         limit_sets={
             name: entry.limits_of(name, node, names, units) for name, node in top["limits"].pairs()
@@ -335,10 +352,11 @@ def _parse(top: Node) -> Machine:
         sources=top["sources"].texts(),
         remarks=top["remarks"].texts() if top.has("remarks") else (),
         max_acceleration=np.array(
-            [entry.most_of(joint, "max_acceleration", "an acceleration") for joint in joints]
+            [entry.maximum_of(joint, "max_acceleration", "an acceleration") for joint in joints]
         )
         * units,
-        max_jerk=np.array([entry.most_of(joint, "max_jerk", "a jerk") for joint in joints]) * units,
+        max_jerk=np.array([entry.maximum_of(joint, "max_jerk", "a jerk") for joint in joints])
+        * units,
         shapes=shapes,
         payload=entry.payload_of(top),
         warnings=entry.warnings_of(top),
@@ -362,7 +380,7 @@ def _parse(top: Node) -> Machine:
 
 
 def _calibrated(machine: Machine, path: Path) -> Machine:
-    """The machine with the joint frames that were measured of one robot, and the inverse of these."""
+    """Return the machine with the measured joint frames of one robot, and their inverse."""
     if not isinstance(machine.arm, ParallelAxesArm):
         raise InputError(
             "BAD_CALIBRATION",
@@ -381,19 +399,21 @@ def _calibrated(machine: Machine, path: Path) -> Machine:
     )
 
 
-def of_description(source: str, found: Description, arm: SerialArm | None) -> Machine:
-    """The machine of a URDF, with its limits and speeds; no post writes for a controller that it does not tell of."""
-    count = found.chain.axes
+def machine_of_description(source: str, description: Description, arm: SerialArm | None) -> Machine:
+    """Return the machine of a URDF, with its limits and speeds; no post writes for its unknown
+    controller.
+    """
+    count = description.chain.axes
     none = np.zeros((0, count))
     names = (
-        found.joints
-        if found.chain.sliding.any()
+        description.joints
+        if description.chain.sliding.any()
         else tuple(f"q{index + 1}" for index in range(count))
     )
     limits = Limits(
         name=MAKER,
-        lower=found.lower,
-        upper=found.upper,
+        lower=description.lower,
+        upper=description.upper,
         coefficients=none,
         coupled_lower=none[:, 0],
         coupled_upper=none[:, 0],
@@ -402,14 +422,14 @@ def of_description(source: str, found: Description, arm: SerialArm | None) -> Ma
     )
     unknown = np.full(count, math.inf)
     return Machine(
-        id=found.name,
-        title=found.name,
+        id=description.name,
+        title=description.name,
         axes=names,
-        chain=found.chain,
+        chain=description.chain,
         arm=arm,
         no_arm="",
-        base=np.eye(4) if found.base is None else found.base,
-        max_speed=found.max_speed,
+        base=np.eye(4) if description.base is None else description.base,
+        max_speed=description.max_speed,
         limit_sets={MAKER: limits},
         controller_matrix=np.eye(count),
         controller_offset=np.zeros(count),
@@ -418,10 +438,10 @@ def of_description(source: str, found: Description, arm: SerialArm | None) -> Ma
         pulses_per_degree=(),
         speed_unit="",
         sources=(source,),
-        remarks=found.notes,
+        remarks=description.notes,
         max_acceleration=unknown,
         max_jerk=unknown,
-        shapes=found.shapes,
-        bodies=found.bodies,
+        shapes=description.shapes,
+        bodies=description.bodies,
         of_urdf=True,
     )

@@ -17,11 +17,15 @@ def unknown(name: str, names: Sequence[str]) -> InputError:
 
 
 def _near(name: str, names: Sequence[str]) -> str:
-    """The names most like it; where none is, one of each maker: all of them fill a page."""
+    """Return the most similar names; without any, one name of each manufacturer, because all
+    would fill a page.
+    """
     alike = difflib.get_close_matches(name.lower().replace("_", "-"), names, n=3, cutoff=0.5)
     if alike:
         return Text("did you mean {}?", ", ".join(alike))
-    of_makers = {one.partition("-")[0]: one for one in reversed(names)}
+    of_makers = {
+        name_of_maker.partition("-")[0]: name_of_maker for name_of_maker in reversed(names)
+    }
     return Text(
         "none of {} machines has a name like it; use one that `freecad-am machines` lists, such as {}, or the path of a "
         "machine file or URDF",

@@ -23,20 +23,30 @@ def rotation(convention: str, figures: Array) -> Array:
     """The rotations (..., 3, 3) of figures (..., 3) deg, or (..., 4) of a quaternion of any length."""
     figures = np.asarray(figures, float)
     if convention == QUATERNION:
-        return _of_quaternion(figures)
-    first, second, third = np.moveaxis(np.radians(figures), -1, 0)
+        return _from_quaternion(figures)
+    angle_a, angle_b, angle_c = np.moveaxis(np.radians(figures), -1, 0)
     if convention == FANUC:
-        return np.asarray(frames.about_z(third) @ frames.about_y(second) @ frames.about_x(first))
+        return np.asarray(
+            frames.about_z(angle_c) @ frames.about_y(angle_b) @ frames.about_x(angle_a)
+        )
     if convention == KUKA:
-        return np.asarray(frames.about_z(first) @ frames.about_y(second) @ frames.about_x(third))
+        return np.asarray(
+            frames.about_z(angle_a) @ frames.about_y(angle_b) @ frames.about_x(angle_c)
+        )
     if convention == STAUBLI:
-        return np.asarray(frames.about_x(first) @ frames.about_y(second) @ frames.about_z(third))
-    return np.asarray(frames.about_z(first) @ frames.about_y(second) @ frames.about_z(third))
+        return np.asarray(
+            frames.about_x(angle_a) @ frames.about_y(angle_b) @ frames.about_z(angle_c)
+        )
+    return np.asarray(frames.about_z(angle_a) @ frames.about_y(angle_b) @ frames.about_z(angle_c))
 
 
 def flange_poses(convention: str, figures: Array, base: Array, tool: Array) -> Array:
-    """The flange poses (n, 4, 4) in base_link of poses as shown (n, 6 or 7), mm and deg: those of a `tool` (4, 4) on the
-    flange, in the maker's `base` frame (4, 4)."""
+    """Return the flange poses (n, 4, 4) in base_link for displayed poses (n, 6 or 7), mm and
+    deg.
+
+    These are poses of a `tool` (4, 4) on the flange, in the manufacturer's `base` frame (4,
+    4).
+    """
     figures = np.asarray(figures, float)
     poses = frames.pose(rotation(convention, figures[:, 3:]), figures[:, :3])
     result: Array = base @ poses @ frames.inverse(tool)
@@ -58,7 +68,7 @@ def figures_of(convention: str, poses: Array) -> Array:
     return np.column_stack((poses[:, :3, 3], angles)) + 0.0
 
 
-def _of_quaternion(q: Array) -> Array:
+def _from_quaternion(q: Array) -> Array:
     w, x, y, z = np.moveaxis(q / np.linalg.norm(q, axis=-1, keepdims=True), -1, 0)
     rows = (
         (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)),
@@ -69,7 +79,9 @@ def _of_quaternion(q: Array) -> Array:
 
 
 def _to_quaternion(turned: Array) -> Array:
-    """Unit quaternions (n, 4), the scalar first and not negative: of four ways that which divides by the largest figure."""
+    """Return unit quaternions (n, 4), scalar first and not negative, by the formula that divides
+    by the largest component.
+    """
     diagonal = np.diagonal(turned, axis1=1, axis2=2)
     squares = (
         np.column_stack(
@@ -93,14 +105,14 @@ def _to_quaternion(turned: Array) -> Array:
 
 
 def _to_zyz(turned: Array) -> Array:
-    """O A T (n, 3) rad, A from 0 to pi; where it is either of them, O is 0."""
+    """Return O A T (n, 3) rad, A from 0 to pi; O is 0 where A is 0 or pi."""
     locked = np.hypot(turned[:, 0, 2], turned[:, 1, 2]) < 1e-12
-    first = np.where(locked, 0.0, np.arctan2(turned[:, 1, 2], turned[:, 0, 2]))
-    second = np.arctan2(np.hypot(turned[:, 0, 2], turned[:, 1, 2]), turned[:, 2, 2])
+    angle_o = np.where(locked, 0.0, np.arctan2(turned[:, 1, 2], turned[:, 0, 2]))
+    angle_a = np.arctan2(np.hypot(turned[:, 0, 2], turned[:, 1, 2]), turned[:, 2, 2])
     # the frame's Y as O turned it
-    across = np.column_stack((-np.sin(first), np.cos(first), np.zeros_like(first)))
-    third = np.arctan2(
+    across = np.column_stack((-np.sin(angle_o), np.cos(angle_o), np.zeros_like(angle_o)))
+    angle_t = np.arctan2(
         np.einsum("ni,ni->n", across, turned[:, :, 0]),
         np.einsum("ni,ni->n", across, turned[:, :, 1]),
     )
-    return np.column_stack((first, second, third))
+    return np.column_stack((angle_o, angle_a, angle_t))

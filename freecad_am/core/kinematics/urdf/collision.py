@@ -69,7 +69,7 @@ def _pieces(urdf: Urdf, link: str, pose: Array, notes: list[str]) -> Iterator[Li
     for geometry in text:
         solid = _solid(geometry)
         if solid is not None:
-            yield solid.moved(pose @ geometry.pose())
+            yield solid.move(pose @ geometry.pose())
             continue
         shape = urdf.mesh_of(geometry, f"{link}: {NOT_LOOKED_AT}", notes)
         if shape is not None:

@@ -102,7 +102,7 @@ def _looked(
         points.frames.of(reachable_rows), phi[reachable_rows], joints[reachable_rows]
     )
     all_pairs = np.ones((len(gaps.pairs), len(reachable_rows)), dtype=bool)
-    gap[:, reachable_rows], slope[:, reachable_rows] = gaps.at(
+    gap[:, reachable_rows], slope[:, reachable_rows] = gaps.gaps_and_rates(
         joints[reachable_rows],
         rates * phi_rate[reachable_rows, None],
         moment[points.bead[reachable_rows]],

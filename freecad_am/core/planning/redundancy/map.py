@@ -215,7 +215,7 @@ def picture(task: Task, redundancy: RedundancyMap, branch: int) -> Picture:
     """One branch of a map, with its condition."""
     branch_task = dataclasses.replace(task, branch=branch)
     points = redundancy.columns.points
-    flange = points.frames.at(redundancy.phi).reshape(-1, 4, 4)
+    flange = points.frames.flange_poses(redundancy.phi).reshape(-1, 4, 4)
     condition = branch_task.condition_at(
         flange, branch_task.arm.inverse_branch(flange, branch)
     ).reshape(redundancy.phi.shape)
@@ -247,7 +247,7 @@ def arm_touched(
     branch_task = dataclasses.replace(task, branch=branch)
     points = redundancy.columns.points
     joints = branch_task.arm.inverse_branch(
-        points.frames.at(redundancy.phi[rows]).reshape(-1, 4, 4), branch
+        points.frames.flange_poses(redundancy.phi[rows]).reshape(-1, 4, 4), branch
     )
     if points.external is not None:
         joints = with_external(joints, np.tile(points.external, (len(rows), 1)))
@@ -307,7 +307,7 @@ def _of_all_branches(task: Task, points: Points, phi: Array) -> Array:
     """(8, R, C, axes) joints of all branches for rotations phi (R, C) of C points; NaN out of reach."""
     arm = task.cell.machine.arm
     assert arm is not None  # resolve() refuses other machines
-    joints = arm.inverse(points.frames.at(phi).reshape(-1, 4, 4))[:8]
+    joints = arm.inverse(points.frames.flange_poses(phi).reshape(-1, 4, 4))[:8]
     joints = joints.reshape(len(joints), *phi.shape, -1)
     return joints if points.external is None else with_external(joints, points.external)
 

@@ -33,7 +33,7 @@ def courses(
     """All ways (n, 5) to run a bead, up to whole turns. Directions within `pole` rad of the turning axis count as along it;
     where that is more than usual, the axis turns there as it has to be afterwards."""
     arm, torch = FiveAxis(cell.machine.chain), cell.station[:3, 2]
-    points, tools = cell.on_flange(bead.points, bead.tool)
+    points, tools = cell.to_flange(bead.points, bead.tool)
     if lock is not None:
         turned = _locked(arm, lock, tools, torch)
         turned[:, 1 - lock.axis] = np.unwrap(turned[:, 1 - lock.axis])

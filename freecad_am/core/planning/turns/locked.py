@@ -38,7 +38,7 @@ def lock_of(cell: Cell, parameters: JointParameters, toolpath: Toolpath) -> Lock
         return Lock(axis, parameters.lock_at)
     arm, tools = (
         FiveAxis(cell.machine.chain),
-        [cell.on_flange(bead.points, bead.tool)[1] for _, _, bead in toolpath],
+        [cell.to_flange(bead.points, bead.tool)[1] for _, _, bead in toolpath],
     )
     directions: Array = np.unique(np.round(np.concatenate(tools), 5), axis=0)
     turning = arm.turning[axis]
