@@ -11,8 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.curves.plane_curve import length
-from ..geometry.regions.region import Region, along, simplified
-from ..geometry.regions.several import intersect_regions
+from ..geometry.regions.region import Region, measure_bands, simplified
 from ..geometry.regions.strip import Strip
 from ..types import Array
 from .curve import Beads, PlaneCurve
@@ -82,13 +81,10 @@ def _of_regions(
     share of the usual width of each."""
     lines = [line for some, _ in widths for line in some]
     half = beads.inset * np.array([share for _, shares in widths for share in shares])
-    covered = along(lines, half, beads.chord_error) if lines else ()
-    covered = intersect_regions(covered, pane) if pane else covered
     whole = math.fsum(region.area for region in regions)
-    inside = (
-        math.fsum(part.area for part in intersect_regions(regions, covered)) if covered else 0.0
-    )
-    area = math.fsum(part.area for part in covered)
+    if not lines:
+        return Cover(whole, whole)
+    inside, area = measure_bands(regions, lines, half, beads.chord_error, pane)
     return Cover(whole, whole - inside, area - inside, area)
 
 
