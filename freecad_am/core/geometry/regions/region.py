@@ -172,7 +172,9 @@ class Region:
     def common(self, others: Sequence[Region], every_point: bool = False) -> tuple[Region, ...]:
         """What it shares with others. every_point: as `regions`."""
         return _parts(
-            self.shape.intersection(_union(others)), SLIVER * self.extent**2, every_point=every_point
+            self.shape.intersection(_union(others)),
+            SLIVER * self.extent**2,
+            every_point=every_point,
         )
 
     def pieces(self, line: Array) -> list[Array]:
