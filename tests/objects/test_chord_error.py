@@ -54,6 +54,14 @@ def test_small_parts_keep_it_and_large_ones_say_so(block):
     assert float(wall.ChordError) == 0.01, "the chosen face is 20 mm long"
 
 
+def test_a_datum_plane_in_the_container_does_not_count(block):
+    """FreeCAD has the unbounded face of a datum plane in the shape of a container."""
+    part = block(100)
+    part.Shape = Part.Compound([part.Shape, Part.Plane().toShape()])
+    feature = api.make_solid_feature(part.Document, part, layer_height=2)
+    assert float(feature.ChordError) == 0.01 and "CHORD_ERROR" not in codes(feature)
+
+
 @pytest.mark.parametrize("given", ["keyword", "dataclass"])
 def test_a_given_value_stays(block, given):
     part = block(500)

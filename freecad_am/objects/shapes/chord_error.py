@@ -9,6 +9,7 @@ from typing import Any
 
 import Part
 
+from ...brep.files.read import MAX_COORDINATE_MM
 from ...brep.kernel import limits as kernel
 from ...core.issues import NOTE, AmError, Issue, Text
 from ...core.parameters.chord_error import (
@@ -94,8 +95,19 @@ def _boxes(obj: Any) -> Iterator[Any]:
                 if deposit_source is source
                 else []
             )
-        for element in elements or [shape]:
+        for element in elements or _bounded_parts(shape):
             yield _box(element)
+
+
+def _bounded_parts(shape: Any) -> list[Any]:
+    """The shape, or its solids if it reaches to infinity, as a container with a datum plane does."""
+    if _extent(shape.BoundBox) <= MAX_COORDINATE_MM:
+        return [shape]
+    return [solid for solid in shape.Solids if _extent(solid.BoundBox) <= MAX_COORDINATE_MM]
+
+
+def _extent(box: Any) -> float:
+    return max(box.XLength, box.YLength, box.ZLength) if box.isValid() else 0.0
 
 
 def _box(shape: Any) -> Any:
@@ -103,6 +115,6 @@ def _box(shape: Any) -> Any:
     shape may have, so it only decides about small shapes.
     """
     box = shape.BoundBox
-    if box.isValid() and max(box.XLength, box.YLength, box.ZLength) > SMALL:
+    if _extent(box) > SMALL:
         return shape.copy(True, False).optimalBoundingBox()  # without its triangles
     return box
