@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Texts that differ in their digits alone, read together: a program says the same thing many thousand times over, with other
-numbers. What is found in one of them is at the same place in all."""
+"""Texts that differ only in their digits, read together: a program repeats the same line thousands
+of times with other numbers. A match in one text is at the same position in all.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +17,9 @@ _EXACT = 15  # digits of a whole number that a float always holds
 
 
 def shapes(texts: Sequence[str], between: str = "\n") -> dict[str, list[int]]:
-    """The texts with all digits 0, and which of the texts have each of these shapes; no text holds what is put `between`."""
+    """The shapes of texts (digits replaced by 0), and the texts of each shape; no text contains
+    `between`.
+    """
     by_shape: defaultdict[str, list[int]] = defaultdict(list)
     if texts:
         for number, shape in enumerate(between.join(texts).translate(_DIGITS).split(between)):
@@ -25,7 +28,7 @@ def shapes(texts: Sequence[str], between: str = "\n") -> dict[str, list[int]]:
 
 
 def numbers(texts: Sequence[str], shape: str, spans: Sequence[tuple[int, int]]) -> Array:
-    """(n, k) the decimal numbers that stand at k places, from and to, of texts (n,) of one shape."""
+    """(n, k) the decimal numbers at k spans (begin, end) of texts (n,) of one shape."""
     words = [shape[begin:end] for begin, end in spans]
     counts = [word.count("0") for word in words]
     if max(counts) > _EXACT:
@@ -34,7 +37,7 @@ def numbers(texts: Sequence[str], shape: str, spans: Sequence[tuple[int, int]]) 
         len(texts), len(shape)
     )
     digit_columns = [
-        place for begin, end in spans for place in range(begin, end) if shape[place] == "0"
+        position for begin, end in spans for position in range(begin, end) if shape[position] == "0"
     ]
     worth = [10**power for count in counts for power in range(count - 1, -1, -1)]
     digits = (table.T[digit_columns] - np.uint8(ord("0"))) * np.array(worth)[:, None]

@@ -28,9 +28,9 @@ NAMES = (
     "kuka",
 )
 _MOTIONS = ("joint", "cartesian")  # the usual one first
-# of the modules beside this one
+# of the modules next to this one
 
-# what each post reads of the parameters below `program.nc`; the others read none of them
+# the parameters below `program.nc` that each post reads; other posts read none
 NC_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "siemens": (
         "feed",
@@ -55,12 +55,14 @@ NC_PARAMETERS: Mapping[str, tuple[str, ...]] = {
 
 
 class Post(Protocol):
-    """What a post module offers. CONTROLLER: what planning must know of the controller. PENDANT: how its pendant shows
-    frames, None where it shows axes alone. NO_WIRE: why programs cannot tell the speed of the wire along a bead, '' where
-    they can. NO_SCHEDULE: why it cannot be told schedules, by the ways ('output', 'arc') in which it cannot. NO_WEAVE: why
-    beads cannot be woven, NO_TRIGGER: why the deposit cannot be switched ahead of a place; '' where they can. MOVE_LINE:
-    how a line begins that tells a move, or, in a loop, several. NAMING: of programs. ON_CONTROLLER: what only the controller
-    can show."""
+    """The interface of a post module. CONTROLLER: properties of the controller for planning.
+    PENDANT: how its pendant shows frames, None if it shows only axes. NO_WIRE: why programs cannot
+    set the speed of the wire along a bead, '' if they can. NO_SCHEDULE: why schedules are not
+    supported, by the unsupported ways ('output', 'arc'). NO_WEAVE: why beads cannot be woven,
+    NO_TRIGGER: why the deposit cannot be switched ahead of a position; '' if they can. MOVE_LINE:
+    pattern of the beginning of a line with a move, or, in a loop, several. NAMING: of programs.
+    ON_CONTROLLER: checks that only the controller can do.
+    """
 
     CONTROLLER: Controller
     PENDANT: Pendant | None
@@ -85,19 +87,22 @@ class Post(Protocol):
         external: tuple[str, ...] = (),
         carried: tuple[float, ...] | None = None,
     ) -> None:
-        """Raises InputError, saying why, when this motion of this set-up cannot be said to the controller, with external
-        axes of these kinds, as programs have them, and what the flange carries, None where that is not known yet."""
+        """Raises InputError, with the reason, if the controller does not support a motion in a
+        set-up with external axes of given kinds, as in programs, and with the flange's load
+        `carried`, None if not known yet.
+        """
 
-    def refuse_process(self, asked: Asked) -> None:
-        """Raises InputError, saying why, where things of the process can be told, but not with each other, or not with this
-        motion or set-up."""
+    def refuse_process(self, request: Asked) -> None:
+        """Raises InputError, with the reason, if process settings exclude each other, or the motion
+        or set-up.
+        """
 
     def read(self, files: dict[str, bytes]) -> ReadMoves:
         """The moves found in the files, in the order of execution; raises InputError UNREADABLE_PROGRAM."""
 
 
 def load(name: str) -> Post:
-    """The post of that name, imported when it is first asked for. Raises InputError UNKNOWN_POST."""
+    """The post with a name, imported on first use. Raises InputError UNKNOWN_POST."""
     if name not in NAMES:
         names = ", ".join(NAMES)
         raise InputError(
@@ -109,17 +114,21 @@ def load(name: str) -> Post:
 
 
 def controller(name: str) -> Controller:
-    """What planning must know of the controller of a post; of `none` that it asks for nothing. InputError UNKNOWN_POST."""
+    """Properties of a post's controller for planning; none required for the post `none`. InputError
+    UNKNOWN_POST.
+    """
     return Controller() if name == "none" else load(name).CONTROLLER
 
 
 def reads_nc(post: str, parameter: str) -> bool:
-    """Whether programs of a post depend on a parameter below `program.nc`; of an unknown post they may."""
+    """Whether programs of a post depend on a parameter below `program.nc`; True for an unknown
+    post.
+    """
     return parameter in NC_PARAMETERS.get(post, ()) if post in NAMES or post == "none" else True
 
 
 def fitting(posts: Iterable[str], motion: str, setup: str) -> tuple[str, ...]:
-    """Those of the posts, by name, that can say this motion of this set-up."""
+    """The posts, by name, that support a motion in a set-up."""
     names = []
     for name in posts:
         with contextlib.suppress(InputError):
@@ -129,13 +138,15 @@ def fitting(posts: Iterable[str], motion: str, setup: str) -> tuple[str, ...]:
 
 
 def motion_written(post: str, setup: str) -> str:
-    """The motion of a program that names none: joint, where the post writes that of the set-up or neither, else cartesian.
-    InputError UNKNOWN_POST."""
+    """The default motion of a program: joint if the post supports it in the set-up, or supports
+    neither, else cartesian. InputError UNKNOWN_POST.
+    """
     load(post)
     return next((motion for motion in _MOTIONS if fitting((post,), motion, setup)), _MOTIONS[0])
 
 
 def main_file(files: Iterable[str]) -> str:
-    """The file that begins a program, of the names of all its files: the start of a VAL 3 application, else the one with the
-    shortest name, which has no number of a part."""
+    """The main file of a program by the names of its files: the start of a VAL 3 application, else
+    the shortest name, which has no part number.
+    """
     return min(files, key=lambda name: (not name.endswith("/start.pgx"), len(name), name))

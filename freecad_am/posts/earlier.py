@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Programs of ours that stand in a folder, told by what is in them: nobody else's files are taken for ours.
+"""Programs of ours in a folder, recognised by their content: no other files are taken for ours.
 
-A main program begins with remarks that each one of ours has, and its name is that of its file; it names its parts. Links
-are not followed.
+A main program begins with remarks common to our programs, has the name of its file, and names its
+parts. Links are not followed.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import re
 
 # of every main program: remarks that it begins with
 OUR_REMARKS = ("Limits: ", "Travel speed ")
-# endings of main programs, and those of their parts
+# endings of main programs, and of their parts
 PART_ENDINGS = {
     ".ls": ".ls",
     ".mpf": ".spf",
@@ -28,45 +28,57 @@ APPLICATION = (
     "start.pgx",
     "stop.pgx",
 )  # files of a folder, an application or a part of one
-# how a program of a kind says its own name: a copy under another name is somebody's
+# pattern of a program's own name, by kind: a renamed copy is not ours
 _TITLES = {
     ".ls": r"/PROG\s+{}\s",
     ".mod": r"MODULE\s+{}\s",
     ".src": r"&ACCESS RVP\s+&REL 1\s+DEF {}\(\)",
 }
-_HEAD = 4096  # characters of a program that hold the remarks it begins with
-_LARGEST = 1 << 20  # characters of a main program that are looked through for its parts
+_HEAD_LENGTH = 4096  # characters of a program that hold the remarks it begins with
+_MAX_LENGTH = 1 << 20  # characters of a main program that are searched for its parts
 
 
 def programs(folder: str) -> dict[str, set[str]]:
-    """Main program -> its files and those of its parts, as names relative to the folder with slashes."""
-    found: dict[str, set[str]] = {}
+    """Main program -> its files and its parts' files, as names relative to the folder with slashes."""
+    files_by_program: dict[str, set[str]] = {}
     files, folders = _entries(folder)
     for main in files:
         stem, ending = os.path.splitext(main)
         if ending.lower() in PART_ENDINGS:
             text = _text(os.path.join(folder, main))
             if _is_ours(text, stem, ending):
-                found[main] = {main} | _parts(text, stem, PART_ENDINGS[ending.lower()], files)
+                files_by_program[main] = {main} | _parts(
+                    text, stem, PART_ENDINGS[ending.lower()], files
+                )
     for name in folders:
         inside = os.path.join(folder, name)
-        own, parts = _entries(inside)
-        if "start.pgx" in own and _is_ours(_text(os.path.join(inside, "start.pgx")), name, ".pgx"):
-            numbered = [part for part in parts if re.fullmatch(re.escape(name) + r"\d+", part)]
-            files_of = {part: _entries(os.path.join(inside, part))[0] for part in numbered}
-            found[f"{name}/{name}.pjx"] = {f"{name}/{file}" for file in _application(name, own)} | {
-                f"{name}/{part}/{file}"
-                for part, there in files_of.items()
-                for file in _application(part, there)
+        own_files, subfolders = _entries(inside)
+        if "start.pgx" in own_files and _is_ours(
+            _text(os.path.join(inside, "start.pgx")), name, ".pgx"
+        ):
+            numbered = [
+                part_name
+                for part_name in subfolders
+                if re.fullmatch(re.escape(name) + r"\d+", part_name)
+            ]
+            files_of = {
+                part_name: _entries(os.path.join(inside, part_name))[0] for part_name in numbered
             }
-    return found
+            files_by_program[f"{name}/{name}.pjx"] = {
+                f"{name}/{file}" for file in _application(name, own_files)
+            } | {
+                f"{name}/{part_name}/{file}"
+                for part_name, part_files in files_of.items()
+                for file in _application(part_name, part_files)
+            }
+    return files_by_program
 
 
 def _is_ours(text: str, stem: str, ending: str) -> bool:
     start = (
         text.find("//INST") if ending.lower() == ".jbi" else 0
     )  # remarks of a job follow its positions
-    head = text[start : start + _HEAD] if start >= 0 else ""
+    head = text[start : start + _HEAD_LENGTH] if start >= 0 else ""
     title = _TITLES.get(ending.lower())
     if title and not re.match(title.format(re.escape(stem)), text, re.IGNORECASE):
         return False
@@ -74,7 +86,7 @@ def _is_ours(text: str, stem: str, ending: str) -> bool:
 
 
 def _application(name: str, files: list[str]) -> set[str]:
-    """Those of the files that an application, or a part of one, is made of."""
+    """The files that belong to an application or a part of one."""
     return {form.format(name) for form in APPLICATION} & set(files)
 
 
@@ -105,6 +117,6 @@ def _entries(folder: str) -> tuple[list[str], list[str]]:
 def _text(path: str) -> str:
     try:
         with open(path, encoding="utf-8-sig", errors="replace") as stream:
-            return stream.read(_LARGEST)
+            return stream.read(_MAX_LENGTH)
     except OSError:
         return ""

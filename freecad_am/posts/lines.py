@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where the moves of a program stand in its text: for whoever shows both, not for reading it back."""
+"""Lines of the moves of a program in its text: for displays of both, not for read-back."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ _LOOP = re.compile(rb"for \w+=(\d+) to (\d+)")  # of VAL 3, about a single move
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """The lines of n moves, in the order of execution. files: names; file: (n,) which of them; line: (n,) from 0."""
+    """The lines of n moves, in the order of execution. files: names; file: (n,) index into them;
+    line: (n,) from 0.
+    """
 
     files: tuple[str, ...]
     file: Integers
@@ -32,8 +34,9 @@ class Lines:
         return self.files[self.file[row]], int(self.line[row])
 
     def move_at(self, name: str, line: int) -> int | None:
-        """The move that a line of a file tells, the first one of a loop; between two moves the next one, after the last
-        the last one. None of a file without any."""
+        """The move in a line of a file, the first one in a loop; between two moves the next one,
+        after the last the last one. None for a file without moves.
+        """
         moves_of_file = (
             np.flatnonzero(self.file == self.files.index(name))
             if name in self.files
@@ -49,7 +52,9 @@ class Lines:
 
 
 def lines_of(post: str, files: dict[str, bytes]) -> Lines:
-    """The lines of all moves of a program of ours. Parts of a program are run in the order of their numbers."""
+    """The lines of the moves of a program of ours. Parts of a program are run in the order of their
+    numbers.
+    """
     pattern = catalogue.load(post).MOVE_LINE
     names = tuple(
         sorted(files, key=lambda name: [int(number) for number in _NUMBER.findall(name)] + [0])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Names of programs: what a controller takes, what is proposed for one it refuses, and the names of parts."""
+"""Names of programs: rules of a controller, proposals for rejected names, and the names of parts."""
 
 from __future__ import annotations
 
@@ -20,9 +20,10 @@ DEVICES = frozenset(
 class Naming:
     """The rules of a controller.
 
-    written: how it writes a name. start, starts: a pattern of how one begins, and in words. longest: characters; spare of
-    them are left free in proposals, for the digits of parts. reserved: words, upper case, that are none; those of DEVICES
-    never are. prefix: what proposals begin with where the name itself would not do.
+    written: how it writes a name. start, starts: a pattern of how one begins, and in words.
+    longest: characters; spare of them are left free in proposals, for the digits of parts.
+    reserved: words, upper case, that are not names; DEVICES never are. prefix: begins proposals if
+    the name itself is not valid.
     """
 
     written: Callable[[str], str]
@@ -47,7 +48,7 @@ class Naming:
             raise self.refused(name, where, Text("it must start with {}", self.starts))
         if len(as_written) > self.longest:
             raise self.refused(name, where, Text("it has more than {} characters", self.longest))
-        if self._taken(as_written):
+        if self._is_reserved(as_written):
             raise self.refused(name, where, "it is a reserved word")
         return as_written
 
@@ -73,12 +74,12 @@ class Naming:
     def proposed(self, name: str) -> str:
         """One like it that the controller takes, with the digits of parts behind it."""
         proposal = self.written(re.sub(r"[^A-Za-z0-9]+", "_", plain(name)).strip("_"))
-        if not re.match(self.start, proposal) or self._taken(proposal):
+        if not re.match(self.start, proposal) or self._is_reserved(proposal):
             proposal = f"{self.prefix}{proposal}".rstrip("_")
         return proposal[: self.longest - self.spare].rstrip("_")
 
     def parts(self, name: str, count: int) -> list[str]:
-        """Names of so many parts. Raises InputError PROGRAM_NAME where there is no room for their digits."""
+        """Names of `count` parts. Raises InputError PROGRAM_NAME without room for their digits."""
         digits = max(2, len(str(count)))
         names = [f"{name}{number:0{digits}d}" for number in range(1, count + 1)]
         if len(names[0]) > self.longest:
@@ -93,7 +94,7 @@ class Naming:
             )
         return names
 
-    def _taken(self, name: str) -> bool:
+    def _is_reserved(self, name: str) -> bool:
         return name.upper() in DEVICES | self.reserved
 
 

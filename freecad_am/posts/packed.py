@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Columns of what readers find: packed, for a list of floats takes four times the memory."""
+"""Columns of read moves: packed, as a list of floats takes four times the memory."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ def floats() -> array[float]:
 
 
 class Lines:
-    """Where the moves that were read so far stand."""
+    """The lines of the moves that were read."""
 
     def __init__(self) -> None:
         self._files: dict[str, int] = {}
         self._file, self._line = array("l"), array("l")
 
     def add(self, where: str, times: int = 1) -> None:
-        """So many moves more, of what stands at `FILE line NUMBER`."""
+        """Add `times` moves from the line `FILE line NUMBER`."""
         file, _, line = where.rpartition(" line ")
         self._file.extend([self._files.setdefault(file, len(self._files))] * times)
         self._line.extend([int(line)] * times)
 
     def extend(self, file: str, lines: Index) -> None:
-        """More moves, of these lines (n,) of a file."""
+        """Add moves from lines (n,) of a file."""
         self._file.extend([self._files.setdefault(file, len(self._files))] * len(lines))
         self._line.extend(lines.tolist())
 
     def read(self) -> TextLines:
-        """Those of all moves."""
+        """The lines of all moves."""
         return TextLines(
             tuple(self._files),
             np.array(self._file, dtype=np.intp),

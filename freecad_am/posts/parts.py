@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cuts a program into files of bounded size: what posts have in common, whatever they write."""
+"""Cuts a program into files of bounded size: common code of all posts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,9 @@ from ..core.program import (
 
 @dataclass(frozen=True)
 class Run:
-    """The moves start .. stop of a block with the words of each about its speed; every word is written as it stands."""
+    """The moves start .. stop of a block with the words of each about its speed; every word is
+    written unchanged.
+    """
 
     moves: Moves
     words: Sequence[str]
@@ -34,7 +36,7 @@ class Run:
         return self.stop - self.start
 
 
-# what a file is made of: runs of moves, and instructions as they stand
+# content of a file: runs of moves, and finished instructions
 Piece = Run | list[str]
 
 
@@ -43,7 +45,8 @@ def grouped(
     words: Callable[[Moves], Sequence[str]],
     instructions: Callable[[Block], list[str]],
 ) -> Iterator[list[Piece]]:
-    """The blocks as pieces, in groups that belong to one bead each: what may be cut apart with the deposit off.
+    """The blocks as pieces, in groups that belong to one bead each: files are cut between groups,
+    with the deposit off.
 
     words: of the moves of each block, asked for in the order of motion. instructions: the lines of every other block.
     """
@@ -54,14 +57,14 @@ def grouped(
         if isinstance(block, Moves):
             if not len(block):
                 continue
-            piece: Piece = Run(block, words(block), 0, len(block))
+            block_piece: Piece = Run(block, words(block), 0, len(block))
             starts = (
                 block.kind == RAPID and not on and bead not in (None, (block.layer, block.bead))
             )
             bead = (block.layer, block.bead)
         else:
             on = isinstance(block, DepositOn) or (on and not isinstance(block, DepositOff))
-            piece = instructions(block)
+            block_piece = instructions(block)
             starts = (
                 isinstance(block, LayerStart)
                 and not on
@@ -72,7 +75,7 @@ def grouped(
         if starts and group:
             yield group
             group = []
-        group.append(piece)
+        group.append(block_piece)
     yield group
 
 
@@ -82,15 +85,17 @@ def packed(
     most_lines: int,
     cut: Callable[[list[Piece], int, int], Iterator[list[Piece]]],
 ) -> list[list[Piece]]:
-    """The groups in files of at most so many points and lines, in order. cut: what becomes of a group too large."""
-    everything = [piece for group in groups for piece in group]
+    """The groups in files with limits of points and lines, in order. cut: divides a group that is
+    too large.
+    """
+    everything = [entry for group in groups for entry in group]
     points, lines = size(everything)
     if points <= most_points and lines <= most_lines:
         return [everything]
-    parts: list[list[Piece]] = []
+    files: list[list[Piece]] = []
     remaining = (0, 0)
     cuts = {}
-    # the largest first: where beads are refused it is the one that is told, and one correction is enough
+    # the largest first: an error then names the largest bead, and one correction is enough
     for number in sorted(range(len(groups)), key=lambda number: size(groups[number]), reverse=True):
         points, lines = size(groups[number])
         if points > most_points or lines > most_lines:
@@ -100,40 +105,46 @@ def packed(
         for chunk in chunks:
             points, lines = size(chunk)
             if points > remaining[0] or lines > remaining[1] or len(chunks) > 1:
-                parts.append([])
+                files.append([])
                 remaining = (most_points, most_lines)
-            parts[-1].extend(chunk)
+            files[-1].extend(chunk)
             remaining = (remaining[0] - points, remaining[1] - lines)
-    return parts
+    return files
 
 
-def with_retracts(parts: list[list[Piece]]) -> list[list[Piece]]:
-    """The parts with the first move of a retract in the part of the bead it leads away from: what is loaded after it is
-    loaded away from the deposit."""
-    for before, part in zip(parts, parts[1:]):
-        first = part[0]
-        if isinstance(first, Run) and first.moves.role[first.start] == RETRACT:
-            before.append(dataclasses.replace(first, stop=first.start + 1))
-            part[:1] = [dataclasses.replace(first, start=first.start + 1)] if len(first) > 1 else []
-    return parts
+def move_retracts(files: list[list[Piece]]) -> list[list[Piece]]:
+    """The parts with the first move of a retract in the part of the bead it leads away from: the
+    next part is then loaded away from the deposit.
+    """
+    for previous, file_pieces in zip(files, files[1:]):
+        first_run = file_pieces[0]
+        if isinstance(first_run, Run) and first_run.moves.role[first_run.start] == RETRACT:
+            previous.append(dataclasses.replace(first_run, stop=first_run.start + 1))
+            file_pieces[:1] = (
+                [dataclasses.replace(first_run, start=first_run.start + 1)]
+                if len(first_run) > 1
+                else []
+            )
+    return files
 
 
-def size(pieces: Sequence[Piece]) -> tuple[int, int]:
+def size(entries: Sequence[Piece]) -> tuple[int, int]:
     """How many points the pieces have, and how many lines a file with one line per move takes for them."""
-    return sum(len(piece) for piece in pieces if isinstance(piece, Run)), sum(
-        len(piece) for piece in pieces
+    return sum(len(entry) for entry in entries if isinstance(entry, Run)), sum(
+        len(entry) for entry in entries
     )
 
 
 def continued(
     remark: Callable[[str], list[str]], woven: Collection[tuple[int, int]] = ()
 ) -> Callable[[list[Piece], int, int], Iterator[list[Piece]]]:
-    """How a bead too long for a file is cut inside its moves, with remarks at both sides of the cut that say so. One of the
-    `woven` (layer, bead) is not: InputError BEAD_TOO_LONG."""
+    """How a bead too long for a file is cut inside its moves, with remarks at both sides of the cut
+    that say so. A bead among `woven` (layer, bead) is not cut: InputError BEAD_TOO_LONG.
+    """
     going_on, resumed = remark("bead goes on in the next part"), remark("bead goes on here")
 
     def cut(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
-        runs = [piece for piece in group if isinstance(piece, Run)]
+        runs = [entry for entry in group if isinstance(entry, Run)]
         if any(
             run.moves.kind == DEPOSIT and (run.moves.layer, run.moves.bead) in woven for run in runs
         ):
@@ -145,37 +156,38 @@ def continued(
                 place(runs[-1].moves),
                 sum(map(len, runs)),
             )
-        events = sum(len(piece) for piece in group if isinstance(piece, list))
-        most = min(most_points, most_lines - events - len(going_on) - len(resumed))
+        events = sum(len(entry) for entry in group if isinstance(entry, list))
+        max_moves = min(most_points, most_lines - events - len(going_on) - len(resumed))
         chunk: list[Piece] = []
-        remaining = most
-        for piece in group:
-            if isinstance(piece, list):
-                chunk.append(piece)
+        remaining = max_moves
+        for entry in group:
+            if isinstance(entry, list):
+                chunk.append(entry)
                 continue
-            start = piece.start
-            while piece.stop - start > remaining:
+            start = entry.start
+            while entry.stop - start > remaining:
                 if remaining:
-                    chunk.append(Run(piece.moves, piece.words, start, start + remaining))
+                    chunk.append(Run(entry.moves, entry.words, start, start + remaining))
                 yield [*chunk, going_on]
-                start, chunk, remaining = start + remaining, [resumed], most
-            chunk.append(Run(piece.moves, piece.words, start, piece.stop))
-            remaining -= piece.stop - start
+                start, chunk, remaining = start + remaining, [resumed], max_moves
+            chunk.append(Run(entry.moves, entry.words, start, entry.stop))
+            remaining -= entry.stop - start
         yield chunk
 
     return cut
 
 
-def whole(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
-    """A bead longer than a file is one by itself, where files may have any length: going on in another one within a bead
-    would stop the machine while it deposits."""
+def keep_whole(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
+    """A bead longer than a file gets its own file, if files may have any length: changing files
+    within a bead would stop the machine while it deposits.
+    """
     yield group
 
 
 def unbroken(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
     """Raises InputError BEAD_TOO_LONG for a bead longer than a file, where files have to be loaded one after the other."""
     moves = next(
-        piece.moves for piece in group if isinstance(piece, Run) and piece.moves.kind == DEPOSIT
+        entry.moves for entry in group if isinstance(entry, Run) and entry.moves.kind == DEPOSIT
     )
     points = size(group)[0]
     raise InputError(
@@ -190,19 +202,19 @@ def unbroken(group: list[Piece], most_points: int, most_lines: int) -> Iterator[
 
 
 def switching(program: Program) -> Iterator[tuple[Moves, DepositOn | DepositOff]]:
-    """What switches the deposit, in order, with the moves before it."""
-    last: Moves | None = None
+    """The switching blocks of the deposit, in order, with the moves before each."""
+    moves_before: Moves | None = None
     for block in program.blocks:
         if isinstance(block, Moves):
-            last = block if len(block) else last
-        elif isinstance(block, (DepositOn, DepositOff)) and last is not None:
-            yield last, block
+            moves_before = block if len(block) else moves_before
+        elif isinstance(block, (DepositOn, DepositOff)) and moves_before is not None:
+            yield moves_before, block
 
 
-def lines_of(pieces: Sequence[Piece], motion: Callable[[Run], list[str]]) -> list[str]:
-    """The lines of a part; `motion` writes those of a run."""
+def lines_of(entries: Sequence[Piece], motion: Callable[[Run], list[str]]) -> list[str]:
+    """The lines of a part; `motion` writes the lines of a run."""
     return [
-        line for piece in pieces for line in (motion(piece) if isinstance(piece, Run) else piece)
+        line for entry in entries for line in (motion(entry) if isinstance(entry, Run) else entry)
     ]
 
 

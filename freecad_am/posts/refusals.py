@@ -30,11 +30,13 @@ CALL = "process.between_layers.call"
 
 @dataclass(frozen=True)
 class Asked:
-    """What a program is to tell of the process, with what else counts for that: motion, whether the robot holds the part or
-    external axes turn it, by which way schedules are told; whether the wire follows the travel speed and beads are woven."""
+    """Process features requested of a program, with their context: motion, whether the robot holds
+    the part or external axes turn it, how schedules are selected; whether the wire follows the
+    travel speed and beads are woven.
+    """
 
     motion: str
-    held: bool
+    part_held: bool
     turned: bool
     by: str
     wire: bool
@@ -42,18 +44,20 @@ class Asked:
     dry_run: bool
 
 
-def refuse_no_process(asked: Asked) -> None:
-    """Of controllers that tell each thing of the process with every other one, or not at all."""
+def refuse_no_process(request: Asked) -> None:
+    """Reject nothing: for controllers that combine all process features that they support."""
 
 
 def refuse_wire(program: Program, no_wire: str) -> None:
-    """Raises InputError NO_WIRE_OUTPUT, for the reason `no_wire`, where the program tells the speed of the wire."""
+    """Raises InputError NO_WIRE_OUTPUT, for the reason `no_wire`, where the program sets the speed
+    of the wire.
+    """
     if any(run.wire is not None for run in program.moves):
         raise wire_refused(no_wire)
 
 
 def wire_refused(no_wire: str) -> InputError:
-    """The error for a controller that cannot be told the speed of the wire along a bead."""
+    """The error for a controller that cannot set the speed of the wire along a bead."""
     return InputError(
         "NO_WIRE_OUTPUT",
         "process.wire.feed_mode",
@@ -62,9 +66,10 @@ def wire_refused(no_wire: str) -> InputError:
     )
 
 
-def refuse_cooling(program: Program, last: int, why: str = "") -> None:
-    """Raises InputError where the program waits for a temperature: NO_ANALOGUE_INPUT for the reason `why`, or ANALOGUE_INPUT
-    for an input that is none of 1 to `last`."""
+def refuse_cooling(program: Program, last_input: int, why: str = "") -> None:
+    """Raises InputError where the program waits for a temperature: NO_ANALOGUE_INPUT for the reason
+    `why`, or ANALOGUE_INPUT for an input outside 1 to `last_input`.
+    """
     waits = [block for block in program.blocks if isinstance(block, WaitBelow)]
     if waits and why:
         raise InputError(
@@ -73,22 +78,27 @@ def refuse_cooling(program: Program, last: int, why: str = "") -> None:
             "{}; use process.between_layers.input, strategy.wait, or another controller",
             why,
         )
-    if any(block.number > last for block in waits):
+    if any(block.number > last_input for block in waits):
         raise InputError(
             "ANALOGUE_INPUT",
             "process.cooling.input",
             "the controller's program reads analogue inputs 1 to {}, not {}; use one of these",
-            last,
+            last_input,
             waits[0].number,
         )
 
 
 def refuse_schedules(
-    program: Program, last: int, most: int, most_of_arc: int = 0, inside: bool = False
+    program: Program,
+    last_output: int,
+    max_schedule: int,
+    max_arc_schedule: int = 0,
+    inside: bool = False,
 ) -> None:
-    """Raises InputError SCHEDULE for a schedule beyond `most`, or beyond `most_of_arc` where arc instructions name it, or
-    one set on an output that is none of 1 to `last`. inside: another one can be
-    told within a bead."""
+    """Raises InputError SCHEDULE for a schedule beyond `max_schedule`, or beyond `max_arc_schedule`
+    in arc instructions, or one set on an output outside 1 to `last_output`. inside: the schedule
+    can change within a bead.
+    """
     if not inside and any(isinstance(block, Schedule) and block.inside for block in program.blocks):
         raise InputError(
             "SCHEDULE",
@@ -97,12 +107,12 @@ def refuse_schedules(
             " motion; give start and end nothing but other speeds, or use another controller",
         )
     numbers = [block.number for block in program.blocks if isinstance(block, Schedule)]
-    if numbers and not 1 <= program.schedule_output <= last:
+    if numbers and not 1 <= program.schedule_output <= last_output:
         raise InputError(
             "SCHEDULE",
             "program.schedule.output",
             "the number of a schedule is set on one of 1 to {}, not {}; use one of these",
-            last,
+            last_output,
             program.schedule_output,
         )
     named = [
@@ -110,32 +120,38 @@ def refuse_schedules(
         for block in program.blocks
         if isinstance(block, DepositOn) and block.schedule is not None
     ]
-    largest, most = (max(named), most_of_arc or most) if named else (max(numbers, default=0), most)
-    if largest > most:
+    largest, max_schedule = (
+        (max(named), max_arc_schedule or max_schedule)
+        if named
+        else (max(numbers, default=0), max_schedule)
+    )
+    if largest > max_schedule:
         raise InputError(
             "SCHEDULE",
             "process.schedule",
             "the controller takes schedules up to {}, not {}; use another number, there "
             "or in process.classes",
-            most,
+            max_schedule,
             largest,
         )
 
 
-def refuse_weave(program: Program, most: int) -> None:
-    """Raises InputError WEAVE for a weave of a number beyond `most`, or of moves that do not run straight."""
+def refuse_weave(program: Program, max_weave: int) -> None:
+    """Raises InputError WEAVE for a weave of a number beyond `max_weave`, or of moves that do not run straight."""
     numbers = [block.number for block in program.blocks if isinstance(block, Weave)]
     if numbers and program.motion != "cartesian":
         raise weave_refused(JOINT_WEAVE, "program.motion")
-    if max(numbers, default=0) > most:
-        raise weave_refused(Text("the controller has weaves 1 to {}, not {}", most, max(numbers)))
+    if max(numbers, default=0) > max_weave:
+        raise weave_refused(
+            Text("the controller has weaves 1 to {}, not {}", max_weave, max(numbers))
+        )
 
 
 JOINT_WEAVE = "as far as is known controllers weave on linear moves, and these are joint moves"
 
 
 def weave_refused(why: str, where: str = "process.weave") -> InputError:
-    """The error for a weave that cannot be told."""
+    """The error for a weave that is not supported."""
     return InputError(
         "WEAVE",
         where,
@@ -146,7 +162,7 @@ def weave_refused(why: str, where: str = "process.weave") -> InputError:
 
 
 def schedule_refused(by: str, why: str) -> InputError:
-    """The error for a controller that cannot be told schedules in this way."""
+    """The error for a controller that does not support schedules by `by`."""
     return InputError(
         "SCHEDULE", "program.schedule.by", "{}: {}; use another way, or another controller", by, why
     )
@@ -161,9 +177,11 @@ def trigger_refused(why: str) -> InputError:
 
 @dataclass(frozen=True)
 class Ahead:
-    """A deposit that is switched `lead` s before the end of the last of moves, which takes `seconds`, or of which the corner
-    that is rounded before it leaves them; a lead may be longer by `slack` s, which the controller's numbers cannot tell.
-    steps: in a second, whole numbers of which are told as the largest lead."""
+    """A deposit that is switched `lead` s before the end of the last of `moves`, which takes
+    `seconds`, or has that time left after the rounded corner before it. A lead may exceed this by
+    `slack` s, the controller's resolution. steps: steps per second; the largest lead in messages is
+    a whole number of steps.
+    """
 
     moves: Moves
     lead: float
@@ -174,8 +192,9 @@ class Ahead:
 
 
 def refuse_triggers(program: Program, no_trigger: str) -> None:
-    """Raises InputError TRIGGER, for the reason `no_trigger` where there is one, where the deposit is switched ahead of a
-    place; TRIGGER_LEAD where that is earlier than the move that leads there begins."""
+    """Raises InputError TRIGGER, for the reason `no_trigger`, if any, where the deposit is switched
+    ahead of a position; TRIGGER_LEAD where that is before the start of the move to the position.
+    """
     switches = [block for block in program.blocks if isinstance(block, (DepositOn, DepositOff))]
     if no_trigger and not program.dry_run and any(block.ahead is not None for block in switches):
         raise trigger_refused(no_trigger)
@@ -193,42 +212,46 @@ def switched_ahead(program: Program) -> list[Ahead]:
 
 
 def refuse_leads(ahead: Sequence[Ahead]) -> None:
-    """Raises InputError TRIGGER_LEAD where the least of them, so that one correction is enough, has too long a lead."""
-    least = min(ahead, key=lambda one: one.seconds + one.slack, default=None)
-    if least is None or least.lead <= least.seconds + least.slack:
+    """Raises InputError TRIGGER_LEAD where the shortest move has too long a lead; one correction is
+    then enough.
+    """
+    shortest = min(
+        ahead, key=lambda ahead_switch: ahead_switch.seconds + ahead_switch.slack, default=None
+    )
+    if shortest is None or shortest.lead <= shortest.seconds + shortest.slack:
         return
-    most = _whole_steps(least.seconds + least.slack, least.steps)
-    if least.corner:
+    max_lead = _whole_steps(shortest.seconds + shortest.slack, shortest.steps)
+    if shortest.corner:
         raise InputError(
             "TRIGGER_LEAD",
-            place(least.moves),
+            place(shortest.moves),
             "the corner before the move at the end of which the deposit is switched is rounded, and leaves {:.4g} s of it, "
             "less than the {:.4g} s that it would be switched ahead; use a program.trigger.lead of {:g} s at most, a "
             "smaller program.blend, or a larger strategy.chord_error",
-            least.seconds,
-            least.lead,
-            most,
+            shortest.seconds,
+            shortest.lead,
+            max_lead,
         )
     raise InputError(
         "TRIGGER_LEAD",
-        place(least.moves),
+        place(shortest.moves),
         "the move at the end of which the deposit is switched takes {:.4g} s, less than the {:.4g} s that it would be "
         "switched ahead; use a program.trigger.lead of {:g} s at most, a larger retract distance where it is switched on, "
         "or a larger strategy.chord_error where it is switched off",
-        least.seconds,
-        least.lead,
-        most,
+        shortest.seconds,
+        shortest.lead,
+        max_lead,
     )
 
 
 def _whole_steps(seconds: float, steps: int) -> float:
-    """The largest number of s that is no larger, of whole steps of which a second has so many."""
+    """Round seconds down to a whole number of steps, `steps` per second."""
     nearest = round(steps * seconds)
     return (nearest if nearest / steps <= seconds else nearest - 1) / steps
 
 
 def refuse_incomplete(program: Program, post: str, axes: int) -> None:
-    """Raises InputError NOTHING_TO_WRITE, UNSUPPORTED_AXES (other than `axes` of them) or UNREACHABLE."""
+    """Raises InputError NOTHING_TO_WRITE, UNSUPPORTED_AXES (other than `axes` axes) or UNREACHABLE."""
     moves = program.moves
     if not sum(len(run) for run in moves):
         raise InputError(
@@ -250,19 +273,20 @@ def refuse_incomplete(program: Program, post: str, axes: int) -> None:
         )
 
 
-def refuse_external(program: Program, last: int, unit: str, form: str) -> None:
-    """Raises InputError UNSUPPORTED_AXES where a controller has no external axes beyond the `last` one, or no
-    positioner is called so: the pattern `unit` says how they are, in words `form`."""
+def refuse_external(program: Program, last_axis: int, unit: str, form: str) -> None:
+    """Raises InputError UNSUPPORTED_AXES for external axes beyond the controller's `last_axis`, or
+    a positioner's name outside the pattern `unit`, described by `form`.
+    """
     if not program.external_kinds:
         return
     end = program.first_external + len(program.external_kinds) - 1
-    if end > last:
+    if end > last_axis:
         raise InputError(
             "UNSUPPORTED_AXES",
             "program.axes.first",
             "the external axes would end with number {}, and the controller has {}; use a smaller first one",
             end,
-            last,
+            last_axis,
         )
     if not re.fullmatch(unit, program.unit) and (program.on_positioner or program.unit):
         raise InputError(
@@ -286,7 +310,9 @@ def refuse_named_track(program: Program, what: str) -> None:
 
 
 def refuse_continuous(program: Program) -> None:
-    """Raises InputError ENDLESS_AXIS where an axis has no limits, for controllers that count every turn of all axes."""
+    """Raises InputError ENDLESS_AXIS where an axis has no limits, for controllers that count every
+    turn of every axis.
+    """
     if any(program.continuous):
         axis = program.continuous.index(True) + 1
         raise InputError(
@@ -300,22 +326,21 @@ def refuse_continuous(program: Program) -> None:
 
 
 def refuse_without_speeds(program: Program, axes: int) -> None:
-    """Raises InputError NO_JOINT_SPEED where a machine file, the robot's or that of external axes, does not tell what
-    percents of joint speeds are of."""
-    known = np.isfinite(program.max_speed)
-    if len(known) == axes and known.all():
+    """Raises InputError NO_JOINT_SPEED where a machine file, of the robot or external axes, lacks
+    the joint speeds to which percents refer.
+    """
+    is_known = np.isfinite(program.max_speed)
+    if len(is_known) == axes and is_known.all():
         return
-    first = int(known.argmin()) if len(known) == axes else 0
+    axis = int(is_known.argmin()) if len(is_known) == axes else 0
     in_urdf = Text("`velocity` to the `<limit>` of each of its joints")
     raise InputError(
         "NO_JOINT_SPEED",
-        "cell.machine" if first < program.own_axes else "cell.external",
+        "cell.machine" if axis < program.own_axes else "cell.external",
         "on this controller the speed of joint moves is programmed in percent of the axes' largest speeds, and the "
         "machine file of {} does not give them; add {}",
-        (program.axis_machines or (program.machine,) * axes)[first],
-        in_urdf
-        if program.of_urdf and program.of_urdf[first]
-        else Text("`max_speed` to its joints"),
+        (program.axis_machines or (program.machine,) * axes)[axis],
+        in_urdf if program.of_urdf and program.of_urdf[axis] else Text("`max_speed` to its joints"),
     )
 
 
@@ -333,12 +358,17 @@ def refuse_without_positions(program: Program, straight: bool = False) -> None:
 def refuse_calls_of_own(
     program: Program, names: set[str], program_name: Callable[[str, str], str]
 ) -> None:
-    """Raises InputError PROGRAM_NAME where a program called between layers has the name of a part of this one."""
-    own = {
+    """Raises InputError PROGRAM_NAME where a program called between layers has the name of one of
+    its parts.
+    """
+    own_names = {
         name.upper() for name in names
     }  # controllers and disks that know no case would take one for the other
     for block in program.blocks:
-        if isinstance(block, Call) and program_name(block.program, block.where).upper() in own:
+        if (
+            isinstance(block, Call)
+            and program_name(block.program, block.where).upper() in own_names
+        ):
             raise InputError(
                 "PROGRAM_NAME",
                 block.where,
@@ -350,10 +380,10 @@ def refuse_calls_of_own(
 def refuse_names_of_data(program: Program, names: Collection[str], data: Collection[str]) -> None:
     """Raises InputError PROGRAM_NAME where the files of a program, or one that is called, have the name of `data` of the
     controller that it uses: it would name two things."""
-    taken = {name.upper() for name in data}
+    reserved = {name.upper() for name in data}
     called = {block.program: block.where for block in program.blocks if isinstance(block, Call)}
     for name, where in {**called, **dict.fromkeys(sorted(names), "name")}.items():
-        if name.upper() in taken:
+        if name.upper() in reserved:
             raise InputError(
                 "PROGRAM_NAME",
                 where,
@@ -362,16 +392,16 @@ def refuse_names_of_data(program: Program, names: Collection[str], data: Collect
             )
 
 
-def speeds_within(moves: Moves, least: float, most: float) -> Array:
+def speeds_within(moves: Moves, min_speed: float, max_speed: float) -> Array:
     """(n,) mm/s of the moves. Raises InputError MOVE_SPEED for one that is not between the two."""
-    fits = (moves.speed >= least) & (moves.speed <= most)
+    fits = (moves.speed >= min_speed) & (moves.speed <= max_speed)
     if not fits.all():
         raise InputError(
             "MOVE_SPEED",
             place(moves),
             "{:.4g} mm/s cannot be written; use a speed between {} and {:.0f} mm/s",
             moves.speed[~fits][0],
-            least,
-            most,
+            min_speed,
+            max_speed,
         )
     return moves.speed

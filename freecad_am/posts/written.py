@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Files of a program written into a folder, in the place of those of an earlier program of the same name."""
+"""Files of a program written into a folder, replacing an earlier program of the same name."""
 
 from __future__ import annotations
 
@@ -18,28 +18,30 @@ def write(folder: str, files: Mapping[str, bytes]) -> list[str]:
     Each file appears whole or not at all, and none is written or removed through a link below the folder. OSError.
     """
     os.makedirs(folder, exist_ok=True)
-    before = earlier.programs(folder)
+    earlier_programs = earlier.programs(folder)
     paths = [os.path.join(folder, *name.split("/")) for name in files]
     waiting: list[tuple[str, str]] = []
     try:
         for path, content in zip(paths, files.values(), strict=True):
             _refuse_links(path, folder)
             os.makedirs(os.path.dirname(path), exist_ok=True)
-            handle, part = tempfile.mkstemp(prefix=".unfinished-", dir=os.path.dirname(path))
-            waiting.append((part, path))
+            handle, temporary = tempfile.mkstemp(prefix=".unfinished-", dir=os.path.dirname(path))
+            waiting.append((temporary, path))
             with os.fdopen(handle, "wb") as stream:
                 stream.write(content)
-            os.chmod(part, 0o666 & ~_umask())
-        stale = set().union(*(before[main] for main in files if main in before)) - set(files)
+            os.chmod(temporary, 0o666 & ~_umask())
+        stale = set().union(
+            *(earlier_programs[main] for main in files if main in earlier_programs)
+        ) - set(files)
         for name in sorted(stale):
             _remove(os.path.join(folder, *name.split("/")), folder)
         while waiting:
             os.replace(*waiting[0])
             del waiting[0]
     finally:
-        for part, _ in waiting:
+        for temporary, _ in waiting:
             with contextlib.suppress(OSError):
-                os.remove(part)
+                os.remove(temporary)
     return paths
 
 

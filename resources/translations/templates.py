@@ -36,7 +36,7 @@ MAKERS: dict[str, set[int]] = {
     "Promise": {0, 1},
     "Proposal": {2},
     "carry_out": {2},
-    "on_controller": set(range(8)),
+    "controller_checks": set(range(8)),
 }
 PROPERTY = "Message"  # of stages: what it is set to is told
 KEYWORDS = {"message", "where", "lacking", "text", "label", "short", "name"}

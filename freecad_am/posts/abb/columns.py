@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What was found of the moves of RAPID modules, column by column, and what comes of it."""
+"""Moves of RAPID modules as read so far, column by column, and the resulting `ReadMoves`."""
 
 from __future__ import annotations
 
@@ -23,8 +23,10 @@ _DECIMALS = re.compile(r"\.(\d+)")
 
 
 class Move(NamedTuple):
-    """A move as its line has it: joint values, or place and orientation, and the external axes. amount: s of joint
-    moves, mm/s of linear ones, half: of its last digit. wire: of the analogue output, and half of its last digit."""
+    """A move as in its line: joint values, or position and orientation, and the external axes.
+    amount: s for joint moves, mm/s for linear ones, half: of its last digit. wire: value of the
+    analogue output, and half of its last digit.
+    """
 
     linear: bool
     values: tuple[str, ...]
@@ -39,18 +41,19 @@ class Move(NamedTuple):
 
 @dataclass
 class Run:
-    """What happened so far while the routines are followed, column by column. external: external axes as they stand,
-    of which those `used` have values, `unit` theirs, and `slides` those that a remark calls the track; active: the
-    mechanical unit that the module has activated.
+    """The state while the routines are followed, column by column. external: current external axes;
+    `used` have values, `unit` is their unit, and `slides` are called the track by a remark; active:
+    the mechanical unit that the module has activated.
 
-    placed: whether a place of the move is told, in places and turns; joints: the numbers of joint moves. rounding: mm, NaN
-    of moves that stop. nearest: ConfL is off, and positions are taken as the arm reaches them best. given: what the module
-    has said of the process. output, on: what switches the deposit, and whether it is on. seam, weave: of the arc that
-    burns, struck: the weave it was struck with, until it moves, last: weld data and weave it was struck or burnt by.
-    feeding: whether the wire goes on, fed: whether it ended in the bead.
+    placed: whether a move has a position, in positions and turns; joints: the numbers of joint
+    moves. rounding: mm, NaN of moves that stop. nearest: ConfL is off, and the arm reaches
+    positions in its nearest configuration. process_data: of the module. output, on: the switch of
+    the deposit, and its state. seam, weave: of the burning arc, struck: the weave it was struck
+    with, until it moves, last_weld: weld data and weave it was struck or burnt by. feeding: whether
+    the wire goes on, fed: whether it ended in the bead.
     """
 
-    found: dict[str, Module]
+    modules: dict[str, Module]
     linear: bytearray = field(default_factory=bytearray)
     deposit: bytearray = field(default_factory=bytearray)
     placed: bytearray = field(default_factory=bytearray)
@@ -60,7 +63,7 @@ class Run:
     wire: array[float] = field(default_factory=floats)
     wire_half: array[float] = field(default_factory=floats)
     joints: list[str] = field(default_factory=list)
-    places: list[str] = field(default_factory=list)
+    positions: list[str] = field(default_factory=list)
     turns: list[str] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
     followed: list[str] = field(default_factory=list)
@@ -73,11 +76,11 @@ class Run:
     output: str = ""
     on: bool = False
     nearest: bool = False
-    given: ProcessData = field(default_factory=ProcessData)
+    process_data: ProcessData = field(default_factory=ProcessData)
     seam: int = 0
     weave: int = 0
     struck: int | None = None
-    last: tuple[str, int] = ("", 0)
+    last_weld: tuple[str, int] = ("", 0)
     feeding: bool = False
     fed: bool = False
     analogue: int | None = None
@@ -91,7 +94,7 @@ class Run:
     def happens(
         self, kind: str, *value: float | str, digits: float = 0.0, before: float | None = None
     ) -> None:
-        """Something happens before the next move, or so far before the end of the last one."""
+        """Add an event before the next move, or at a distance `before` the end of the last one."""
         self.events.append(Event(len(self.time_or_speed), kind, value, digits, before=before))
 
     def keep_switch(
@@ -122,7 +125,9 @@ class Run:
         self._framed(move.frames, where)
         self._external_axes(move.axes.split(","), move.frames, where)
         for column, value in zip(
-            (self.places, self.turns) if move.linear else (self.joints,), move.values, strict=True
+            (self.positions, self.turns) if move.linear else (self.joints,),
+            move.values,
+            strict=True,
         ):
             column.append(value)
         self.lines.add(where)
@@ -136,17 +141,18 @@ class Run:
         self.wire_half.append(move.wire_half)
 
     def stands_at(self, move: Move, where: str) -> bool:
-        """Whether the position of an instruction is where the robot stands, as the text told it before. Where that was in
-        joints alone it is told now, and counts as the position of the move there too."""
+        """Whether the position of an instruction equals the robot's position by the text before. If
+        only joints were given, the position is given now, and also counts for the earlier move.
+        """
         if not self.time_or_speed or self.moving or move.zone != "fine":
             return False
         if self.external and self.external[-1] != self._used_of(move.axes.split(",")):
             raise unreadable(where, "external axes would move where it stands")
         if self.placed[-1]:
-            return (self.places[-1], self.turns[-1]) == move.values
+            return (self.positions[-1], self.turns[-1]) == move.values
         self._framed(move.frames, where)
         self.placed[-1] = True
-        self.places.append(move.values[0])
+        self.positions.append(move.values[0])
         self.turns.append(move.values[1])
         return True
 
@@ -160,8 +166,10 @@ class Run:
         return ",".join(text for text in texts if text != "9E9")
 
     def _external_axes(self, texts: list[str], frames: Frames, where: str) -> None:
-        """Keep the values of the external axes: of the same ones in all moves, those of the unit that the work
-        object is on, which is active, and the track. Where the work object stands, the track is the only one."""
+        """Keep the values of the external axes, the same ones in all moves: the axes of the active
+        unit below the work object, and the track. With a fixed work object the track is the only
+        one.
+        """
         used = tuple(number for number, text in enumerate(texts, 1) if text != "9E9")
         if used != tuple(range(used[0], used[0] + len(used)) if used else ()) or self.used not in (
             None,
@@ -187,7 +195,7 @@ class Run:
 
 
 def all_moves(run: Run) -> ReadMoves:
-    """The moves of all routines. Raises InputError UNREADABLE_PROGRAM."""
+    """The moves of the routines. Raises InputError UNREADABLE_PROGRAM."""
     linear, deposit = (np.array(column, dtype=np.bool_) for column in (run.linear, run.deposit))
     time_or_speed, half, rounding = (
         np.array(run.time_or_speed),
@@ -225,12 +233,13 @@ def all_moves(run: Run) -> ReadMoves:
             wire_digits=np.array(run.wire_half),
             wire_output=run.analogue,
         )
-    return _with_positions(read_moves, run) if linear.any() else read_moves
+    return _add_positions(read_moves, run) if linear.any() else read_moves
 
 
-def _with_positions(read_moves: ReadMoves, run: Run) -> ReadMoves:
-    """With the positions of the tool in the work object. A work object that the robot holds is what it takes to the tool:
-    its position seen from there is that of the tool in it, turned about."""
+def _add_positions(read_moves: ReadMoves, run: Run) -> ReadMoves:
+    """The moves with the positions of the tool in the work object. If the robot holds the work
+    object, the read poses are inverted: they are the work object's poses at the tool.
+    """
     used, placed = run.frames, np.array(run.placed, dtype=np.bool_)
     assert used is not None
     turns = _numbers(run.turns, 4)
@@ -241,23 +250,25 @@ def _with_positions(read_moves: ReadMoves, run: Run) -> ReadMoves:
         )
     positions, rotation = np.full((len(placed), 3), np.nan), np.full((len(placed), 3, 3), np.nan)
     positions[placed], rotation[placed] = (
-        _numbers(run.places, 3),
+        _numbers(run.positions, 3),
         rotation_of_quaternions(turns / length[:, None]),
     )
-    if used.held:
+    if used.part_held:
         rotation = np.swapaxes(rotation, 1, 2)
         positions = -np.einsum("nij,nj->ni", rotation, positions)
-    stands, carried = (used.tool, used.work_object) if used.held else (used.work_object, used.tool)
+    stands, carried = (
+        (used.tool, used.work_object) if used.part_held else (used.work_object, used.tool)
+    )
     return dataclasses.replace(
         read_moves,
         position=positions,
         rotation=rotation,
-        position_digits=_half_digit(run.places),
+        position_digits=_half_digit(run.positions),
         # four numbers, each off by half a digit, turn by at most four of these: as much as three angles of so much
         rotation_digits=4.0 / 3.0 * _half_digit(run.turns),
         frame=stands,
         tool=np.broadcast_to(carried, (len(placed), 4, 4)),
-        held=used.held,
+        held=used.part_held,
     )
 
 
@@ -269,5 +280,5 @@ def _numbers(texts: list[str], columns: int) -> Array:
 
 
 def _half_digit(texts: list[str]) -> float:
-    """Half of the last digit of numbers, 0 where there are none."""
+    """Half of the last digit of numbers, or 0 without numbers."""
     return 0.5 * 10.0 ** -min(map(len, _DECIMALS.findall(" ".join(texts))), default=99)

@@ -31,27 +31,33 @@ _NO_ARC = [0] * 9
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """A tool and a work object, (4, 4) in the world or on the flange: held says that it is the work object that the robot
-    carries, and that the tool stands. unit: the mechanical unit that the work object is seen from, '' where it stands."""
+    """A tool and a work object, (4, 4) in the world or on the flange: part_held: the robot carries
+    the work object, and the tool is fixed. unit: the mechanical unit that carries the work object,
+    '' for a fixed one.
+    """
 
     tool: Array
     work_object: Array
-    held: bool
+    part_held: bool
     unit: str = ""
 
     def same(self, module_frames: Frames) -> bool:
-        """Whether they are those of another module, number by number."""
+        """Whether they equal another module's frames, number by number."""
         alike = np.array_equal(self.tool, module_frames.tool) and np.array_equal(
             self.work_object, module_frames.work_object
         )
-        return alike and (self.held, self.unit) == (module_frames.held, module_frames.unit)
+        return alike and (self.part_held, self.unit) == (
+            module_frames.part_held,
+            module_frames.unit,
+        )
 
 
 @dataclass
 class Module:
-    """A file: the statements of its one routine with the numbers of their lines, and its data by name. slides: numbers of
-    the external axes that a remark calls the track. speeds: mm/s of the tip, halves: of their last digits; welds:
-    mm/s of weld data."""
+    """A file: the statements of its one routine with the numbers of their lines, and its data by
+    name. slides: numbers of the external axes that a remark calls the track. speeds: mm/s at the
+    tip, halves: half their last digits; welds: mm/s in weld data.
+    """
 
     file: str
     name: str
@@ -69,7 +75,7 @@ class Module:
     _paired: dict[tuple[str, str], Frames] = field(default_factory=dict)
 
     def tool_and_object(self, tool: str, work_object: str, where: str) -> Frames:
-        """The frames of a tool and a work object, of which the robot carries one."""
+        """The frames of a tool and a work object; the robot carries one."""
         if (tool, work_object) not in self._paired:
             if tool not in self.tools or work_object not in self.objects:
                 raise unreadable(
@@ -159,7 +165,7 @@ def _keep(module: Module, kind: str, name: str, value: Any) -> None:
         is_held, fixed, unit, user, inside = value
         moved = (
             _truth(fixed) is False
-        )  # by the unit, whose own frame goes before what is written for the user's
+        )  # by the unit, whose own frame takes precedence over the user frame
         written = moved and not np.array_equal(_pose(user), np.eye(4))
         if moved != bool(unit) or not isinstance(unit, str) or written:
             raise ValueError
@@ -219,5 +225,5 @@ def rotation_of_quaternions(quaternion: Array) -> Array:
 
 
 def unreadable(where: str, why: str) -> InputError:
-    """The error for what is not understood."""
+    """The error for text that is not understood."""
     return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)

@@ -21,7 +21,8 @@ from ..parts import place
 from ..refusals import speeds_within
 
 ANGLE_DECIMALS, LENGTH_DECIMALS, TURN_DECIMALS = 4, 3, 7
-# mm/s: the least that its three decimals tell well, and the largest of RAPID's own speeds (v7000)
+# mm/s: the lowest speed that three decimals resolve well, and the largest of RAPID's own speeds
+# (v7000)
 SPEEDS = (0.01, 7000.0)
 # s: the shortest move within a bead, and the shortest rapid
 SHORTEST_MOVE_S, SHORTEST_RAPID = 0.0001, 0.001
@@ -38,7 +39,7 @@ class Pose(NamedTuple):
 
 
 def controller_values(joints: Array, slides: Mask) -> Array:
-    """Joint values (n, axes) in degrees as the text has them, those that slide (axes,) in mm."""
+    """Joint values (n, axes) as in the text: degrees, mm for prismatic axes `slides` (axes,)."""
     values = np.where(slides, joints, np.degrees(joints))
     rounded: Array = np.asarray(np.round(values, ANGLE_DECIMALS) + 0.0, dtype=np.float64)
     return rounded
@@ -51,8 +52,9 @@ def positions(position: Array) -> Array:
 
 
 def quaternions(rotation: Array) -> Array:
-    """(n, 4) w x y z of rotations (n, 3, 3), as the text has them: of the two that there are, the one whose first number
-    that is not 0 is positive."""
+    """(n, 4) w x y z of rotations (n, 3, 3), as in the text: of the two equivalent quaternions the
+    one whose first nonzero number is positive.
+    """
     numbers = np.round(QUATERNION.numbers(rotation), TURN_DECIMALS)
     leading = numbers[np.arange(len(numbers)), np.argmax(numbers != 0.0, axis=1)]
     signed: Array = np.where(leading[:, None] < 0.0, -numbers, numbers) + 0.0
@@ -60,7 +62,7 @@ def quaternions(rotation: Array) -> Array:
 
 
 def pose(six: Six | None) -> Pose:
-    """A frame given as X Y Z mm, RX RY RZ rad, of which R = Rx Ry Rz; none is that of all zeros."""
+    """A frame given as X Y Z mm, RX RY RZ rad, with R = Rx Ry Rz; None gives the identity."""
     x, y, z, rx, ry, rz = (0.0,) * 6 if six is None else six
     rotation = MOVING_XYZ.rotations(np.array([[rx, ry, rz]]))
     return Pose(

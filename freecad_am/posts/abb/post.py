@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """ABB: RAPID modules of joint moves by time, or of linear moves with the speed held at the tip.
 
-With the part on the robot linear moves have a stationary tool, the nozzle, and a work object that the robot holds: points
-are where the nozzle is on the part. Rapids are joint moves in either, and stop at every point. What is written, what must
-be set on the controller and what was confirmed where: docs/posts/abb.md.
+With the part on the robot linear moves have a stationary tool, the nozzle, and a work object that
+the robot holds: points are positions of the nozzle on the part. Rapids are joint moves in either,
+and stop at every point. Output, controller settings and confirmations: docs/posts/abb.md.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ from ...core.program import (
     Weave,
 )
 from ..names import Naming
-from ..on_controller import on_controller
-from ..parts import Piece, Run, grouped, packed, size, unbroken, with_retracts
+from ..on_controller import controller_checks
+from ..parts import Piece, Run, grouped, move_retracts, packed, size, unbroken
 from ..refusals import (
     Asked,
     refuse_calls_of_own,
@@ -64,13 +64,13 @@ CONTROLLER = Controller(
     linear_triggers=True,
 )
 PENDANT = Pendant("ABB", ("q1", "q2", "q3", "q4"), QUATERNION, 7)
-NO_WIRE = NO_WEAVE = NO_TRIGGER = ""  # what of it is not told together: refuse_process
+NO_WIRE = NO_WEAVE = NO_TRIGGER = ""  # combinations that are not possible: refuse_process
 NO_SCHEDULE: dict[str, str] = {}
 refuse_process = process.refuse
 LAST_GROUP, LAST_SCHEDULE = 9999, 65535  # group outputs
-# an ArcLEnd at the plain speed stands where the move before it ended
+# an ArcLEnd at the plain speed is at the end of the move before it
 MOVE_LINE = re.compile(rb" *(?:Move(?:AbsJ|L|J)|Trigg(?:AbsJ|L)|ArcL|ArcLEnd(?! [^v]*v_am,)) ")
-ON_CONTROLLER = on_controller(
+ON_CONTROLLER = controller_checks(
     "The controller's world is the robot's base",
     "Signals do1, di1 and so on have these names",
     "The load of t_am is set, and the speed override is 100 %",
@@ -157,7 +157,7 @@ _RESERVED = INSTRUCTIONS | frozenset(
         name.upper() for name in (text.TOOL, text.WORK_OBJECT, text.SPEED, *process.TRIGGER_NAMES)
     )
 )
-# 16 characters on older controllers, of which the routine of a part takes two more than its name
+# 16 characters on older controllers; the routine of a part takes two more than its name
 NAMING = Naming(
     str,
     "[A-Za-z]",
@@ -174,8 +174,9 @@ _NO_END = 10**9  # how many lines a module may have is not known: it is cut by i
 def write(program: Program) -> dict[str, bytes]:
     """The modules of a program, file name -> content; the same bytes for the same program.
 
-    One file NAME.mod where its points fit, else NAME.mod loads NAME01.mod, NAME02.mod and so on one after the other, each
-    with whole beads. The duration of the very first move is as the program tells it.
+    One file NAME.mod where its points fit, else NAME.mod loads NAME01.mod, NAME02.mod and so on one
+    after the other, each with whole beads. The duration of the very first move is taken from the
+    program.
 
     Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, MOVE_TIME, MOVE_SPEED,
     NO_POSITIONS, BEAD_TOO_LONG, ANALOGUE_INPUT, NO_WIRE_OUTPUT, UNREACHABLE, NOTHING_TO_WRITE.
@@ -201,8 +202,8 @@ def write(program: Program) -> dict[str, bytes]:
         (piece_list,) = packed(groups, program.max_points, _NO_END, unbroken)
         refuse_calls_of_own(program, {name}, program_name)
         return {f"{name}.mod": module.as_bytes(name, text.MAIN, remarks, piece_list)}
-    # one place is kept for the withdrawal from the last bead: what follows is loaded away from it
-    part_groups = with_retracts(packed(groups, program.max_points - 1, _NO_END, unbroken))
+    # one point is reserved for the retract from the last bead: the next part is loaded away from it
+    part_groups = move_retracts(packed(groups, program.max_points - 1, _NO_END, unbroken))
     names = NAMING.parts(name, len(part_groups))
     refuse_calls_of_own(program, {name, *names, *map(text.routine_of, names)}, program_name)
     refuse_names_of_data(program, names, _names_used(program, words, zones))
@@ -324,7 +325,9 @@ def _instructions(program: Program, words: process.Process, block: Block) -> lis
 def _switched(
     program: Program, words: process.Process, block: DepositOn | DepositOff, on: bool
 ) -> list[str]:
-    """What switches the deposit where the robot stands; nothing where the moves themselves do."""
+    """Statements that switch the deposit at the robot's position; empty if the moves themselves
+    switch it.
+    """
     if block.schedule is not None:
         if not on and not block.lead:
             return []
@@ -335,7 +338,7 @@ def _switched(
 
 
 def _names_used(program: Program, words: process.Process, zones: numbers.Words) -> list[str]:
-    """Names of the data and signals in the text, but for those that no program may have."""
+    """Names of the data and signals in the text, except names that no program may have."""
     kinds = {WaitInput: "di", WaitBelow: "ai"}
     inputs = [
         f"{kinds[type(block)]}{block.number}"
@@ -353,7 +356,7 @@ def _names_used(program: Program, words: process.Process, zones: numbers.Words) 
 
 @dataclass(frozen=True)
 class _Module:
-    """Writes the modules of a program. words, zones: of its moves, all given already."""
+    """Writes the modules of a program. words, zones: of its moves, complete."""
 
     program: Program
     words: process.Process
@@ -362,7 +365,7 @@ class _Module:
     def as_bytes(
         self, name: str, routine: str, remarks: list[str], piece_list: Sequence[Piece]
     ) -> bytes:
-        """One module with what of the data its moves use."""
+        """One module with the data that its moves use."""
         program, part_held = self.program, self.program.holds_part
         station, carried = numbers.pose(program.station), numbers.pose(program.carried)
         lines: list[str] = []

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a RAPID program tells of the process on its moves: arc welding instructions with their data, an output that is
-switched ahead of a place, and an analogue output in proportion to the real speed of the tip.
+"""The process data on the moves of a RAPID program: arc welding instructions with their data, an
+output that is switched ahead of a place, and an analogue output in proportion to the real speed of
+the tip.
 
 Such a move is another instruction than MoveL or MoveAbsJ: its word begins with that, and a space. Data of the welder -
 seam3, weld3, weave2 - is declared on the controller; a program takes weld3 and gives it the speed of its beads.
@@ -19,48 +20,60 @@ from ..parts import place
 from ..refusals import Asked, schedule_refused, weave_refused, wire_refused
 from . import text
 
-# names of a module's own data, by number but for FEED_END: speeds, weld data, triggers of the wire, switching on and off
-SPEED, WELD, FEED, FEED_END, ON, OFF = "v_am", "d_am", "s_am", "s_off", "g_on", "g_off"
-TRIGGER_NAMES = (FEED_END, ON, OFF)
+# names of a module's own data, numbered except FEED_END: speeds, weld data, triggers of the wire,
+# switching on and off
+SPEED, WELD, FEED, FEED_END, SWITCH_ON, SWITCH_OFF = (
+    "v_am",
+    "d_am",
+    "s_am",
+    "s_off",
+    "g_on",
+    "g_off",
+)
+TRIGGER_NAMES = (FEED_END, SWITCH_ON, SWITCH_OFF)
 MOST_NAMES = (
     500  # of speeds, or data of one kind, in a module: each is a line that the controller keeps
 )
 ARC, CARTESIAN = "arc", "cartesian"
 LAST_WEAVE, LAST_SEAM = 255, 9999
-WAY_DECIMALS = 4  # of the mm before the end of a move at which an output is switched
-SLOWEST = 0.1  # mm/s of the tip at which these decimals tell a time to half a millisecond
+WAY_DECIMALS = (
+    4  # decimals of the distance, mm, before the end of a move at which an output is switched
+)
+SLOWEST = 0.1  # mm/s at the tip at which these decimals resolve half a millisecond
 _Key = TypeVar("_Key")
 _NO_ARC = "[0,0,0,0,0,0,0,0,0]"
 
 
-def refuse(asked: Asked) -> None:
-    """Raises InputError SCHEDULE, WEAVE or NO_WIRE_OUTPUT for what of the process cannot be told with the rest."""
-    arc = asked.by == ARC
-    if arc and asked.motion != CARTESIAN:
+def refuse(request: Asked) -> None:
+    """Raises InputError SCHEDULE, WEAVE or NO_WIRE_OUTPUT for process settings that exclude each
+    other.
+    """
+    arc = request.by == ARC
+    if arc and request.motion != CARTESIAN:
         raise schedule_refused(
             ARC,
             "ArcL is a linear move, and these are joint moves, which motion: cartesian replaces",
         )
-    if asked.weave and asked.dry_run:
+    if request.weave and request.dry_run:
         raise weave_refused(
             "a weave is an argument of ArcL, which a dry run does not have; block weld and weave on the "
             "controller instead"
         )
-    if asked.weave and not arc:
+    if request.weave and not arc:
         raise weave_refused("a weave is an argument of ArcL, which program.schedule.by: arc writes")
-    if asked.weave and asked.held:
+    if request.weave and request.part_held:
         raise weave_refused(
             "that a robot swings the part under a torch that stands was not confirmed"
         )
-    if not asked.wire:
+    if not request.wire:
         return
     if arc:
         raise wire_refused("the wire feed of ArcL is set by its welddata")
-    if asked.motion != CARTESIAN:
+    if request.motion != CARTESIAN:
         raise wire_refused(
             "TriggSpeed follows the speed of linear moves, and these are joint moves"
         )
-    if asked.held or asked.turned:
+    if request.part_held or request.turned:
         raise wire_refused(
             "whether TriggSpeed follows the speed over a part that moves was not confirmed"
         )
@@ -68,9 +81,10 @@ def refuse(asked: Asked) -> None:
 
 @dataclass(frozen=True)
 class Aboard:
-    """What is told on a run of moves. on, off: s ahead of the end of the last one. arc: the schedule of the arc, and weave
-    the number of its weave, 0 for none. ends: whether the bead ends with the run; stands: the torch stands there, still
-    depositing."""
+    """Process data on a run of moves. on, off: s ahead of the end of the last one. arc: the
+    schedule of the arc, and weave the number of its weave, 0 for none. ends: whether the bead ends
+    with the run; stands: the torch stops there, still depositing.
+    """
 
     moves: Moves
     arc: int | None = None
@@ -82,12 +96,12 @@ class Aboard:
 
     @property
     def lead(self) -> float | None:
-        """How long ahead of its end the deposit is switched on the run, None where it is not."""
+        """The time before its end at which the run switches the deposit, or None."""
         return self.off if self.on is None else self.on
 
 
 def aboard(blocks: Iterable[Block]) -> list[Aboard]:
-    """What is told on each run of moves of a program, in order."""
+    """Process data on each run of moves of a program, in order."""
     runs: list[Aboard] = []
     arc, weave = None, 0
     for block in blocks:
@@ -108,8 +122,9 @@ def aboard(blocks: Iterable[Block]) -> list[Aboard]:
 
 
 class Process:
-    """Words of the moves of a program, asked for block by block in the order of motion: those of `plain`, or of another
-    instruction where something of the process is told on them."""
+    """Words of the moves of a program, asked for block by block in the order of motion: from
+    `plain`, or of another instruction with process data.
+    """
 
     def __init__(self, program: Program, plain: Callable[[Moves], Sequence[str]]) -> None:
         self._program, self._plain = program, plain
@@ -118,7 +133,7 @@ class Process:
         self._speeds: dict[str, str] = {}
         self._welds: dict[tuple[int, str], str] = {}
         self._feeds: dict[str, str] = {}
-        self._switches: dict[str, dict[str, str]] = {ON: {}, OFF: {}}
+        self._switches: dict[str, dict[str, str]] = {SWITCH_ON: {}, SWITCH_OFF: {}}
 
     def __call__(self, moves: Moves) -> Sequence[str]:
         """Speed, process and zone of each move."""
@@ -181,15 +196,19 @@ class Process:
         return _numbered(self._speeds, SPEED, _speed_in(word))
 
     def _feed(self, ratio: float) -> str:
-        """The trigger by which the output follows the speed of the tip, mm/s: of wire in m/min there are `ratio` as many."""
+        """The trigger by which the output follows the speed of the tip, mm/s; the wire speed in
+        m/min is `ratio` times that.
+        """
         return _numbered(self._feeds, FEED, f"{0.06 * self._program.nc.wire_gain * ratio:#.7G}")
 
     def _switched(self, aboard_run: Aboard, word: str) -> list[str]:
-        """The triggers that switch the deposit before the end of a run whose last word that is. RAPID counts a time from
-        where the robot stops, no farther back than it brakes; a way, at the speed of that very move, has no such end."""
+        """The triggers that switch the deposit before the end of a run with the last word `word`.
+        RAPID counts a time back from the stop only within braking; a distance, at the speed of the
+        move, has no such limit.
+        """
         if aboard_run.lead is None:
             return []
-        kind = OFF if aboard_run.on is None else ON
+        kind = SWITCH_OFF if aboard_run.on is None else SWITCH_ON
         if aboard_run.lead <= 0.0:
             return [self._switches[kind].setdefault("0", kind)]
         speed_word = word.partition(",")[0]
@@ -252,7 +271,7 @@ class Process:
         return [*speeds, *welds, *(f"LOCAL VAR triggdata {name};" for name in names)]
 
     def setup(self, used: Collection[str]) -> list[str]:
-        """Statements at the beginning of a routine that give it what it says."""
+        """Statements at the beginning of a routine that set its data."""
         lines = []
         for (schedule, speed), name in self._welds.items():
             if name in used:
@@ -270,7 +289,7 @@ class Process:
         lines += [f"    TriggSpeed {FEED_END},0,0,{analogue},0;"] if FEED_END in used else []
         output = f"do{self._program.deposit_output}"
         switches = [
-            f"    TriggIO {name},{lead}\\DOp:={output},{int(kind == ON)};"
+            f"    TriggIO {name},{lead}\\DOp:={output},{int(kind == SWITCH_ON)};"
             for kind, names in self._switches.items()
             for lead, name in names.items()
             if name in used
@@ -284,7 +303,7 @@ class Process:
 
     @property
     def _all_names(self) -> list[list[str]]:
-        """The same, each kind by itself."""
+        """The same, by kind."""
         kinds = [self._speeds.values(), self._welds.values(), self._feeds.values()]
         return [
             list(names)
@@ -302,7 +321,7 @@ class Process:
 
 
 def _speed_in(word: str) -> str:
-    """The speed that a word tells."""
+    """The speed in a word."""
     return word.rpartition("=")[2]
 
 

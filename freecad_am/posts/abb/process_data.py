@@ -28,17 +28,21 @@ class Weld:
 
 @dataclass(frozen=True)
 class Switch:
-    """A digital output that is set so far, mm of the tip's way, before the end of a move; digits: half of the last one."""
+    """A digital output that is set `distance` mm of the tip's path before the end of a move; digits:
+    half of the last one.
+    """
 
     output: str
     on: bool
-    before: float
+    distance: float
     digits: float
 
 
 @dataclass(frozen=True)
 class Feed:
-    """An analogue output that follows the speed of the tip, mm/s, from the start of a move on; of scale 0 to its end."""
+    """An analogue output that follows the speed of the tip, mm/s, from the start of a move on;
+    scale 0 ends it.
+    """
 
     output: int
     scale: float
@@ -47,13 +51,15 @@ class Feed:
 
 @dataclass
 class ProcessData:
-    """All that a module has said so far, by name."""
+    """The process data of a module read so far, by name."""
 
     welds: dict[str, Weld] = field(default_factory=dict)
     triggers: dict[str, Switch | Feed] = field(default_factory=dict)
 
     def understood(self, line: str, module: Module, where: str) -> bool:
-        """Whether the line says something of it, which then is kept. Raises InputError UNREADABLE_PROGRAM."""
+        """Keep the process data of a line; return whether it had any. Raises InputError
+        UNREADABLE_PROGRAM.
+        """
         if taken_weld := _TAKEN.match(line):
             if taken_weld[1] not in module.welds or taken_weld[1] in self.welds:
                 raise unreadable(

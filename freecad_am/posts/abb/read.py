@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads RAPID modules back: what the controller would do, from the text alone.
+"""Reads RAPID modules back: the behaviour of the controller, from nothing but the text.
 
-Shares nothing with the writer. Understands the plain instructions a path needs and refuses every other one, so
-that no motion can hide in what was not understood.
+Shares nothing with the writer. Understands the plain instructions a path needs and refuses every
+other one, so that no motion can hide in unknown text.
 """
 
 from __future__ import annotations
@@ -57,13 +57,13 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
 
 def _follow(module: Module, run: Run) -> None:
-    """Carry out the statements of a routine in order, and of those of the parts that it loads."""
+    """Carry out the statements of a routine in order, and of the parts that it loads."""
     run.followed.append(module.name)
-    run.nearest, run.active, run.given = (
+    run.nearest, run.active, run.process_data = (
         False,
         "",
         ProcessData(),
-    )  # each says it for itself: it may be run alone
+    )  # each part sets it for itself: it may run separately
     activated = ("", -1)
     lines = iter(module.statements)
     for number, line in lines:
@@ -85,7 +85,7 @@ def _follow(module: Module, run: Run) -> None:
             raise unreadable(where, Text("{!r} is reached before the move before it ends", line))
         elif load := _LOAD.match(line):
             _load(module, load[1], lines, run, where)
-        elif not run.given.understood(line, module, where):
+        elif not run.process_data.understood(line, module, where):
             _other(line, run, where)
     if activated[1] == len(run.time_or_speed):
         raise unreadable(activated[0], Text("{} is activated, and no move follows", run.active))

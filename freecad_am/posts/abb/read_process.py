@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads moves of RAPID that tell something of the process: arc welding instructions, and moves with triggers."""
+"""Reads moves of RAPID with process data: arc welding instructions, and moves with triggers."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _TRIGG_L = re.compile(rf"TriggL {POSITION},(\w+){_TRIGGERS}{_TAIL}")
 _ARC = re.compile(
     rf"ArcL(Start|End|) {POSITION},(\w+),seam([1-9]\d*),(\w+)(?:\\Weave:=weave([1-9]\d*))?{_TAIL}"
 )
-_MORE = re.compile(r"\\T(\d):=(\w+)")
+_EXTRA_TRIGGER = re.compile(r"\\T(\d):=(\w+)")
 
 
 def process_move(line: str, module: Module, run: Run, where: str) -> bool:
@@ -63,14 +63,14 @@ def _speed_of(module: Module, name: str, where: str) -> float:
 
 def _trigger_names(first_trigger: str, further: str, where: str) -> list[str]:
     """The triggers of a move, which count from \\T2 on without a gap."""
-    numbered = _MORE.findall(further)
+    numbered = _EXTRA_TRIGGER.findall(further)
     if [int(number) for number, _ in numbered] != list(range(2, 2 + len(numbered))):
         raise unreadable(where, "its triggers are not numbered in a row")
     return [first_trigger, *(name for _, name in numbered)]
 
 
 def _triggered(move: Move, names: list[str], module: Module, run: Run, where: str) -> None:
-    triggers = [run.given.triggers.get(name) for name in names]
+    triggers = [run.process_data.triggers.get(name) for name in names]
     feeds = [trigger for trigger in triggers if isinstance(trigger, Feed)]
     if None in triggers or len({*names}) != len(names) or (run.on and run.output == ARC):
         raise unreadable(where, "a trigger is not set, or named twice, or the arc burns on")
@@ -111,15 +111,19 @@ def _triggered(move: Move, names: list[str], module: Module, run: Run, where: st
                 raise unreadable(
                     where, "a corner has no end from which the time of a trigger counts"
                 )
-            run.keep_switch(trigger.output, trigger.on, "do", where, trigger.digits, trigger.before)
+            run.keep_switch(
+                trigger.output, trigger.on, "do", where, trigger.digits, trigger.distance
+            )
 
 
 def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
-    """The arc is struck where the robot stands, burns along a move, or ends with it, or where the robot stands after it."""
+    """The arc is struck at the robot's position, burns along a move, or ends with it, or at the
+    robot's position after it.
+    """
     kind, position, turn, axes, speed, seam, weld_name, weave, zone, tool, work_object = (
         arc.groups()
     )
-    weld, woven = run.given.welds.get(weld_name), int(weave or 0)
+    weld, woven = run.process_data.welds.get(weld_name), int(weave or 0)
     if (
         weld is None
         or weld.speed is None
@@ -136,18 +140,18 @@ def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
                 where, "the arc burns already, or is struck where the robot does not stand"
             )
         run.keep_switch(seam, True, ARC, where)
-        run.seam, run.weave, run.struck, run.last = int(seam), 0, woven, (weld_name, woven)
+        run.seam, run.weave, run.struck, run.last_weld = int(seam), 0, woven, (weld_name, woven)
         return
     if not run.on or run.output != ARC or run.seam != int(seam):
         raise unreadable(where, "the arc does not burn, or by another seam")
     if kind == "End" and run.struck is None and run.stands_at(move, where):
-        if run.last != (weld_name, woven):
+        if run.last_weld != (weld_name, woven):
             raise unreadable(where, "the arc ends with other data than it burnt by")
         _ends(run, where)
         return
     _burns(move, weld, weld_name, dry, woven, run, where)
     run.keep_move(module, move, where)
-    run.last = weld_name, woven
+    run.last_weld = weld_name, woven
     if kind == "End":
         if not np.isnan(run.rounding[-1]):
             raise unreadable(where, "the arc ends where the robot does not stop")
@@ -155,12 +159,13 @@ def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
 
 
 def _burns(move: Move, weld: Weld, name: str, dry: float, woven: int, run: Run, where: str) -> None:
-    """Before a move of the arc: its weave begins with the first one, and is that of all, struck with the weld data of that
-    name; with the arc blocked it is as fast."""
+    """Handle a move of the arc: its weave begins with the first move and holds for all moves struck
+    with the weld data `name`; with the arc blocked the speed is the same.
+    """
     if dry != weld.speed:
         raise unreadable(where, "with the arc blocked the move has another speed")
     if run.struck is not None:
-        if run.last != (name, woven):
+        if run.last_weld != (name, woven):
             raise unreadable(where, "the arc is struck with other weld data, or another weave")
         run.struck, run.weave = None, woven
         if woven:
@@ -170,7 +175,7 @@ def _burns(move: Move, weld: Weld, name: str, dry: float, woven: int, run: Run, 
 
 
 def straight(run: Run) -> None:
-    """The torch stands and is not swung any more."""
+    """The torch stops and weaves no more."""
     if run.weave and run.struck is None:
         run.happens("weave", 0.0)
         run.weave = 0

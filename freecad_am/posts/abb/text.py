@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The text of a RAPID module: head, data, routine, and what stands in its lines. Lines end in CR LF."""
+"""The text of a RAPID module: head, data, routine, and its lines. Lines end in CR LF."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from .numbers import ANGLE_DECIMALS, LENGTH_DECIMALS, TURN_DECIMALS, Pose
 END_OF_LINE = "\r\n"
 WIDTH = 80  # of remarks
 
-# what the module of a program and those of its parts call their data; each its own (LOCAL)
+# names of the data in the modules of a program and its parts; local to each (LOCAL)
 TOOL, WORK_OBJECT, SPEED, ZONE = "t_am", "w_am", "v_am", "z_am"
 MAIN = "main"
-# of external axes that there are none of
+# value of absent external axes
 _NO_AXIS, MOST_AXES = "9E9", 6
 # mm/s of the tip, which every move replaces by a speed or a time of its own; deg/s it turns; external axes: those
 # of RAPID's own v1000
@@ -30,14 +30,16 @@ _LOAD = "[0.001,[0,0,0.001],[1,0,0,0],0,0,0]"
 _ANGLES = ",".join([f"%.{ANGLE_DECIMALS}f"] * 6)
 _JOINTS = f"    %s [[{_ANGLES}],<axes>]\\NoEOffs,%s,{TOOL}\\WObj:={WORK_OBJECT};"
 _POSE = f"[{','.join([f'%.{LENGTH_DECIMALS}f'] * 3)}],[{','.join([f'%.{TURN_DECIMALS}f'] * 4)}]"
-# ConfL is off: the controller takes the configuration nearest to where the arm is, and these are not looked at
+# ConfL is off: the controller takes the configuration nearest to the arm and ignores these
 _POSITION = f"    %s [{_POSE},[0,0,0,0],<axes>],%s,{TOOL}\\WObj:={WORK_OBJECT};"
 
 
 def module(
     name: str, routine: str, remarks: Iterable[str], data: Iterable[str], lines: Iterable[str]
 ) -> bytes:
-    """One file: a module with one routine. remarks: what it is; data, lines: as they stand, the lines indented."""
+    """One file: a module with one routine. remarks: its description; data, lines: unchanged, the
+    lines indented.
+    """
     text = [
         f"MODULE {name}",
         *(f"  {line}" for line in remarks),
@@ -57,8 +59,10 @@ def data(
     zones: Sequence[tuple[str, float]],
     unit: str = "",
 ) -> list[str]:
-    """Declarations of tool, work object, speed and zones. part_held: the robot carries the work object, and the tool stands.
-    unit: the mechanical unit whose face the work object is on and moves with, '' where it stands."""
+    """Declarations of tool, work object, speed and zones. part_held: the robot carries the work
+    object, and the tool is fixed. unit: the mechanical unit that carries the work object, '' for a
+    fixed one.
+    """
     tool_held, object_held = ("FALSE", "TRUE") if part_held else ("TRUE", "FALSE")
     tool_pose, object_pose = (
         _POSE % (*pose.position, *pose.quaternion) for pose in (tool, work_object)
@@ -76,28 +80,35 @@ def data(
 
 
 def speed(tip: str) -> str:
-    """A speed of the tip, mm/s, with those of RAPID's own v1000."""
+    """A speed of the tip, mm/s, with the other speeds of RAPID's v1000."""
     return f"[{tip},{_SPEEDS}]"
 
 
 def _zone(size: float) -> str:
-    """A zone of so many mm, in the proportions of RAPID's own z1: as large for orientation, 0.1 deg per mm."""
+    """A zone of `size` mm, in the proportions of RAPID's own z1: as large for orientation, 0.1 deg
+    per mm.
+    """
     mm, degrees = f"{size:.3f}", f"{0.1 * size:.4f}"
     return f"[FALSE,{mm},{mm},{mm},{degrees},{mm},{degrees}]"
 
 
-def joint_moves(degrees: Array, words: Sequence[str], first: int = 1) -> list[str]:
-    """Moves straight in the joints to values (n, 6 and those beside the robot), rounded already. words: speed and zone of
-    each. first: the number of the first external axis, from 1."""
-    line = _JOINTS.replace("<axes>", _axes(degrees.shape[1] - 6, first))
+def joint_moves(degrees: Array, words: Sequence[str], first_external: int = 1) -> list[str]:
+    """Joint moves to values (n, 6 + external axes), rounded already. words: speed and zone of each.
+    first_external: the number of the first external axis, from 1.
+    """
+    line = _JOINTS.replace("<axes>", _axes(degrees.shape[1] - 6, first_external))
     return _move_lines(line, "MoveAbsJ", degrees, words)
 
 
 def linear_moves(
-    position: Array, quaternion: Array, external: Array, words: Sequence[str], first: int = 1
+    position: Array,
+    quaternion: Array,
+    external: Array,
+    words: Sequence[str],
+    first_external: int = 1,
 ) -> list[str]:
     """Moves straight in space to positions (n, 3), quaternions (n, 4) and external axes (n, k), rounded already."""
-    line = _POSITION.replace("<axes>", _axes(external.shape[1], first))
+    line = _POSITION.replace("<axes>", _axes(external.shape[1], first_external))
     return _move_lines(line, "MoveL", np.hstack((position, quaternion, external)), words)
 
 
@@ -112,7 +123,7 @@ def _move_lines(line: str, instruction: str, values: Array, words: Sequence[str]
 
 
 def _axes(count: int, first_external: int) -> str:
-    """The external axes: so many of them, from that number on."""
+    """The text of `count` external axes, from number `first_external` on."""
     formats = [_NO_AXIS] * (first_external - 1) + [f"%.{ANGLE_DECIMALS}f"] * count if count else []
     return f"[{','.join(formats + [_NO_AXIS] * (MOST_AXES - len(formats)))}]"
 
@@ -142,6 +153,6 @@ def load(folder: str, part_name: str) -> list[str]:
     ]
 
 
-def routine_of(part: str) -> str:
-    """The routine of a part: another name for each, for routines of all modules are known together."""
-    return f"{part}_p"
+def routine_of(part_name: str) -> str:
+    """The routine of a part, with a distinct name, as routines of all modules share one scope."""
+    return f"{part_name}_p"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a FANUC listing was found to do, so far and in all."""
+"""The behaviour of a FANUC listing as read."""
 
 from __future__ import annotations
 
@@ -16,16 +16,17 @@ from ..packed import Lines, floats
 from .parsed import Listing
 from .records import unreadable
 
-_OWN = 6  # axes of the robot
+_ROBOT_AXES = 6  # axes of the robot
 
 
 @dataclass
 class Run:
-    """What happened so far while the programs are followed.
+    """The state while the programs are followed.
 
-    pending: records of the listing at hand that were moved to and are not among `values` yet. recorded, numbers: frames of
-    the record that was looked at last, and the numbers of those selected. track: which of the external axes a remark
-    calls the track, 0 for none, and whether positions have one. moved: groups that headers name.
+    pending: records of the current listing that were moved to and are not among `values` yet.
+    recorded, numbers: frames of the last checked record, and the numbers of the selected ones.
+    track: the external axis that a remark calls the track, 0 for none, and whether positions have
+    one. moved: groups that headers name.
     """
 
     cartesian: bool = False
@@ -59,7 +60,7 @@ class Run:
         self.events.append(Event(len(self.duration), kind, value, digits, ahead))
 
     def begin(self, listing: Listing) -> None:
-        """Look at the groups of a listing; one without moves may name none."""
+        """Check the groups of a listing; one without moves may name none."""
         groups = listing.records.moved
         if groups and self.moved not in (None, groups):
             raise unreadable(
@@ -88,7 +89,9 @@ class Run:
 
 
 def read_moves(run: Run) -> ReadMoves:
-    """All moves, as what a reader finds. InputError UNREADABLE_PROGRAM where a track is not told as one."""
+    """All moves in the form of a reader. InputError UNREADABLE_PROGRAM if a track is not declared
+    as one.
+    """
     cartesian, values, digits = run.cartesian, np.concatenate(run.values), run.digits
     joints, half_turn = (
         (None, 0.0) if cartesian else (_joints(run, values), float(np.radians(digits)))
@@ -134,15 +137,15 @@ def read_moves(run: Run) -> ReadMoves:
 def _joints(run: Run, values: Array) -> Array:
     """(n, axes) rad and mm of the values of records, the track where a remark says that it is among the external axes."""
     number, track = run.track
-    if track != bool(number) or number > values.shape[1] - _OWN:
+    if track != bool(number) or number > values.shape[1] - _ROBOT_AXES:
         raise unreadable(
             "program",
             "positions have a track and no remark says which axis it is, or the other way round",
         )
     if not track:
         return np.asarray(np.radians(values))
-    angles = np.radians(np.delete(values, _OWN, axis=1))
-    return np.asarray(np.insert(angles, _OWN + number - 1, values[:, _OWN], axis=1))
+    angles = np.radians(np.delete(values, _ROBOT_AXES, axis=1))
+    return np.asarray(np.insert(angles, _ROBOT_AXES + number - 1, values[:, _ROBOT_AXES], axis=1))
 
 
 def _rotation(wpr: Array) -> Array:

@@ -70,8 +70,10 @@ _POSE_RECORD = (
 def listing(
     name: str, comment: str, instructions: Sequence[str], records: str, group: int = 1
 ) -> bytes:
-    """One whole file. instructions: what follows the colon of each line, with its semicolon; records: the text
-    of joint_records or pose_records, '' when there are none. group: the motion group that moves beside the first one."""
+    """One whole file. instructions: the text after the colon of each line, with its semicolon;
+    records: the text of joint_records or pose_records, or ''. group: the motion group that moves
+    together with the first one.
+    """
     groups = ",".join("1" if number in (1, group) else "*" for number in range(1, GROUPS + 1))
     comment = plain(comment)[:COMMENT_WIDTH]
     head = _HEADER.format(
@@ -116,15 +118,16 @@ def arc(word: str, schedule: int) -> str:
 
 
 def weave(number: int) -> str:
-    """The weave of a number, which is sine by its schedule of that number, and its end for 0."""
+    """The sine weave with the schedule `number`; its end for 0."""
     return f"  Weave Sine[{number}] ;" if number else "  Weave End ;"
 
 
 def joint_records(
     degrees: Array, track: Array, external: Array, user_frame: int, tool_frame: int, group: int = 1
 ) -> str:
-    """Records P[1].. of joint values (n, 6), of the track (n, 0 or 1) and of another group (n, k), degrees and mm already
-    rounded to 3 decimals."""
+    """Records P[1], P[2] and on, with joint values (n, 6), of the track (n, 0 or 1) and of another
+    group (n, k), degrees and mm already rounded to 3 decimals.
+    """
     values = ",".join(f"\tJ{axis}=%10.3f deg" for axis in range(1, external.shape[1] + 1))
     second_group = f"   GP{group}:\r\n\t<frame>\t\r\n{values}\r\n}};" if values else "};"
     extended = "deg,\r\n\tE1=%10.3f  mm\r\n};" if track.shape[1] else "deg\r\n};"
@@ -135,7 +138,9 @@ def joint_records(
 def pose_records(
     pose: Array, configuration: Sequence[str], user_frame: int, tool_frame: int
 ) -> str:
-    """Records P[1].. of positions (n, 6) X Y Z mm, W P R deg, already rounded to 3 decimals, with their CONFIG."""
+    """Records P[1], P[2] and on, with positions (n, 6) X Y Z mm, W P R deg, already rounded to 3
+    decimals, with their CONFIG.
+    """
     return _records(_POSE_RECORD, user_frame, tool_frame, [configuration], pose)
 
 

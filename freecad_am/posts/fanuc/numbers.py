@@ -52,7 +52,7 @@ def time_words(moves: Moves) -> list[str]:
             n,
             seconds.sum(),
         )
-    # beyond the 1 ms that each move takes at least: what has accrued, never falling, never more than the whole
+    # time beyond the minimum of 1 ms per move: accumulated, monotonic, at most the total
     spare = np.minimum(
         np.maximum.accumulate(np.maximum(ends - np.arange(1, n + 1), 0)), max(int(ends[-1]) - n, 0)
     )
@@ -82,9 +82,10 @@ def configurations(moves: Moves, continuous: tuple[bool, ...]) -> list[str]:
     """CONFIG of each point, such as 'N U T, 0, 0, 0'. Raises InputError
     NO_POSITIONS, ARM_BACKWARDS, TURN_NUMBER.
 
-    F where J5 > 0, D where the elbow is down; the last number counts the turns of J6. Whether the other two belong
-    to J1 and J4 or to J4 and J5 is told differently by different sources, so those axes must stay within half a
-    turn, where both readings agree. What U and D mean of an arm bent over backwards (B) was not confirmed.
+    F where J5 > 0, D where the elbow is down; the last number counts the turns of J6. Whether the
+    other two belong to J1 and J4 or to J4 and J5 differs between sources, so those axes must stay
+    within half a turn, where both readings agree. What U and D mean of an arm bent over backwards
+    (B) was not confirmed.
     """
     if moves.configuration is None:
         raise InputError(

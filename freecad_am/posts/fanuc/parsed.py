@@ -29,19 +29,21 @@ _MOTION = re.compile(
 
 
 class _Instruction(NamedTuple):
-    """An instruction and the number of its line; or moves that follow each other, by the first of them and the one after
-    the last, and the option of the last one, if it has one."""
+    """An instruction and the number of its line; or a run of moves, from `first_move` to the one
+    after the last, and the option of the last one, if any.
+    """
 
     number: int
     text: str
-    first: int = 0
+    first_move: int = 0
     end: int = 0
 
 
 @dataclass
 class _Moves:
-    """All moves of a file in order (n,): the numbers of their lines, positions, numbers and the units of these, whether they
-    are straight, and CNT, NaN of those that stop."""
+    """All moves of a file in order (n,): their line numbers, positions, speeds with units, whether
+    they are straight, and CNT, NaN for moves that stop.
+    """
 
     line: Index
     point: Index
@@ -66,7 +68,7 @@ class Listing:
         return len(set(self.records.frames)) == 1
 
     def rows(self, points: Index) -> Index:
-        """Which positions those numbered (k,) are, -1 where there is none."""
+        """Rows of the positions numbered (k,), -1 for missing ones."""
         points_recorded = self.records.point
         if not len(points_recorded):
             return np.full(len(points), -1)
@@ -92,7 +94,7 @@ def listing_of(file: str, content: bytes) -> Listing:
     marks = [text.find(f"\n{section}\n") for section in ("/MN", "/POS", "/END")]
     if -1 in marks or marks != sorted(marks):
         raise unreadable(file, _NO_LISTING)
-    # the records, by far the most of it, are not taken apart by lines
+    # the records, by far the largest part, are not split into lines
     lines = text[1 : marks[1]].split("\n")
     start, positions = lines.index("/MN"), len(lines)
     instructions, moves = _instructions(file, lines[start + 1 :], start + 2)
@@ -101,7 +103,7 @@ def listing_of(file: str, content: bytes) -> Listing:
 
 
 def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instruction], _Moves]:
-    """The instructions of lines, of which the first has a number, and all moves among them."""
+    """The instructions of lines, the first one numbered `number`, and all moves among them."""
     count = len(lines)
     moves = _Moves(
         np.arange(number, number + count),

@@ -3,7 +3,7 @@
 
 Rapids are joint moves in either, and stop at every point.
 
-What is written, what must be set on the controller and what was confirmed where: docs/posts/fanuc.md.
+Output, controller settings and confirmations: docs/posts/fanuc.md.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from ...core.program import (
     Weave,
 )
 from ..names import Naming
-from ..on_controller import on_controller
+from ..on_controller import controller_checks
 from ..parts import Piece, Run, continued, grouped, packed
 from ..refusals import (
     refuse_calls_of_own,
@@ -58,18 +58,18 @@ __all__ = ["read", "write"]
 
 
 LAST_ANALOGUE = 25  # analogue inputs
-# why the speed of the wire cannot follow that of the torch
+# why the speed of the wire cannot follow the torch speed
 CONTROLLER = Controller(point_bytes=205, external=True, positioner="2")
 PENDANT = Pendant("FANUC", ("W", "P", "R"), FIXED_XYZ)
 NO_WIRE = "AO[] between two moves of a FANUC is set when its line is read, ahead of the motion"
 NO_WEAVE = ""  # linear moves can be woven
 NO_TRIGGER = ""  # the deposit can be switched on the move itself
 refuse_process = refuse_no_process
-LAST_WEAVE = 255  # of numbers of weave schedules
-NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
+LAST_WEAVE = 255  # highest number of weave schedules
+NO_SCHEDULE: dict[str, str] = {}  # schedules are supported in every way
 LAST_GROUP, LAST_SCHEDULE = 400, 32767  # group outputs
 MOVE_LINE = re.compile(rb" *\d+:[JL] P\[")
-ON_CONTROLLER = on_controller(
+ON_CONTROLLER = controller_checks(
     "UFRAME and UTOOL of the numbers in the program are those of the cell",
     "Joint values mean what the machine file says, J3 above all",
     "An axis without limits has the Continuous Turn option",
@@ -173,7 +173,9 @@ def refuse_setup(
 
 
 def _refuse_coordinated(motion: str, external: tuple[str, ...]) -> None:
-    """Raises InputError COORDINATED_MOTION for what cannot be said with external axes of these kinds."""
+    """Raises InputError COORDINATED_MOTION for a motion that is not supported with external axes of
+    the given kinds.
+    """
     if motion != "cartesian":
         return
     why = (
@@ -255,18 +257,18 @@ def _own_remarks(program: Program) -> Iterator[str]:
 
 
 def _words(program: Program) -> Callable[[Moves], Sequence[str]]:
-    """What the moves of each block say behind their positions, asked for in the order of motion."""
-    first, options = True, at_ends(program)
+    """The words of each block's moves after their positions, asked for in the order of motion."""
+    is_first, options = True, at_ends(program)
 
     def words(moves: Moves) -> Sequence[str]:
-        nonlocal first
+        nonlocal is_first
         speeds = (
             numbers.speed_words(moves)
             if moves.interpolation == LINEAR_MOVE
             else numbers.time_words(moves)
         )
-        if first:
-            speeds[0], first = _FIRST_MOVE, False
+        if is_first:
+            speeds[0], is_first = _FIRST_MOVE, False
         corners = ["FINE" if stops else f"CNT{program.blend}" for stops in moves.stops.tolist()]
         words = [f"{speed} {corner}" for speed, corner in zip(speeds, corners, strict=True)]
         words[-1] += options.get(id(moves), "")
@@ -278,7 +280,7 @@ def _words(program: Program) -> Callable[[Moves], Sequence[str]]:
 def _instructions(program: Program, block: Block) -> list[str]:
     output = f"  DO[{program.deposit_output}]="
     if isinstance(block, (DepositOn, DepositOff)) and block.ahead is not None:
-        return []  # a move tells it: at_ends
+        return []  # in the move's option: at_ends
     if isinstance(block, DepositOn):
         on = output + "ON ;" if block.schedule is None else text.arc("Start", block.schedule)
         return [] if program.dry_run else [on, *text.wait(block.lead)]
@@ -317,7 +319,7 @@ def _file(
 
 
 def _group(program: Program) -> int:
-    """The motion group of the axes that carry the part; the robot's own where there are none."""
+    """The motion group of the axes that carry the part; the robot's own without such axes."""
     return int(program.unit) if program.on_positioner else 1
 
 

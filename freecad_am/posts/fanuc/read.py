@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads FANUC listings back: what the controller would do, from the text alone.
+"""Reads FANUC listings back: the behaviour of the controller, from nothing but the text.
 
-Shares nothing with the writer. Understands the plain instructions a path needs and refuses every other one, so
-that no motion can hide in what was not understood.
+Shares nothing with the writer. Understands the plain instructions a path needs and refuses every
+other one, so that no motion can hide in unknown text.
 """
 
 from __future__ import annotations
@@ -63,7 +63,9 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 def _follow(
     name: str, files: dict[str, tuple[str, bytes]], run: Run, callers: tuple[str, ...]
 ) -> None:
-    """Carry out the instructions of a program in order, and of those it calls. A listing is there while it is followed."""
+    """Carry out the instructions of a program in order, and of programs it calls. A listing is kept
+    in memory while it is followed.
+    """
     if name in callers:
         raise unreadable(files[name][0], "it calls itself")
     listing = listing_of(*files[name])
@@ -118,7 +120,7 @@ def _switch(
 
 
 def _trigger(option: str, where: str, run: Run) -> None:
-    """The last move has switched the deposit, so long before its end."""
+    """The last move has switched the deposit, by the time in `option` before its end."""
     trigger = _TRIGGER.match(option)
     output = trigger and _OUTPUT.match(trigger[3])
     if not trigger or not output:
@@ -144,7 +146,7 @@ def _arc(arc: re.Match[str], where: str, run: Run) -> None:
 
 
 def _move(listing: Listing, rows_moved: slice, option: str, run: Run) -> None:
-    """Carry out moves that follow each other, all of them column by column, and the option of the last one."""
+    """Carry out a run of moves, column by column, and the option of the last one."""
     moves, cartesian = listing.moves, listing.records.cartesian
     unit, straight, corner = (
         moves.unit[rows_moved],
@@ -212,7 +214,9 @@ def _refuse(listing: Listing, move: int, run: Run) -> None:
 
 
 def _select(listing: Listing, row: int, run: Run, number: int) -> None:
-    """Look at the frames that a position is recorded in; those like it need not be looked at until others are selected."""
+    """Check the frames that a position is recorded in; equal ones need no check until others are
+    selected.
+    """
     recorded = listing.records.frames[row]
     for word, frame in zip(("FRAME", "TOOL"), recorded, strict=True):
         if frame not in ("F", run.frame.get(word)):

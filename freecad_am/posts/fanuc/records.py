@@ -27,7 +27,8 @@ def _values(names: str, units: str) -> str:
 
 
 _JOINTS = re.compile(_FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"\s*\};")
-# one of them, from the end of the line before to its own end, with the digits of its names as numbers too
+# one record, from the end of the line before to its own end, with the digits of its names as
+# numbers too
 _ONE = re.compile(
     r"\s*\n"
     + (_FRAMES + _values(" ".join([r"J(\d)"] * 6), "deg " * 6)).replace("GP1", r"GP(\d)")
@@ -35,7 +36,7 @@ _ONE = re.compile(
 )
 _NUMBERED, _GROUP, _FRAMES_OF, _NAMES, _VALUES = 1, 2, (3, 4), range(5, 17, 2), range(6, 17, 2)
 # the same with a track, and the axes of another motion group, in the same frames
-_MORE = re.compile(
+_FULL_RECORD = re.compile(
     _FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"(?:,\s*E1 ?= *(-?\d*\.\d+) *mm)?"
     r"(?:\s*GP([2-8]):\s*UF : (\d+|F), UT : (\d+|F),((?:\s*J\d ?= *-?\d*\.\d+ *deg,?)+))?\s*\};"
 )
@@ -47,9 +48,10 @@ _POSE = re.compile(
 
 
 class Records(NamedTuple):
-    """Positions of a file by their numbers (n,), values (n, 6, that of a track, and those of another motion group),
-    configurations, frames, half a last digit, the number of that group, whether there is a track, and the numbers of all
-    groups that the header names."""
+    """Positions of a file by their numbers (n,), values (n, 6 + track + other motion group),
+    configurations, frames, half a last digit, the number of the other group, whether there is a
+    track, and the numbers of the groups in the header.
+    """
 
     point: Index
     values: Array
@@ -63,9 +65,11 @@ class Records(NamedTuple):
 
 
 def records_of(file: str, lines: list[str], text: str, positions: int) -> Records:
-    """The positions, by number, that stand in the text after the first lines of a file, the line that begins them numbered
-    from 0. InputError UNREADABLE_PROGRAM for what is not understood, or recorded twice."""
-    # counting is many times as fast as looking at every line
+    """The positions, by number, in the text after the first lines of a file; the line that begins
+    them is numbered from 0. InputError UNREADABLE_PROGRAM for text that is not understood, or
+    positions recorded twice.
+    """
+    # counting is many times as fast as checking every line
     several = text.count("GP") > text.count("GP1:") and re.search(
         r"^ *GP[2-8]:", text, re.MULTILINE
     )
@@ -108,7 +112,7 @@ def _groups_of(lines: list[str]) -> frozenset[str]:
 
 
 def _check_groups(file: str, lines: list[str], records: Records) -> None:
-    """The groups that a program moves are those that it has positions of."""
+    """Check that the groups that a program moves equal the groups of its positions."""
     moved = _groups_of(lines)
     if len(records.point) and moved != {"1", records.group or "1"}:
         number = next((k for k, line in enumerate(lines, 1) if line.startswith("DEFAULT_GROUP")), 1)
@@ -138,7 +142,7 @@ def _joint_records_of_groups(file: str, text: str, positions: int) -> Records:
     """The joint positions of a text with a track or two motion groups, all alike."""
     values, frames, decimals, points = [], [], 99, []
     groups: set[tuple[str, int, bool]] = set()
-    for record in _MORE.finditer(text):
+    for record in _FULL_RECORD.finditer(text):
         point, user, tool, *robot_values, track, group, other_user, other_tool, external_text = (
             record.groups()
         )
@@ -189,40 +193,42 @@ def _joint_records_of_groups(file: str, text: str, positions: int) -> Records:
 
 
 def _joint_records(text: str) -> Records | None:
-    """The positions of a text that holds nothing else than joint positions; None where it may."""
-    *records, rest = f"\n{text}".split("};")
-    if not records or rest.strip():
+    """The positions of a text with nothing but joint positions; None if it has other content."""
+    *records, trailing = f"\n{text}".split("};")
+    if not records or trailing.strip():
         return None
     point, values, decimals = np.zeros(len(records), dtype=np.intp), np.zeros((len(records), 6)), 99
     frames = [("", "")] * len(records)
-    for shape, some in alike.shapes(records, "};").items():
-        found = _ONE.fullmatch(shape)
-        if found is None:
+    for shape, rows in alike.shapes(records, "};").items():
+        match = _ONE.fullmatch(shape)
+        if match is None:
             return None
-        mine = [records[row] for row in some]
-        stated = [group for group in _FRAMES_OF if shape[slice(*found.span(group))] != "F"]
+        shape_records = [records[row] for row in rows]
+        stated = [group for group in _FRAMES_OF if shape[slice(*match.span(group))] != "F"]
         groups = (_NUMBERED, _GROUP, *_NAMES, *_VALUES, *stated)
-        numbers = alike.numbers(mine, shape, [found.span(group) for group in groups])
+        numbers = alike.numbers(shape_records, shape, [match.span(group) for group in groups])
         if (numbers[:, 1:8] != [1, 1, 2, 3, 4, 5, 6]).any():
             return None
-        point[some], values[some] = numbers[:, 0], numbers[:, 8:14]
-        decimals = min(decimals, *(len(found[group].partition(".")[2]) for group in _VALUES))
-        (a, b), (c, d) = (found.span(group) for group in _FRAMES_OF)
+        point[rows], values[rows] = numbers[:, 0], numbers[:, 8:14]
+        decimals = min(decimals, *(len(match[group].partition(".")[2]) for group in _VALUES))
+        (a, b), (c, d) = (match.span(group) for group in _FRAMES_OF)
         alone = (numbers[:, 14:] == numbers[0, 14:]).all()  # in the same frames
-        seen = [(record[a:b], record[c:d]) for record in (mine[:1] if alone else mine)]
-        for row, of_record in zip(some, seen * len(mine) if alone else seen):
+        frame_texts = [
+            (record[a:b], record[c:d]) for record in (shape_records[:1] if alone else shape_records)
+        ]
+        for row, of_record in zip(rows, frame_texts * len(shape_records) if alone else frame_texts):
             frames[row] = of_record
     return Records(point, values, [()] * len(records), frames, 0.5 * 10.0**-decimals, False)
 
 
 def _any_records(file: str, text: str, positions: int) -> Records:
-    """The positions of a text, which begins after that line, whatever stands between them."""
+    """The positions of a text, which begins after line `positions`, with any text between them."""
     starts = _RECORD_START.findall(text)
-    found = _JOINTS.findall(text)
-    cartesian = not found
-    found = found or _POSE.findall(text)
-    if [record[0] for record in found] != starts:
-        understood = {record[0] for record in found}
+    matches = _JOINTS.findall(text)
+    cartesian = not matches
+    matches = matches or _POSE.findall(text)
+    if [record[0] for record in matches] != starts:
+        understood = {record[0] for record in matches}
         bad = next((point for point in starts if point not in understood), starts[-1])
         number = next(
             n
@@ -232,18 +238,18 @@ def _any_records(file: str, text: str, positions: int) -> Records:
         raise unreadable(
             f"{file} line {number}", Text("the record of P[{}] is not understood", bad)
         )
-    texts = " ".join(chain.from_iterable([record[-6:] for record in found]))
+    texts = " ".join(chain.from_iterable([record[-6:] for record in matches]))
     decimals = min(map(len, _DECIMALS.findall(texts)), default=0)
     return Records(
-        np.array([int(record[0]) for record in found], dtype=np.intp),
+        np.array([int(record[0]) for record in matches], dtype=np.intp),
         np.fromstring(texts, sep=" ").reshape(-1, 6),
-        [record[3:-6] for record in found],
-        [(record[1], record[2]) for record in found],
+        [record[3:-6] for record in matches],
+        [(record[1], record[2]) for record in matches],
         0.5 * 10.0**-decimals,
         cartesian,
     )
 
 
 def unreadable(where: str, why: str) -> InputError:
-    """What is raised for a text that is not understood."""
+    """The error for a text that is not understood."""
     return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the last move of a run switches itself: the deposit, so long before it ends (TB, TIME BEFORE)."""
+"""Switching of the deposit by the last move of a run, a time before its end (TB, TIME BEFORE)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ DECIMALS = 2  # of the seconds before the end
 
 
 def at_ends(program: Program) -> dict[int, str]:
-    """The options of the last moves of runs, with the space before, by the identity of these runs."""
+    """The options of the last moves of runs, with the space before, by the identity of the run."""
     if program.dry_run:
         return {}
     output = program.deposit_output
@@ -30,11 +30,11 @@ def at_ends(program: Program) -> dict[int, str]:
 
 
 def as_written(program: Program) -> list[Ahead]:
-    """All that is switched ahead, each as long before the end as the listing says: up to 5 ms longer than asked."""
+    """Every switching ahead, with the lead in the listing: up to 5 ms longer than requested."""
     steps = 10**DECIMALS
     return [
-        dataclasses.replace(one, lead=round(one.lead, DECIMALS), steps=steps)
-        for one in switched_ahead(program)
+        dataclasses.replace(ahead, lead=round(ahead.lead, DECIMALS), steps=steps)
+        for ahead in switched_ahead(program)
     ]
 
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """ArcTech: the arc is lit at the end of a linear move onto a bead, and ends with the bead's last move.
 
-Both are written as what the inline forms ARCON and ARCOFF expand to, without the comments that let the pendant edit them: it
-would write them anew, with a speed of its own. Where the lines are from: docs/posts/kuka.md.
+Both are written as what the inline forms ARCON and ARCOFF expand to, without the comments that let
+the pendant edit them: it would rewrite them, with a speed of its own. Where the lines are from:
+docs/posts/kuka.md.
 """
 
 from __future__ import annotations
@@ -14,16 +15,16 @@ import numpy as np
 from ...core.issues import InputError
 from ...core.program import DepositOff, DepositOn, Moves, Program
 
-CALL = "ArcMainNG("  # with which a line begins that calls ArcTech
-SEAM = "WSEAM"  # data of the seam, of all of them
-ON, OFF = "WDAT", "WDATOFF"  # weld data, by number
+CALL = "ArcMainNG("  # beginning of a line that calls ArcTech
+SEAM = "WSEAM"  # data of the seam, common to all
+WELD_DATA, END_DATA = "WDAT", "WDATOFF"  # weld data, by number
 
 
 def after(block: DepositOn | DepositOff) -> str:
     """The line behind such a move."""
     if isinstance(block, DepositOn):
-        return f"{CALL}#ArcOnAfterMoveStd,{ON}{block.schedule},{SEAM})"
-    return f"{CALL}#ArcOffAfterMoveStd,{OFF}{block.schedule},{SEAM})"
+        return f"{CALL}#ArcOnAfterMoveStd,{WELD_DATA}{block.schedule},{SEAM})"
+    return f"{CALL}#ArcOffAfterMoveStd,{END_DATA}{block.schedule},{SEAM})"
 
 
 def names(program: Program) -> list[str]:
@@ -33,8 +34,10 @@ def names(program: Program) -> list[str]:
         for block in program.blocks
         if isinstance(block, DepositOn) and block.schedule is not None
     }
-    own = ["ArcMainNG", "ArcGetPath", "ArcGetDelay", SEAM] if schedules else []
-    return own + [f"{kind}{number}" for number in sorted(schedules) for kind in (ON, OFF)]
+    arc_names = ["ArcMainNG", "ArcGetPath", "ArcGetDelay", SEAM] if schedules else []
+    return arc_names + [
+        f"{kind}{number}" for number in sorted(schedules) for kind in (WELD_DATA, END_DATA)
+    ]
 
 
 def refuse_post_flow(program: Program) -> None:
@@ -47,12 +50,12 @@ def refuse_post_flow(program: Program) -> None:
                 "ArcTech ends the arc with the last move of a bead and stays there for the "
                 "crater time of its weld data; use lead_off 0 and set the crater time of {}, or another "
                 "program.schedule.by",
-                f"{OFF}{block.schedule}",
+                f"{END_DATA}{block.schedule}",
             )
 
 
 def remarks(program: Program) -> Iterator[str]:
-    """What must be on the controller: the data, and the speed that goes with it."""
+    """Requirements on the controller: the data, and their speed."""
     speeds: dict[int, list[float]] = {}
     number: int | None = None
     for block in program.blocks:
@@ -66,15 +69,15 @@ def remarks(program: Program) -> Iterator[str]:
             number = None
     if speeds:
         yield f"ArcTech: {SEAM} and the weld data are of a public data list"
-    for number, found in sorted(speeds.items()):
-        least, most = 0.001 * min(found), 0.001 * max(found)
-        speed = f"{most:.6f}" if most - least < 5e-7 else f"{least:.6f} to {most:.6f}"
-        yield f"{ON}{number}, {OFF}{number}: $VEL.CP is {speed} m/s"
+    for number, weld_speeds in sorted(speeds.items()):
+        slowest, fastest = 0.001 * min(weld_speeds), 0.001 * max(weld_speeds)
+        speed = f"{fastest:.6f}" if fastest - slowest < 5e-7 else f"{slowest:.6f} to {fastest:.6f}"
+        yield f"{WELD_DATA}{number}, {END_DATA}{number}: $VEL.CP is {speed} m/s"
 
 
 def lighting(number: int) -> list[str]:
     """The lines in front of the move that lights the arc."""
-    data, seam = f"{ON}{number}", SEAM
+    data, seam = f"{WELD_DATA}{number}", SEAM
     on_the_fly = f"TRIGGER WHEN PATH=ArcGetPath(#OnTheFlyArcOn,{data})"
     return [
         f"TRIGGER WHEN DISTANCE=1 DELAY=ArcGetDelay(#PreDefinition,{data}) DO {CALL}#PreDefinition,{data},{seam}) PRIO=-1",
@@ -86,7 +89,7 @@ def lighting(number: int) -> list[str]:
 
 def ending(number: int) -> list[str]:
     """The lines in front of the move that ends it."""
-    data, seam = f"{OFF}{number}", SEAM
+    data, seam = f"{END_DATA}{number}", SEAM
     return [
         f"TRIGGER WHEN PATH=ArcGetPath(#ArcOffBefore,{data}) DELAY=0 DO {CALL}#ArcOffBeforeOffStd,{data},{seam}) PRIO=-1",
         f"TRIGGER WHEN PATH=ArcGetPath(#OnTheFlyArcOff,{data}) DELAY=0 DO {CALL}#ArcOffMoveStd,{data},{seam}) PRIO=-1",

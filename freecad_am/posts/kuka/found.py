@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What was found in KRL modules so far, and the moves that come of it."""
+"""The state of reading KRL modules, and the resulting moves."""
 
 from __future__ import annotations
 
@@ -18,13 +18,14 @@ from .read_arc import ArcMove
 
 @dataclass
 class Run:
-    """What happened so far while the modules are followed, column by column.
+    """The state while the modules are followed, column by column.
 
-    state: what was set last, by its name; a module counts on nothing that another one has set. standing: nothing moves, for
-    the program has waited. signals: outputs, the first and the last, by the name they have in the module. external: values of
-    the external axes at each move; unit: the mechanism that BASE is coupled to, and numbers of all these axes;
-    slides: of the one that a remark calls the track. arc: the instruction of ArcTech that is being read. trigger: s
-    before its end at which the next move switches an output, which one, and whether on.
+    state: the last settings, by name; a module relies on no settings of another one. standing:
+    nothing moves, as the program has waited. signals: outputs, the first and the last, by the name
+    they have in the module. external: values of the external axes at each move; unit: the mechanism
+    that BASE is coupled to, and numbers of its axes; slides: number of the axis that a remark calls
+    the track. arc: the instruction of ArcTech that is being read. trigger: s before its end at
+    which the next move switches an output, which one, and whether on.
     """
 
     files: dict[str, tuple[str, list[str]]]
@@ -55,7 +56,7 @@ class Run:
     def happens(
         self, kind: str, *value: float | str, digits: float = 0.0, ahead: float | None = None
     ) -> None:
-        """Something happens before the next move, or so many s before the end of the last one."""
+        """Add an event before the next move, or `ahead` s before the end of the last one."""
         self.events.append(Event(len(self.speed), kind, value, digits, ahead))
 
     def note_digits(self, what: str, texts: tuple[str, ...]) -> None:
@@ -65,7 +66,7 @@ class Run:
 
 
 def read_moves(run: Run) -> ReadMoves:
-    """The moves of all that was followed."""
+    """The moves of the followed modules."""
     linear, deposit = (np.array(column, dtype=np.bool_) for column in (run.linear, run.deposit))
     values, rounding = np.array(run.values), np.array(run.rounding)
     half, is_linear = run.half_digits, linear[:, None]
@@ -111,5 +112,5 @@ def _about(axis: int, angle: Array) -> Array:
 
 
 def not_read(where: str, why: str) -> InputError:
-    """The error for a line that is not understood, or makes no sense where it stands."""
+    """The error for a line that is not understood, or makes no sense in its position."""
     return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)

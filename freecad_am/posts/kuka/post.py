@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """KUKA: KRL modules of beads in linear moves with the tool on the robot, and rapids to axis values.
 
-A joint move of KRL is told whole percents of the axes' speeds, so beads are linear moves, whose speed the controller holds
-at the tip. What is written, what must be set on the controller and what was confirmed where: docs/posts/kuka.md.
+A joint move of KRL takes whole percents of the axes' speeds, so beads are linear moves, whose speed
+the controller holds at the tip. Output, controller settings and confirmations: docs/posts/kuka.md.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ from ...core.program import (
     WaitInput,
 )
 from ..names import Naming
-from ..on_controller import on_controller
-from ..parts import Piece, Run, grouped, packed, whole
+from ..on_controller import controller_checks
+from ..parts import Piece, Run, grouped, keep_whole, packed
 from ..refusals import (
     refuse_calls_of_own,
     refuse_continuous,
@@ -51,7 +51,7 @@ from .read import read
 __all__ = ["read", "write"]
 
 NO_ANALOGUE = "whether WAIT FOR looks at $ANIN until it changes was not found documented"
-# why the speed of the wire cannot follow that of the torch
+# why the speed of the wire cannot follow the torch speed
 CONTROLLER = Controller(
     point_bytes=75, memory_mb=4.0, external=True, positioner="2", arc_moves=True
 )
@@ -60,10 +60,10 @@ NO_WIRE = "an analogue output that KRL sets between approximated moves is set ah
 NO_WEAVE = "the weave of ArcTech is a part of its weld data, which the pendant makes, and has no number of its own"
 NO_TRIGGER = ""  # the deposit can be switched on the move itself
 refuse_process = refuse_no_process
-NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
+NO_SCHEDULE: dict[str, str] = {}  # schedules are supported in every way
 LAST_OUTPUT, LAST_SCHEDULE = 4096, 255
 MOVE_LINE = re.compile(rb"(?:PTP|LIN) \{")
-ON_CONTROLLER = on_controller(
+ON_CONTROLLER = controller_checks(
     "BASE_DATA and TOOL_DATA of the numbers in the program are those of the cell, with their load",
     "Joint speeds of the machine file are those the controller calls 100 %",
     "The deposit output switches the process, and a stop of the program switches it off",
@@ -189,7 +189,7 @@ def write(program: Program) -> dict[str, bytes]:
     moved = text.Lines(program)
     groups = list(grouped(program, moved, lambda block: _instructions(program, block)))
     refuse_leads([*switched_ahead(program), *moved.ahead])
-    part_groups = packed(groups, program.max_points, _NO_END, whole)
+    part_groups = packed(groups, program.max_points, _NO_END, keep_whole)
     used = [*([text.SCHEDULE] if _scheduled(program) else []), *arc.names(program)]
     refuse_names_of_data(program, {name}, used)
     if len(part_groups) == 1:
@@ -325,7 +325,7 @@ def _own_remarks(program: Program) -> Iterator[str]:
 
 
 def _instructions(program: Program, block: Block) -> list[str]:
-    # a wait of no time holds what reads ahead until the robot stands
+    # a wait of zero time stops the advance run until the robot stops
     output = f"$OUT[{program.deposit_output}]="
     if isinstance(block, (DepositOn, DepositOff)) and block.schedule is not None:
         return [arc.after(block), *text.wait(block.lead)]

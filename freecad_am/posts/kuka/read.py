@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads KRL modules back: what the controller would do, from the text alone.
+"""Reads KRL modules back: the behaviour of the controller, from nothing but the text.
 
-Shares nothing with the writer. Understands the plain instructions a path needs and refuses every other one, so
-that no motion can hide in what was not understood.
+Shares nothing with the writer. Understands the plain instructions a path needs and refuses every
+other one, so that no motion can hide in unknown text.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from ...core.issues import Text
 from ...core.read_moves import ARC, ReadMoves
 from .found import Run, not_read, read_moves
-from .read_arc import of_arc
+from .read_arc import is_arc_line
 
 _N = r"(-?\d+\.\d+)"
 _AXES, _PLACES = (
@@ -23,7 +23,7 @@ _AXES, _PLACES = (
 )
 _EXTERNAL_WORDS = rf"((?:,E[1-6] {_N[1:-1]})*)"  # external axes
 _TO_AXES = re.compile(rf"PTP \{{{_AXES}{_EXTERNAL_WORDS}\}}$")
-_STRAIGHT = re.compile(rf"LIN \{{{_PLACES}{_EXTERNAL_WORDS}\}}( C_DIS)?$")
+_LINEAR_MOVE = re.compile(rf"LIN \{{{_PLACES}{_EXTERNAL_WORDS}\}}( C_DIS)?$")
 _EXTERNAL, _SHARED = re.compile(rf",E(\d) {_N}"), re.compile(r"\$VEL_EXTAX\[([1-6])\]=(\d+)$")
 _COUPLED = re.compile(
     r"\$BASE=EK\(MACHINE_DEF\[(\d+)\]\.ROOT,MACHINE_DEF\[(\d+)\]\.MECH_TYPE,BASE_DATA\[(\d+)\]\)$"
@@ -108,15 +108,15 @@ def _routine(file: str, lines: list[str]) -> str:
 
 
 def _go(name: str, run: Run) -> None:
-    """Carry out the lines of a module in order, and of those it calls."""
+    """Carry out the lines of a module in order, and of modules it calls."""
     file, lines = run.files[name]
     run.followed.append(name)
     run.state, run.signals = {}, {}
     for number, line in enumerate(lines[3:-1], 4):
         where = f"{file} line {number}"
-        if _TO_AXES.match(line) or _STRAIGHT.match(line):
+        if _TO_AXES.match(line) or _LINEAR_MOVE.match(line):
             _follow_move(line, run, where)
-        elif of_arc(line):
+        elif is_arc_line(line):
             _arc(line, run, where)
         elif trigger := _TRIGGER.match(line):
             _trigger(trigger, run, where)
@@ -134,7 +134,7 @@ def _go(name: str, run: Run) -> None:
             run.slides += (int(track[1]),)
         elif not line.startswith(";"):
             _follow_instruction(line, run, where)
-    if not run.standing or run.arc.begun or run.trigger:
+    if not run.standing or run.arc.is_open or run.trigger:
         raise not_read(file, "it ends before the last move does")
 
 
@@ -157,7 +157,7 @@ def _setting(line: str, run: Run) -> bool:
         run.state[f"E{setting[1]}"] = float(setting[2])
     elif line in (_INITIAL, _ON_FLANGE, _TURNING):
         if line == _INITIAL:
-            run.state = {}  # what was set before counts no more
+            run.state = {}  # earlier settings count no more
         run.state[line] = 1.0
     else:
         return False
@@ -214,7 +214,7 @@ def _arc(line: str, run: Run, where: str) -> None:
 
 def _trigger(trigger: re.Match[str], run: Run, where: str) -> None:
     """The next move is to switch an output."""
-    if run.trigger or run.arc.begun:
+    if run.trigger or run.arc.is_open:
         raise not_read(where, "it stands among the lines of another instruction")
     _one_output(trigger[2], run, where)
     run.trigger = -0.001 * int(trigger[1]), trigger[2], trigger[3] == "TRUE"
@@ -228,7 +228,9 @@ def _one_output(number: str, run: Run, where: str) -> None:
 
 
 def _follow_instruction(line: str, run: Run, where: str) -> None:
-    """An instruction, neither move nor setting: it is read ahead but for waits, so outputs and calls come after one."""
+    """An instruction, neither move nor setting: the advance run reads all but waits, so outputs and
+    calls come after one.
+    """
     if not any(form.match(line) for form in (_PAUSE, _AWAITED, _SWITCHED, _CALLED)):
         if line.startswith("TRIGGER") and not run.standing:
             raise not_read(
@@ -240,7 +242,7 @@ def _follow_instruction(line: str, run: Run, where: str) -> None:
                 ),
             )
         raise not_read(where, Text("the instruction {!r} is not understood", line))
-    if run.arc.begun or run.trigger:
+    if run.arc.is_open or run.trigger:
         raise not_read(where, Text("{!r} stands among the lines of another instruction", line))
     if pause := _PAUSE.match(line):
         run.standing = _stopped(run, where)
@@ -268,15 +270,15 @@ def _follow_instruction(line: str, run: Run, where: str) -> None:
 
 
 def _stopped(run: Run, where: str) -> bool:
-    """True: a wait holds the program until the robot stands. A corner before it would be no corner."""
+    """True: a wait holds the program until the robot stops. The corner before it is not rounded."""
     if run.speed and not np.isnan(run.rounding[-1]):
         raise not_read(where, "the move before it is to be approximated, and it stops there")
     return True
 
 
 def _follow_move(line: str, run: Run, where: str) -> None:
-    straight, state = _STRAIGHT.match(line), run.state
-    if not run.arc.moved(straight is not None, bool(straight and straight[8])):
+    straight, state = _LINEAR_MOVE.match(line), run.state
+    if not run.arc.accept_move(straight is not None, bool(straight and straight[8])):
         raise not_read(
             where,
             "a move of ArcTech is a linear one that stops, behind all the lines that belong to it",
@@ -325,7 +327,7 @@ def _follow_move(line: str, run: Run, where: str) -> None:
 
 
 def _triggered(ahead: float, output: str, on: bool, run: Run, where: str) -> None:
-    """The move has switched an output, so long before its end."""
+    """The move has switched an output `ahead` s before its end."""
     if not np.isnan(run.rounding[-1]):
         raise not_read(where, "a corner has no end from which the time of a trigger counts")
     run.on, run.trigger = on, None
@@ -333,8 +335,10 @@ def _triggered(ahead: float, output: str, on: bool, run: Run, where: str) -> Non
 
 
 def _external_axes(numbers: tuple[int, ...], share: float, run: Run, where: str) -> None:
-    """Look at the external axes of a move: the same ones in all of them, coupled, and as fast as the move needs, in
-    percent: a linear one goes at its own speed only where they may be as fast as they can."""
+    """Check the external axes of a move: the same ones in all moves, coupled, and as fast as the
+    move needs, in percent: a linear one goes at its own speed only where they may be as fast as
+    they can.
+    """
     unit = f"{run.state['EK']:.0f}" if "EK" in run.state else ""
     if run.unit is not None and (run.unit, run.numbers) != (unit, numbers):
         raise not_read(where, "moves with other external axes are mixed")

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 _DATA, _OF = re.compile(r"\b(WDAT(?:OFF)?)(\d+)\b"), r"\1@"
 _MOVE = "the move"
-# the lines of an instruction, @ being the number of its data
-_ON = (
+# the lines of an instruction; @ is the number of its data
+_ON_LINES = (
     "TRIGGER WHEN DISTANCE=1 DELAY=ArcGetDelay(#PreDefinition,WDAT@) DO ArcMainNG(#PreDefinition,WDAT@,WSEAM) PRIO=-1",
     "TRIGGER WHEN PATH=ArcGetPath(#OnTheFlyArcOn,WDAT@) DELAY=ArcGetDelay(#GasPreflow,WDAT@)"
     " DO ArcMainNG(#GasPreflow,WDAT@,WSEAM) PRIO=-1",
@@ -18,7 +18,7 @@ _ON = (
     _MOVE,
     "ArcMainNG(#ArcOnAfterMoveStd,WDAT@,WSEAM)",
 )
-_OFF = (
+_OFF_LINES = (
     "TRIGGER WHEN PATH=ArcGetPath(#ArcOffBefore,WDATOFF@) DELAY=0 DO ArcMainNG(#ArcOffBeforeOffStd,WDATOFF@,WSEAM) PRIO=-1",
     "TRIGGER WHEN PATH=ArcGetPath(#OnTheFlyArcOff,WDATOFF@) DELAY=0 DO ArcMainNG(#ArcOffMoveStd,WDATOFF@,WSEAM) PRIO=-1",
     "ArcMainNG(#ArcOffBeforeMoveStd,WDATOFF@,WSEAM)",
@@ -29,45 +29,48 @@ _OFF = (
 
 @dataclass
 class ArcMove:
-    """An instruction of ArcTech, as far as it was read: its lines, how many of them were, and the number of its data."""
+    """An instruction of ArcTech while it is read: its lines, the number of lines read, and the
+    number of its data.
+    """
 
     lines: tuple[str, ...] = ()
-    read: int = 0
+    lines_read: int = 0
     number: str = ""
 
     @property
-    def begun(self) -> bool:
+    def is_open(self) -> bool:
         """Whether more of its lines are to come."""
         return bool(self.lines)
 
-    def moved(self, straight: bool, rounded: bool) -> bool:
-        """A move in the modules: whether it may stand here. In an instruction it is a linear one that stops."""
-        if not self.begun:
+    def accept_move(self, straight: bool, rounded: bool) -> bool:
+        """Whether a move is allowed here. Within an instruction it is a linear one that stops."""
+        if not self.is_open:
             return True
-        right = self.lines[self.read] == _MOVE and straight and not rounded
-        self.read += 1
+        right = self.lines[self.lines_read] == _MOVE and straight and not rounded
+        self.lines_read += 1
         return right
 
     def called(self, line: str) -> str | None:
-        """'on' or 'off' with the last line of an instruction, '' with the others; None for a line that is none of those it
-        has here, or that names other data than the ones before it."""
+        """'on' or 'off' with the last line of an instruction, '' with earlier lines; None for an
+        unexpected line, or one that names other data than the lines before it.
+        """
         numbers, template = {number for _, number in _DATA.findall(line)}, _DATA.sub(_OF, line)
-        if not self.begun:
-            self.lines, self.read, self.number = (
-                (_ON if template == _ON[0] else _OFF),
+        if not self.is_open:
+            self.lines, self.lines_read, self.number = (
+                (_ON_LINES if template == _ON_LINES[0] else _OFF_LINES),
                 0,
                 next(iter(numbers), ""),
             )
-        if numbers != {self.number} or template != self.lines[self.read]:
+        if numbers != {self.number} or template != self.lines[self.lines_read]:
             return None
-        self.read += 1
-        if self.read < len(self.lines):
+        self.lines_read += 1
+        if self.lines_read < len(self.lines):
             return ""
-        switched = "on" if self.lines is _ON else "off"
+        switched = "on" if self.lines is _ON_LINES else "off"
         self.lines = ()
         return switched
 
 
-def of_arc(line: str) -> bool:
-    """Whether a line is of an instruction of ArcTech."""
+def is_arc_line(line: str) -> bool:
+    """Whether a line belongs to an instruction of ArcTech."""
     return "ArcMainNG(" in line

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What stands right in front of moves that switch the deposit themselves: an output ahead of its place, or the arc."""
+"""Lines right before moves that switch the deposit themselves: an output ahead of its position, or
+the arc.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,7 @@ TRIGGER = "TRIGGER "  # with which its line begins
 
 
 def ahead_of_moves(program: Program) -> dict[int, str]:
-    """The lines in front of the last one of runs of moves, by the identity of these runs."""
+    """The lines in front of the last one of runs of moves, by the identity of the run."""
     if program.dry_run:
         return {}
     return {
@@ -22,7 +24,9 @@ def ahead_of_moves(program: Program) -> dict[int, str]:
 
 
 def leads(program: Program) -> dict[int, float]:
-    """s ahead of its end at which the last one of runs of moves switches an output, by the identity of these runs."""
+    """s ahead of its end at which the last one of runs of moves switches an output, by the identity
+    of the run.
+    """
     if program.dry_run:
         return {}
     return {
@@ -31,8 +35,9 @@ def leads(program: Program) -> dict[int, float]:
 
 
 def in_front(lines: str, word: str) -> str:
-    """The word of a move, its settings in front of it, with such lines. A trigger comes last; calls of ArcTech come first,
-    for what they set is set anew behind them."""
+    """The word of a move, its settings in front of it, with such lines. A trigger comes last; calls
+    of ArcTech come first, as settings after them override theirs.
+    """
     if arc.CALL in lines:
         return f"{lines}|{word}"
     settings, bar, move = word.rpartition("|")

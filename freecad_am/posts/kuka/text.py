@@ -20,13 +20,13 @@ from ..refusals import Ahead, speeds_within
 from . import arc, switching
 
 END_OF_LINE = "\r\n"
-SCHEDULE, BITS = "am_schedule", 8  # what is set to its number, and of how many outputs
+SCHEDULE, BITS = "am_schedule", 8  # signal that is set to its number, and its count of outputs
 WIDTH = 80  # of remarks
 ANGLE_DECIMALS, LENGTH_DECIMALS = 4, 3
-# mm/s: the least that is told well in m/s with six decimals, and what arms reach
+# mm/s: the lowest speed that six decimals of m/s resolve well, and the speed that arms reach
 SPEEDS = (0.01, 3000.0)
 MILLISECOND = 0.001  # s: the step of a delay
-# percent: the least share of the axes' speeds that a controller is told, in whole numbers; half of that is rounded up to it
+# percent: the lowest share of the axes' speeds in whole numbers; half a percent is rounded up to it
 LEAST_PERCENT = 1
 _AXES = [f"A{axis} %.{ANGLE_DECIMALS}f" for axis in range(1, 7)]
 _PLACE = [f"{axis} %.{LENGTH_DECIMALS}f" for axis in "XYZ"] + [
@@ -48,7 +48,7 @@ def remark(text: str) -> list[str]:
 
 
 def signal(first_output: int) -> list[str]:
-    """The declaration of the outputs that tell a schedule."""
+    """The declaration of the outputs that select a schedule."""
     return [f"SIGNAL {SCHEDULE} $OUT[{first_output}] TO $OUT[{first_output + BITS - 1}]"]
 
 
@@ -58,7 +58,7 @@ def wait(seconds: float) -> list[str]:
 
 
 def controller_values(joints: Array, slides: Mask) -> Array:
-    """Axis values (n, axes) in degrees as the text has them, those that slide (axes,) in mm."""
+    """Axis values (n, axes) as in the text: degrees, mm for prismatic axes `slides` (axes,)."""
     values = np.where(slides, joints, np.degrees(joints))
     rounded: Array = np.asarray(np.round(values, ANGLE_DECIMALS) + 0.0, dtype=np.float64)
     return rounded
@@ -72,10 +72,10 @@ def frames(position: Array, rotation: Array) -> Array:
 
 
 class Lines:
-    """The lines of the moves of a program, asked for block by block in the order of motion: each move with the settings it
-    counts on before it, parted by |.
+    """The lines of the moves of a program, asked for block by block in the order of motion: each
+    move with its required settings before it, separated by |.
 
-    ahead: what of the last moves asked for so far is left for switching the deposit ahead of their ends.
+    ahead: the time left in the last moves for switching the deposit ahead of their ends.
     """
 
     def __init__(self, program: Program) -> None:
@@ -139,7 +139,9 @@ class Lines:
         return marked
 
     def _external_speeds(self, share: int) -> str:
-        """Settings of a share, percent, of the speeds of the external axes; none where there are none."""
+        """Settings of a share, percent, of the speeds of the external axes; empty without such
+        axes.
+        """
         return self._shares % ((share,) * self._shares.count("%"))
 
     def _percent(self, moves: Moves, values: Array) -> list[int]:
@@ -185,7 +187,9 @@ class Lines:
 
 
 def spoken(words: Sequence[str], current_settings: dict[str, str]) -> list[str]:
-    """The lines of moves, with the settings before them that differ from what is `current_settings` so far, and become it."""
+    """The lines of moves, with the settings before them that differ from `current_settings`, which
+    is updated.
+    """
     lines: list[str] = []
     for word in words:
         *settings, move = word.split("|")

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """LinuxCNC: programs of linear moves (.ngc) for tables and heads with two rotary axes.
 
-Joint motion is told in axes with the time of each move (G93) or the speed of the linear axes (G94), under the kinematics
-that leaves axes alone (M429). Cartesian motion is told in positions on the part and rotary axes under the kinematics of
-the machine (M428), but for the rapids between beads. What is written, what must be set in the machine's configuration and
-what was confirmed where: docs/posts/linuxcnc.md.
+Joint motion is written in axes with the time of each move (G93) or the speed of the linear axes
+(G94), under identity kinematics (M429). Cartesian motion is written in positions on the part and
+rotary axes under the kinematics of the machine (M428), except the rapids between beads. Output,
+machine configuration and confirmations: docs/posts/linuxcnc.md.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ from ...core.program import (
 from ..names import Naming
 from ..nc import numbers
 from ..nc import parts as common
-from ..on_controller import on_controller
-from ..parts import Piece, Run, grouped, lines_of, packed, whole
+from ..on_controller import controller_checks
+from ..parts import Piece, Run, grouped, keep_whole, lines_of, packed
 from ..refusals import (
     refuse_calls_of_own,
     refuse_cooling,
@@ -52,14 +52,14 @@ NAMING = Naming(str.lower, "[a-z]", "a letter", longest=30, spare=3, prefix="am_
 _NO_END = 10**9
 CONTROLLER = Controller(point_bytes=67)
 PENDANT = None  # no robot's
-NO_WIRE = ""  # the speed of the wire can follow that of the torch
+NO_WIRE = ""  # the speed of the wire can follow the torch speed
 NO_WEAVE = "programs of five-axis machines have no weave"
 NO_TRIGGER = "programs of five-axis machines switch the deposit between blocks, not at times before"
 refuse_process = refuse_no_process
 NO_SCHEDULE = {"arc": "it has no arc instructions"}
 LAST_SCHEDULE = 65535
 MOVE_LINE = re.compile(rb"G[01] ")
-ON_CONTROLLER = on_controller(
+ON_CONTROLLER = controller_checks(
     "The tool table has the torch's length, and the kinematics has the machine file's offsets",
     "M428 and M429 switch the kinematics, and the work offset is that of the remarks",
     "The digital and analogue pins are connected to the process",
@@ -70,7 +70,7 @@ LAST_PIN = 64
 # the work offset that this program sets to zero, for moves of the axes themselves
 MACHINE_OFFSET = "G59.3"
 OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2")
-# the machine stands still at the end of every move
+# the machine stops at the end of every move
 EXACT_STOP = "G61.1"
 # mm/min or deg/min: its interpreter takes 0.1 where the time of a move asks for less, which would be too fast
 SLOWEST = 0.2
@@ -112,7 +112,7 @@ def write(program: Program) -> dict[str, bytes]:
             program, numbers.Feeds(program, SLOWEST), lambda block: _instructions(program, block)
         )
     )
-    part_groups = packed(groups, program.max_points, _NO_END, whole)
+    part_groups = packed(groups, program.max_points, _NO_END, keep_whole)
     if len(part_groups) == 1:
         return {
             f"{name}.ngc": _file(
@@ -320,7 +320,9 @@ def _instructions(program: Program, block: Block) -> list[str]:
 
 
 def _output(program: Program, on: bool) -> str:
-    """At once and not queued: these wait for the end of the motion, so that the machine stands when the deposit switches."""
+    """Switch at once, not queued: the words wait for the end of the motion, so that the machine
+    stops before the deposit switches.
+    """
     if program.nc.deposit_on:
         return program.nc.deposit_on if on else program.nc.deposit_off
     return f"M{64 if on else 65} P{program.deposit_output - 1}"
@@ -345,7 +347,7 @@ def _lines(program: Program, piece_list: Sequence[Piece]) -> list[str]:
 
 
 def _motion(program: Program, run: Run) -> list[str]:
-    """Moves through all points of a run; what follows a run waits for its end."""
+    """Moves through all points of a run; the line after a run waits for its end."""
     moves, rows = run.moves, slice(run.start, run.stop)
     names = list(program.axis_names)
     values = numbers.controller_values(moves.joints[rows], program.axis_kinds)

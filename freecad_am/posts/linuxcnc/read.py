@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads LinuxCNC programs back: what the controller would do, from the text alone.
+"""Reads LinuxCNC programs back: the behaviour of the controller, from nothing but the text.
 
-Shares nothing with the writer. Understands the plain lines a path needs and refuses every other one, so that no motion
-can hide in what was not understood.
+Shares nothing with the writer. Understands the plain lines a path needs and refuses every other
+one, so that no motion can hide in unknown text.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ _TIP_ON, _TIP_OFF = "M428", "M429"
 
 @dataclass
 class _State:
-    """What is set while the programs are followed."""
+    """The settings while the programs are followed."""
 
     files: dict[str, list[tuple[str, str]]]
     track: Track = field(default_factory=Track)
@@ -177,8 +177,9 @@ def _follow(
 
 
 def _tells_schedule(schedule: re.Match[str], state: _State) -> bool:
-    """Whether an analogue output is that of schedules: it is set at rest before corners are rounded, as the wire's is not;
-    within beads it is known by then."""
+    """Whether an analogue output selects schedules: unlike the wire's it is set at rest before
+    corners are rounded; within beads it is known already.
+    """
     if schedule[1] == "8" and state.track.exact:
         state.schedules.add(schedule[2])
         state.track.rests()
@@ -209,7 +210,9 @@ def _sets_mode(text: str, state: _State) -> bool:
 
 
 def _cooled(where: str, text: str, state: _State) -> bool:
-    """Whether a line is part of a loop that goes round until an analogue input, read anew each time, is below a value."""
+    """Whether a line is part of a loop that repeats until an analogue input, read in each pass, is
+    below a value.
+    """
     sampled, state.sampled = state.sampled, ""
     loop = _LOOP.match(text)
     if sample := _SAMPLE.match(text):
@@ -240,7 +243,7 @@ def _call(where: str, name: str, state: _State, callers: tuple[str, ...]) -> Non
     if name in state.files:
         _follow(name, state.files[name][1:-1], state, callers)
     else:
-        # a program of the controller; what it leaves set is not known
+        # a program of the controller; its final settings are unknown
         state.units, state.offset, state.zeroed, state.linear, state.kinematics = (
             set(),
             "",
@@ -298,7 +301,7 @@ def _move(where: str, words: dict[str, str], state: _State) -> None:
 
 
 def _switch(where: str, text: str, output: re.Match[str], state: _State) -> None:
-    """Kinematics, and the deposit: an output by its number; of two M words the first one switches on."""
+    """Kinematics, and the deposit: an output by its number; the first of two M words switches on."""
     if text in (_TIP_ON, _TIP_OFF):
         if state.track.on:
             raise unreadable(where, "the kinematics changes while the deposit is on")

@@ -16,7 +16,8 @@ from ..parts import place
 
 # of mm and deg; Siemens' manual on 5-axis machining asks for 5 of positions and 6 of direction vectors
 DECIMALS, VECTOR_DECIMALS = 5, 6
-# significant digits of a feed, and the range every controller takes; digits of what tells the speed of the wire
+# significant digits of a feed, within the range of every controller; digits of the wire speed
+# output
 FEED_DIGITS, WIRE_DIGITS = 7, 5
 SLOWEST, FASTEST = 0.001, 999_999.0
 # mm: where the linear axes go less than this, their speed is no measure of the time of a move
@@ -66,8 +67,10 @@ def wire(program: Program, speeds: Sequence[float]) -> list[str]:
 def insert_wire_statements(
     program: Program, moves: Moves, lines: Sequence[str], statement: str
 ) -> list[str]:
-    """The lines of a run of moves, the last ones one per move, with the statement that sets the analogue output in front of
-    each move at which its value changes. The first value was told before the run."""
+    """The lines of a run of moves, the last ones one per move, with the statement that sets the
+    analogue output in front of each move at which its value changes. The first value was set before
+    the run.
+    """
     if moves.wire is None:
         return list(lines)
     values = wire(program, moves.wire.tolist())
@@ -90,10 +93,11 @@ def insert_wire_statements(
 class Feeds:
     """Feed words of the moves of a program, asked for run by run in the order of motion.
 
-    Moves of axes last as long as planned: F is one over that time in minutes (G93). With `program.nc.path_feed` it is the
-    speed of the linear axes in mm/min (G94) wherever these move. Beads told in positions run at the speed of the tip.
-    slowest: mm/min or deg/min that a controller does not fall below by itself however long the time told; slower moves are
-    told by this speed: of the linear axes, or of the rotary ones where these alone move.
+    Moves of axes last as long as planned: F is one over that time in minutes (G93). With
+    `program.nc.path_feed` it is the speed of the linear axes in mm/min (G94) wherever these move.
+    Beads in positions run at the speed of the tip. slowest: mm/min or deg/min, a controller's lower
+    limit for any programmed time; slower moves get this speed for the linear axes, or for the
+    rotary ones if only these move.
     """
 
     def __init__(self, program: Program, slowest: float = 0.0) -> None:
@@ -123,7 +127,9 @@ class Feeds:
         by_speed = (speeds > 0.0) & (speeds < self.slowest)
         if self.path_feed and moves.kind != RAPID:
             by_speed |= (slide_lengths >= SHORTEST_WAY) & (speeds >= SLOWEST) & (speeds <= FASTEST)
-        by_speed[0] &= not self.after_tip  # a text that ended in a position does not tell the way
+        by_speed[
+            0
+        ] &= not self.after_tip  # a text that ended in a position does not give the path length
         self.after_tip = False
         return [
             f"{PATH} {feed(speed)}" if is_slow else f"{TIME} {feed(by_time)}"
@@ -134,7 +140,9 @@ class Feeds:
 
 
 def blocks(words: Sequence[str], feeds: Sequence[str]) -> list[str]:
-    """G1 blocks of these words and feeds, the sort of feed in front, and in the blocks that change it."""
+    """G1 blocks with words and feeds; the first block, and blocks that change it, have the sort of
+    feed in front.
+    """
     lines, sort = [], ""
     for word, (sort_of_feed, value) in zip(words, (feed.split() for feed in feeds), strict=True):
         if not sort:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What programs of five-axis machines have in common whatever the controller: parts, remarks, names, what is refused."""
+"""Common code of five-axis posts: parts, remarks, names, rejected settings."""
 
 from __future__ import annotations
 
@@ -54,8 +54,9 @@ def refuse_table(program: Program, post: str) -> None:
 
 
 def refuse_words(program: Program, reserved: frozenset[str]) -> None:
-    """Raises InputError DEPOSIT_WORD for what cannot switch the deposit: no M or H words, the same one twice, or words with
-    another meaning (`reserved`; H for all of these)."""
+    """Raises InputError DEPOSIT_WORD for words that cannot switch the deposit: other than M or H
+    words, the same one twice, or words with another meaning (`reserved`; H for every such word).
+    """
     words = {
         "program.nc.deposit_on": program.nc.deposit_on,
         "program.nc.deposit_off": program.nc.deposit_off,
@@ -86,7 +87,9 @@ def refuse_words(program: Program, reserved: frozenset[str]) -> None:
 
 
 def refuse_wire_output(program: Program, highest: int) -> None:
-    """Raises InputError WIRE_OUTPUT where the program tells the speed of the wire by an analogue output beyond `highest`."""
+    """Raises InputError WIRE_OUTPUT where the program sets the speed of the wire by an analogue
+    output beyond `highest`.
+    """
     if any(run.wire is not None for run in program.moves) and program.nc.wire_output > highest:
         raise InputError(
             "WIRE_OUTPUT",
@@ -98,7 +101,9 @@ def refuse_wire_output(program: Program, highest: int) -> None:
 
 
 def refuse_setup(post: str, motion: str, setup: str) -> None:
-    """Raises InputError UNSUPPORTED_SETUP for what is not a machine with rotary axes; both motions of these can be said."""
+    """Raises InputError UNSUPPORTED_SETUP for other machines than ones with rotary axes; both
+    motions are supported.
+    """
     if setup != "rotary-table":
         raise InputError(
             "UNSUPPORTED_SETUP",

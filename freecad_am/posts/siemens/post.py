@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Siemens: SINUMERIK 840D programs of linear blocks, for tables and heads with two rotary axes.
 
-Joint motion is told in plain axes with the time of each move (G93) or the speed of the linear axes (G94); Cartesian
-motion in positions and direction vectors of the torch with the transformation TRAORI, but for the rapids between beads,
-which stay in plain axes, so that every bead begins with known turns. What is written, what must be set on the controller
-and what was confirmed where: docs/posts/siemens.md.
+Joint motion is written in plain axes with the time of each move (G93) or the speed of the linear
+axes (G94); Cartesian motion in positions and direction vectors of the torch with the transformation
+TRAORI, except the rapids between beads, which stay in plain axes, so that every bead begins with
+known turns. Output, controller settings and confirmations: docs/posts/siemens.md.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ from ...core.program import (
 from ..names import Naming
 from ..nc import numbers
 from ..nc import parts as common
-from ..on_controller import on_controller
-from ..parts import Piece, Run, grouped, lines_of, packed, place, whole
+from ..on_controller import controller_checks
+from ..parts import Piece, Run, grouped, keep_whole, lines_of, packed, place
 from ..refusals import (
     refuse_calls_of_own,
     refuse_cooling,
@@ -54,14 +54,14 @@ __all__ = ["read", "write"]
 _NO_END = 10**9
 CONTROLLER = Controller(point_bytes=80)
 PENDANT = None  # no robot's
-NO_WIRE = ""  # the speed of the wire can follow that of the torch
+NO_WIRE = ""  # the speed of the wire can follow the torch speed
 NO_WEAVE = "programs of five-axis machines have no weave"
 NO_TRIGGER = "programs of five-axis machines switch the deposit between blocks, not at times before"
 refuse_process = refuse_no_process
 NO_SCHEDULE = {"arc": "it has no arc instructions"}
 LAST_SCHEDULE = 65535
 MOVE_LINE = re.compile(rb"N\d+ (?:G9 )?G[01] ")
-ON_CONTROLLER = on_controller(
+ON_CONTROLLER = controller_checks(
     "The tool offset has the torch's length, and G500 is the machine's zero",
     "TRAORI and the work offset are those of the machine file and of the remarks",
     "The words that switch the deposit and the inputs are taken up in the PLC",
@@ -74,7 +74,7 @@ LAST_OUTPUT, LAST_INPUT, LAST_ANALOGUE = 99, 32, 8
 
 # M words that stop or end a program, change the tool or set the spindle
 _TAKEN = frozenset(f"M{n}" for n in (0, 1, 2, 3, 4, 5, 6, 17, 19, 30, 40, 41, 42, 43, 44, 45, 70))
-# words of the language that begin like a name; what else it knows is found by trying it on the controller
+# words of the language that begin like a name; others are found by trial on the controller
 _RESERVED = INSTRUCTIONS | frozenset(
     (
         "AND",
@@ -167,25 +167,25 @@ def write(program: Program) -> dict[str, bytes]:
     groups = list(
         grouped(program, numbers.Feeds(program), lambda block: _instructions(program, block))
     )
-    parts = packed(groups, program.max_points, _NO_END, whole)
-    if len(parts) == 1:
+    part_pieces = packed(groups, program.max_points, _NO_END, keep_whole)
+    if len(part_pieces) == 1:
         return {
             f"{name}.MPF": _file(
-                [*remarks, *_HEAD, *_modes(program), *_lines(program, parts[0]), "M30"]
+                [*remarks, *_HEAD, *_modes(program), *_lines(program, part_pieces[0]), "M30"]
             )
         }
-    names = NAMING.parts(name, len(parts))
+    names = NAMING.parts(name, len(part_pieces))
     refuse_calls_of_own(program, {name, *names}, program_name)
     files = {f"{name}.MPF": _file([*remarks, *_HEAD, *names, "M30"])}
-    for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
+    for number, (part_name, entries) in enumerate(zip(names, part_pieces, strict=True), 1):
         lines = [
-            f"; part {number} of {len(parts)}",
+            f"; part {number} of {len(part_pieces)}",
             *_HEAD,
             *_modes(program),
-            *_lines(program, pieces),
+            *_lines(program, entries),
             "M17",
         ]
-        files[f"{part}.SPF"] = _file(lines)
+        files[f"{part_name}.SPF"] = _file(lines)
     return files
 
 
@@ -235,8 +235,8 @@ def _refuse(program: Program) -> None:
 
 def _refuse_schedules(program: Program) -> None:
     refuse_schedules(program, LAST_OUTPUT, LAST_SCHEDULE)
-    own = program.nc.deposit_on or f"H{program.deposit_output}="
-    if any(isinstance(block, Schedule) for block in program.blocks) and own.startswith(
+    switch_word = program.nc.deposit_on or f"H{program.deposit_output}="
+    if any(isinstance(block, Schedule) for block in program.blocks) and switch_word.startswith(
         f"H{program.schedule_output}="
     ):
         raise InputError(
@@ -254,10 +254,10 @@ def _refuse_continuous_steps(program: Program) -> None:
     steps = np.abs(np.diff(degrees, axis=0))
     if (steps > LARGEST_TURN).any():
         move, axis = np.argwhere(steps > LARGEST_TURN)[0]
-        places = np.repeat(np.arange(len(program.moves)), [len(run) for run in program.moves])
+        run_numbers = np.repeat(np.arange(len(program.moves)), [len(run) for run in program.moves])
         raise InputError(
             "ENDLESS_STEP",
-            place(program.moves[places[move + 1]]),
+            place(program.moves[run_numbers[move + 1]]),
             "axis {} turns {:.1f} deg in one move; an axis without end goes less than 180 deg per move: add points, or "
             "limit the axis",
             program.axis_names[axes[axis]],
@@ -352,32 +352,33 @@ def _dwell(seconds: float) -> list[str]:
     return common.dwell("F", seconds)
 
 
-def _lines(program: Program, pieces: Sequence[Piece]) -> list[str]:
-    return lines_of(pieces, lambda run: _motion(program, run))
+def _lines(program: Program, entries: Sequence[Piece]) -> list[str]:
+    return lines_of(entries, lambda run: _motion(program, run))
 
 
 def _motion(program: Program, run: Run) -> list[str]:
-    """Blocks through all points of a run, with an exact stop where the machine stands still."""
-    moves, part = run.moves, slice(run.start, run.stop)
+    """Blocks through all points of a run, with an exact stop where the machine halts."""
+    moves, rows = run.moves, slice(run.start, run.stop)
     if moves.interpolation == LINEAR_MOVE:
         assert moves.position is not None and moves.direction is not None
         vector = " ".join(f"{name}=%.{numbers.VECTOR_DECIMALS}f" for name in ("A3", "B3", "C3"))
         values = np.hstack([
-            np.round(moves.position[part], numbers.DECIMALS), np.round(moves.direction[part], numbers.VECTOR_DECIMALS),
+            np.round(moves.position[rows], numbers.DECIMALS), np.round(moves.direction[rows], numbers.VECTOR_DECIMALS),
         ])  # fmt: skip
         words = numbers.rows(f"{numbers.template('XYZ')} {vector}", values + 0.0)
     else:
-        words = numbers.rows(*_axis_words(program, moves.joints[part]))
-    blocks = numbers.blocks(words, run.words[part])
+        words = numbers.rows(*_axis_words(program, moves.joints[rows]))
+    blocks = numbers.blocks(words, run.words[rows])
     ahead = len(blocks) - len(words)
-    for row in np.flatnonzero(moves.stops[part]).tolist():
+    for row in np.flatnonzero(moves.stops[rows]).tolist():
         blocks[ahead + row] = f"G9 {blocks[ahead + row]}"
     # a synchronized action of one block: it takes effect where that begins, without a stop
     worded = numbers.insert_wire_statements(
         program, moves, blocks, "DO " + _WIRE.format(program.nc.wire_output, "{}")
     )
-    # the time of one block would be that of all those compressed into one, and so would the wire's speed
-    by_speed = all(feed.startswith(numbers.PATH) for feed in run.words[part])
+    # the time of one block would apply to all blocks compressed into it, and so would the wire's
+    # speed
+    by_speed = all(feed.startswith(numbers.PATH) for feed in run.words[rows])
     if program.nc.compress and by_speed and len(worded) == len(blocks):
         return [blocks[0], "COMPCAD", *blocks[1:], "COMPOF"]
     return worded
@@ -398,7 +399,7 @@ def _axis_words(program: Program, joints: Array) -> tuple[str, Array]:
 
 
 def _file(lines: list[str]) -> bytes:
-    """The lines with block numbers, but for remarks."""
+    """The lines with block numbers, except remarks."""
     numbered, number = [], 0
     for line in lines:
         if line.startswith(";"):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads SINUMERIK programs back: what the controller would do, from the text alone.
+"""Reads SINUMERIK programs back: the behaviour of the controller, from nothing but the text.
 
-Shares nothing with the writer. Understands the plain blocks a path needs and refuses every other one, so that no motion
-can hide in what was not understood.
+Shares nothing with the writer. Understands the plain blocks a path needs and refuses every other
+one, so that no motion can hide in unknown text.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from .words import INSTRUCTIONS
 
 _NUMBER = r"-?\d+(?:\.\d*)?|-?\.\d+"
 _WORD = re.compile(rf"([XYZABCF])=?({_NUMBER})$|([ABC]3)=({_NUMBER})$")
-_SHORTER = re.compile(rf"([ABC])=DC\(({_NUMBER})\)$")
+_SHORTEST_PATH = re.compile(rf"([ABC])=DC\(({_NUMBER})\)$")
 _NUMBERED = re.compile(r"N(\d+)(?: +|$)")
 _NAME = re.compile(r"(?:[A-Z]{2}|_[A-Z])[A-Z0-9_]*$")
 _OUTPUT = re.compile(r"\$A_OUT\[(\d+)\]=([01])$|H(\d+)=(\d+)$|M(\d+)$")
@@ -45,8 +45,9 @@ _DWELL = re.compile(rf"G4 F({_NUMBER})$")
 
 @dataclass
 class _State:
-    """What is set while the programs are followed. switching: words that switch the deposit, of those that a number is set
-    to."""
+    """The settings while the programs are followed. switching: words set to a number that switch
+    the deposit.
+    """
 
     files: dict[str, list[tuple[str, str]]]
     switching: set[str] = field(default_factory=set)
@@ -82,7 +83,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         name.upper().rpartition(".")[0]: _blocks(name, content) for name, content in files.items()
     }
     words = {text for blocks in programs.values() for _, text in blocks}
-    # an H word that is ever 0 switches; others tell schedules, which begin with 1
+    # an H word that is ever 0 switches; others select schedules, which begin with 1
     state = _State(
         programs, switching={text.partition("=")[0] for text in words if text.endswith("=0")}
     )
@@ -94,15 +95,15 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
 
 def _blocks(file: str, content: bytes) -> list[tuple[str, str]]:
-    """Where each block is, and its words; comments and block numbers are gone."""
-    blocks, last = [], 0
+    """The position of each block and its words, without comments and block numbers."""
+    blocks, last_number = [], 0
     for number, line in enumerate(content.decode("latin-1").upper().split("\n"), 1):
         text = line.partition(";")[0].strip() if not _LAYER.match(line) else line.strip()
         where = f"{file} line {number}"
         if numbered := _NUMBERED.match(text):
-            if int(numbered[1]) <= last:
+            if int(numbered[1]) <= last_number:
                 raise unreadable(where, "block numbers do not rise")
-            last, text = int(numbered[1]), text[numbered.end() :]
+            last_number, text = int(numbered[1]), text[numbered.end() :]
         if text:
             tidy = text.isprintable() and "  " not in text
             blocks.append((where, text if tidy else " ".join(text.split())))
@@ -110,7 +111,7 @@ def _blocks(file: str, content: bytes) -> list[tuple[str, str]]:
 
 
 def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
-    """Carry out the blocks of a program in order, and of those it calls."""
+    """Carry out the blocks of a program in order, and of programs it calls."""
     end = "M17" if callers else "M30"
     blocks = state.files[name]
     if not blocks or blocks[-1][1] != end or name in callers:
@@ -126,9 +127,9 @@ def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
                 state.waiting = False
             elif not _DWELL.match(text):
                 raise unreadable(where, Text("{!r} in a loop that waits for an input", text))
-        elif given := _WAIT.match(text):
+        elif wait := _WAIT.match(text):
             state.waiting = True
-            state.track.happens("input", float(given[1]))
+            state.track.happens("input", float(wait[1]))
         elif cool := _COOL.match(text):
             if state.track.on:
                 raise unreadable(where, "it is waited for an analogue input within a bead")
@@ -153,12 +154,12 @@ def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> No
         state.track.set_wire(int(wire[2]), wire[3], where)
         return
     words: dict[str, str] = {}
-    rest = []
+    other_tokens = []
     for token in text.split():
-        if shorter := _SHORTER.match(token):
+        if shorter := _SHORTEST_PATH.match(token):
             state.track.shorter.add(shorter[1])
-        if found := _WORD.match(token) or shorter:
-            address, value = (group for group in found.groups() if group is not None)
+        if match := _WORD.match(token) or shorter:
+            address, value = (group for group in match.groups() if group is not None)
             if address in words:
                 raise unreadable(where, Text("{} stands there twice", address))
             words[address] = value
@@ -167,15 +168,15 @@ def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> No
         elif token in ("TRAORI", "TRAFOOF") and state.track.on:
             raise unreadable(where, "the transformation changes while the deposit is on")
         elif not _mode(token, state):
-            rest.append(token)
+            other_tokens.append(token)
     if words:
-        if rest:
-            raise unreadable(where, Text("{!r} with a move is not understood", rest[0]))
+        if other_tokens:
+            raise unreadable(where, Text("{!r} with a move is not understood", other_tokens[0]))
         _move(where, words, state, "G9" in text.split())
         state.shape = Shape.of(text, "G9")
-    elif len(rest) == 1:
-        _other(where, rest[0], state, callers)
-    elif rest:
+    elif len(other_tokens) == 1:
+        _other(where, other_tokens[0], state, callers)
+    elif other_tokens:
         raise unreadable(where, Text("{!r} is not understood", text))
 
 
@@ -213,12 +214,12 @@ def _move(where: str, words: dict[str, str], state: _State, stops: bool) -> None
     if not state.linear or state.units != _UNITS:
         raise unreadable(where, "a move before G1, G90 and G710 are said")
     if state.corners and not any(
-        state.corners == {word, *others} for word, others in _PAIRED.items()
+        state.corners == {word, *paired} for word, paired in _PAIRED.items()
     ):
         raise unreadable(where, Text("{} do not belong together", " ".join(sorted(state.corners))))
     if state.tip:
-        known = state.workpiece and state.group and state.offset
-        if state.feed != "G94" or not known or words.keys() != _TIP_WORDS:
+        is_set = state.workpiece and state.group and state.offset
+        if state.feed != "G94" or not is_set or words.keys() != _TIP_WORDS:
             raise unreadable(
                 where,
                 "with TRAORI a move needs X Y Z A3 B3 C3 F, G94, FGROUP, ORIWKS and a work offset",
@@ -263,7 +264,7 @@ def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> N
     ):
         raise unreadable(where, Text("{!r} is not understood", token))
     else:
-        # a program of the controller; what it leaves set is not known
+        # a program of the controller; its final settings are unknown
         state.units, state.offset, state.group, state.linear, state.corners = (
             set(),
             "",
@@ -276,7 +277,7 @@ def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> N
 
 
 def _switch(where: str, token: str, output: re.Match[str], state: _State) -> None:
-    """The deposit: an output or H word with its value; of two M words the first one switches on."""
+    """The deposit: an output or H word with its value; the first of two M words switches on."""
     if output[5]:
         state.on_word = state.on_word or token
         on = token == state.on_word

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Words of SINUMERIK that stand alone in a block: written like the call of a subprogram, they are none."""
+"""Words of SINUMERIK that may be the only word of a block: written like a subprogram call, but not
+one.
+"""
 
 from __future__ import annotations
 

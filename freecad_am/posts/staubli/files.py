@@ -46,11 +46,11 @@ class Application:
 def applications(files: dict[str, bytes]) -> dict[str, Application]:
     """The applications by folder. Raises InputError UNREADABLE_PROGRAM."""
     projects = [file for file in sorted(files) if file.endswith(".pjx")]
-    found = {_folder(file): _application(file, files) for file in projects}
-    listed = sum(1 + len(found[folder].programs) for folder in found) + len(projects)
-    if len(found) < len(projects) or listed != len(files):
+    by_folder = {_folder(file): _application(file, files) for file in projects}
+    listed = sum(1 + len(by_folder[folder].programs) for folder in by_folder) + len(projects)
+    if len(by_folder) < len(projects) or listed != len(files):
         raise unreadable("program", "there are files that belong to no project, or to two")
-    return found
+    return by_folder
 
 
 def _folder(file: str) -> str:
@@ -110,7 +110,7 @@ def _statements(name: str, file: str, files: dict[str, bytes]) -> list[tuple[int
 
 
 def _data(file: str, files: dict[str, bytes]) -> dict[str, Data]:
-    found: dict[str, Data] = {}
+    data: dict[str, Data] = {}
     for element in _parsed(file, files).iterfind(f"{DATA}Datas/{DATA}Data"):
         name, values = (
             str(element.get("name")),
@@ -118,19 +118,21 @@ def _data(file: str, files: dict[str, bytes]) -> dict[str, Data]:
         )
         keys = [value.pop("key", "") for value in values]
         if (
-            name in found
+            name in data
             or keys != [str(key) for key in range(len(values))]
             or element.get("size") != str(len(values))
         ):
             raise unreadable(
                 file, Text("the values of {} are not those from 0 to its size, each once", name)
             )
-        found[name] = Data(str(element.get("type")), tuple(values))
-    return found
+        data[name] = Data(str(element.get("type")), tuple(values))
+    return data
 
 
 def numbers(data: Data, names: Sequence[str], where: str) -> tuple[Array, float]:
-    """The attributes `names` of all values, (n, names), absent ones 0, and half of the last digit written."""
+    """The attributes `names` of the values, (n, names), absent ones 0, and half of the last digit
+    written.
+    """
     texts = [value.get(name, "0") for value in data.values for name in names]
     together = " ".join(texts) + " "
     if texts and not _PLAIN.fullmatch(together):
@@ -163,5 +165,5 @@ def poses(values: Array) -> Array:
 
 
 def unreadable(where: str, why: str) -> InputError:
-    """The error for what is not understood."""
+    """The error for text that is not understood."""
     return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)

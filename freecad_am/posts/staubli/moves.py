@@ -45,32 +45,34 @@ class _Values:
         if key not in self._read:
             self._read[key] = numbers(app.data[name], columns, f"{app.folder}: {name}")
             values, half = self._read[key]
-            known = self._half_digits.setdefault(columns, {})
-            known[len(values) > 1] = max(known.get(len(values) > 1, 0.0), half)
+            halves = self._half_digits.setdefault(columns, {})
+            halves[len(values) > 1] = max(halves.get(len(values) > 1, 0.0), half)
         return self._read[key][0]
 
     def digits(self, columns: tuple[str, ...]) -> float:
         """Half of the last digit of the values in these columns, 0 where none were read.
 
-        What stands alone, such as the one frame of a part, is a setting and means what it says: it counts only where no
-        array of several values has these columns.
+        A single value, such as the only frame of a part, is a setting and exact: it counts only if
+        no array of several values has these columns.
         """
-        known = self._half_digits.get(columns, {})
-        return known.get(True, known.get(False, 0.0))
+        halves = self._half_digits.get(columns, {})
+        return halves.get(True, halves.get(False, 0.0))
 
     def six(self, app: Application, name: str) -> Array:
         """(n, 6) x y z rx ry rz, mm and degrees."""
         return np.hstack((self(app, name, _LENGTHS), self(app, name, _ANGLES)))
 
     def father(self, app: Application, name: str) -> str:
-        """What all values of an array stand on; '' when they differ."""
+        """The common father of an array's values; '' if they differ."""
         key = (app.folder, name)
         if key not in self._fathers:
             self._fathers[key] = {value.get("fatherId", "") for value in app.data[name].values}
         return next(iter(self._fathers[key])) if len(self._fathers[key]) == 1 else ""
 
     def frame(self, app: Application, name: str, where: str) -> Array:
-        """(4, 4) the frame that the points of an array are in; it must stand in the world, and the arm stay as it is."""
+        """(4, 4) the frame of the points of an array; it must be fixed in the world, and the arm
+        keep its configuration.
+        """
         for value in app.data[name].values:
             if any(
                 value.get(word, f"{word[0]}same") != f"{word[0]}same"
@@ -89,7 +91,7 @@ class _Values:
         )
 
     def carrier(self, app: Application, name: str, where: str) -> Array:
-        """(4, 4) what the tools of an array stand on: the flange, or one other tool that stands on it."""
+        """(4, 4) the father of the tools of an array: the flange, or one other tool on the flange."""
         if self.father(app, name) == _FLANGE:
             return np.eye(4)
         return self._one(
@@ -115,8 +117,8 @@ class _Values:
                     Word("in the world" if kind == "frame" else "on the flange"),
                 ),
             )
-        found: Array = poses(self.six(app, match[1]))[0]
-        return found
+        matrix: Array = poses(self.six(app, match[1]))[0]
+        return matrix
 
 
 def _corners(values: _Values, app: Application, descriptor: str, step: Step) -> Array:
@@ -139,7 +141,7 @@ _FLANGE = "flange[0]"
 
 
 def moves_of(steps: list[Step]) -> ReadMoves:
-    """The moves of all steps, in order; what happens between them is not told here."""
+    """The moves of all steps, in order; without events between them."""
     total = sum(len(step.point) for step in steps)
     values = _Values()
     joints, point = np.full((total, 6), np.nan), np.full((total, 6), np.nan)
@@ -165,28 +167,28 @@ def moves_of(steps: list[Step]) -> ReadMoves:
         stops[rows] = rounding[rows] == 0.0
         stops[rows.stop - 1] |= step.stops
         percent = values(app, descriptor, _SHARE)[step.speed, 0]
-        most, most_turn = values(app, descriptor, _SPEEDS)[step.speed].T
+        max_speed, most_turn = values(app, descriptor, _SPEEDS)[step.speed].T
         if step.linear:
-            own = values.frame(app, target, step.where)
-            if frame is not None and not np.array_equal(own, frame):
+            own_frame = values.frame(app, target, step.where)
+            if frame is not None and not np.array_equal(own_frame, frame):
                 raise unreadable(step.where, "positions of more than one frame are mixed")
-            frame = own
+            frame = own_frame
             point[rows] = values.six(app, target)[step.point]
-            taken = values.six(app, tool)[step.tool]
-            tools[rows] = values.carrier(app, tool, step.where) @ poses(taken)
+            tool_values = values.six(app, tool)[step.tool]
+            tools[rows] = values.carrier(app, tool, step.where) @ poses(tool_values)
             if values.father(app, tool) != _FLANGE:
-                lever[rows] = np.linalg.norm(taken[:, :3], axis=1)
-            speed[rows] = most
-            known = (percent == 100.0) & (most > 0.0) & (most_turn >= _UNLIMITED)
+                lever[rows] = np.linalg.norm(tool_values[:, :3], axis=1)
+            speed[rows] = max_speed
+            is_supported = (percent == 100.0) & (max_speed > 0.0) & (most_turn >= _UNLIMITED)
         else:
             joints[rows], share[rows] = values(app, target, AXES)[step.point], percent / 100.0
-            known = (
+            is_supported = (
                 (percent > 0.0)
                 & (percent <= 100.0)
-                & (most >= _UNLIMITED)
+                & (max_speed >= _UNLIMITED)
                 & (most_turn >= _UNLIMITED)
             )
-        if not known.all() or (not step.linear and values.father(app, tool) != _FLANGE):
+        if not is_supported.all() or (not step.linear and values.father(app, tool) != _FLANGE):
             raise unreadable(
                 step.where,
                 "its speed is limited, or its tool fixed, in a way that is not understood",

@@ -52,7 +52,7 @@ class Descriptors:
 
     def __call__(self, moves: Moves) -> Sequence[str]:
         """The attributes of one descriptor per move. Raises InputError MOVE_SPEED or JOINT_SPEED."""
-        shown = degrees(moves.joints)
+        displayed = degrees(moves.joints)
         blends = self._blends(moves)
         if moves.interpolation == LINEAR_MOVE:
             speeds = _speeds(moves).tolist()
@@ -61,8 +61,8 @@ class Descriptors:
                 for speed, blend in zip(speeds, blends, strict=True)
             ]
         else:
-            start = shown[:1] if self.before is None else self.before
-            percent = self._percent(moves, np.diff(shown, axis=0, prepend=start))
+            start = displayed[:1] if self.before is None else self.before
+            percent = self._percent(moves, np.diff(displayed, axis=0, prepend=start))
             if self.before is None:
                 percent[0] = 100.0 * FIRST_SHARE
             shares = percent.tolist()
@@ -70,11 +70,13 @@ class Descriptors:
                 _descriptor(f"{share:.5f}", UNLIMITED, blend)
                 for share, blend in zip(shares, blends, strict=True)
             ]
-        self.before = shown[-1:]
+        self.before = displayed[-1:]
         return words
 
     def _percent(self, moves: Moves, steps: Array) -> Array:
-        """Of the nominal joint speed, (n,): the fastest axis gets through its step in the time of the move."""
+        """Percent of the nominal joint speed, (n,): the fastest axis gets through its step in the
+        time of the move.
+        """
         share = (np.abs(steps) / self.nominal).max(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
             percent = 100.0 * share / moves.duration
@@ -95,8 +97,9 @@ class Descriptors:
         return np.where(share > 0.0, np.clip(percent, LEAST_PERCENT, 100.0), 100.0)
 
     def _blends(self, moves: Moves) -> list[str]:
-        """How each move ends. Corners within a bead are passed through, never farther from one than half its shortest move,
-        but for where it halts; at its end it is waited for."""
+        """How each move ends. Corners within a bead are passed through, never farther from one than
+        half its shortest move, except at halts; the program waits at its end.
+        """
         distance = 0.0
         if moves.kind == DEPOSIT:
             shortest = float(np.nan_to_num(moves.speed * moves.duration).min())

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Stäubli: VAL 3 applications of joint moves, or of linear moves with the speed held at the deposition point.
 
-With the part on the robot linear moves have a fixed target, the deposition point, and a tool of their own each: the
-point of the part that is to come there (Chalvin 2019, III.A, "jauges outil"). What is written, what must be set on
-the controller and what was confirmed where: docs/posts/staubli.md.
+With the part on the robot linear moves have a fixed target, the deposition point, and a tool of
+their own each: the point of the part that is to come there (Chalvin 2019, III.A, "jauges outil").
+Output, controller settings and confirmations: docs/posts/staubli.md.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ from ...core.program import (
     WaitInput,
 )
 from ..names import Naming
-from ..on_controller import on_controller
-from ..parts import Piece, Run, grouped, packed, size, unbroken, with_retracts
+from ..on_controller import controller_checks
+from ..parts import Piece, Run, grouped, move_retracts, packed, size, unbroken
 from ..refusals import (
     refuse_continuous,
     refuse_cooling,
@@ -48,7 +48,7 @@ __all__ = ["read", "write"]
 
 
 NO_ANALOGUE = "the links of analogue inputs differ from controller to controller, and the post staubli knows none"
-# why the speed of the wire cannot follow that of the torch
+# why the speed of the wire cannot follow the torch speed
 CONTROLLER = Controller(point_bytes=250, whole_beads=True)
 PENDANT = Pendant("Stäubli", ("Rx", "Ry", "Rz"), MOVING_XYZ)
 NO_WIRE = "VAL 3 sets outputs while the moves before are still in the queue"
@@ -60,7 +60,7 @@ NO_SCHEDULE = {
     "arc": "VAL 3 has no arc instructions",
 }
 MOVE_LINE = re.compile(rb" *move[jl]\(")
-ON_CONTROLLER = on_controller(
+ON_CONTROLLER = controller_checks(
     "The controller's world is the robot's base, and joint speeds are its nominal ones",
     "The outputs and inputs are linked to the process",
     "Loaded parts and tools that stand on other tools have been tried with a dry run",
@@ -140,19 +140,21 @@ def write(program: Program) -> dict[str, bytes]:
     groups = list(
         grouped(program, numbers.Descriptors(program), lambda block: _instructions(program, block))
     )
-    if size([piece for group in groups for piece in group])[0] <= program.max_points:
-        (pieces,) = packed(groups, program.max_points, _NO_END, unbroken)
-        return _application(program, name, name, remarks, pieces)
-    # one place is kept for the withdrawal from the last bead: what follows is loaded away from it
-    parts = with_retracts(packed(groups, program.max_points - 1, _NO_END, unbroken))
-    names = NAMING.parts(name, len(parts))
-    load = [line for part in names for line in _LOAD.format(alias=PART, part=part).split("\n")]
+    if size([entry for group in groups for entry in group])[0] <= program.max_points:
+        (entries,) = packed(groups, program.max_points, _NO_END, unbroken)
+        return _application(program, name, name, remarks, entries)
+    # one point is reserved for the retract from the last bead: the next part is loaded away from it
+    part_pieces = move_retracts(packed(groups, program.max_points - 1, _NO_END, unbroken))
+    names = NAMING.parts(name, len(part_pieces))
+    load = [
+        line for part_name in names for line in _LOAD.format(alias=PART, part=part_name).split("\n")
+    ]
     files = _files(
         program, name, name, [*remarks, *load], {}, {PART: f"./{names[0]}/{names[0]}.pjx"}
     )
-    for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
-        head = text.remark(f"part {number} of {len(parts)}")
-        files |= _application(program, f"{name}/{part}", part, head, pieces)
+    for number, (part_name, entries) in enumerate(zip(names, part_pieces, strict=True), 1):
+        head = text.remark(f"part {number} of {len(part_pieces)}")
+        files |= _application(program, f"{name}/{part_name}", part_name, head, entries)
     return files
 
 
@@ -230,12 +232,12 @@ def _instructions(program: Program, block: Block) -> list[str]:
 
 
 def _application(
-    program: Program, folder: str, name: str, remarks: list[str], pieces: Sequence[Piece]
+    program: Program, folder: str, name: str, remarks: list[str], entries: Sequence[Piece]
 ) -> dict[str, bytes]:
     arrays: dict[str, tuple[str, list[str]]] = {}
     lines = list(remarks)
-    for piece in pieces:
-        lines += _motion(program, piece, arrays) if isinstance(piece, Run) else piece
+    for entry in entries:
+        lines += _motion(program, entry, arrays) if isinstance(entry, Run) else entry
     libraries = {}
     for block in program.blocks:
         if isinstance(block, WaitInput) and f"wait(diInput{block.number}==true)" in lines:
@@ -255,9 +257,9 @@ _TOOL = 'fatherId="flange[0]"'
 _GAUGE = 'fatherId="tCarried[0]"'
 
 
-def _single(six: Six | None, more: str) -> list[str]:
+def _single(six: Six | None, attributes: str) -> list[str]:
     values = np.zeros(6) if six is None else np.array([*six[:3], *np.degrees(six[3:])])
-    return text.frames(values[None] + 0.0, more)
+    return text.frames(values[None] + 0.0, attributes)
 
 
 def _files(
@@ -290,32 +292,34 @@ def _motion(program: Program, run: Run, arrays: dict[str, tuple[str, list[str]]]
         values = text.joints(numbers.degrees(moves.joints[rows]))
     else:
         assert moves.position is not None and moves.rotation is not None
-        places = numbers.frames(moves.position[rows], moves.rotation[rows])
+        frames = numbers.frames(moves.position[rows], moves.rotation[rows])
         if program.holds_part:
             pattern, array, kind = "movel(pTarget,tPath[{point}],mPath[{speed}])", "tPath", "tool"
-            values = text.frames(places, _GAUGE)
+            values = text.frames(frames, _GAUGE)
         else:
             pattern, array, kind = (
                 "movel(pPath[{point}],tCarried,mPath[{speed}])",
                 "pPath",
                 "pointRx",
             )
-            values = text.frames(places, _POINT)
-    first = _appended(arrays, array, kind, values)
+            values = text.frames(frames, _POINT)
+    first_index = _appended(arrays, array, kind, values)
     words = list(run.words[rows])
     alike = len(set(words)) == 1
-    last = arrays["mPath"][1] if "mPath" in arrays else []
-    same = alike and last[-1:] == words[:1]
+    previous_words = arrays["mPath"][1] if "mPath" in arrays else []
+    same = alike and previous_words[-1:] == words[:1]
     speed = (
-        len(last) - 1
+        len(previous_words) - 1
         if same
         else _appended(arrays, "mPath", "mdesc", words[:1] if alike else words)
     )
     if len(run) == 1:
-        return [pattern.format(point=first, speed=speed), "waitEndMove()"]
-    index = str(speed) if alike else "l_nI" if speed == first else f"l_nI{speed - first:+d}"
+        return [pattern.format(point=first_index, speed=speed), "waitEndMove()"]
+    index = (
+        str(speed) if alike else "l_nI" if speed == first_index else f"l_nI{speed - first_index:+d}"
+    )
     return [
-        f"for l_nI={first} to {first + len(run) - 1}",
+        f"for l_nI={first_index} to {first_index + len(run) - 1}",
         f"  {pattern.format(point='l_nI', speed=index)}",
         "endFor",
         "waitEndMove()",
@@ -326,6 +330,6 @@ def _appended(
     arrays: dict[str, tuple[str, list[str]]], name: str, kind: str, values: list[str]
 ) -> int:
     """The index of the first of the values added to an array."""
-    held = arrays.setdefault(name, (kind, []))[1]
-    held += values
-    return len(held) - len(values)
+    array_values = arrays.setdefault(name, (kind, []))[1]
+    array_values += values
+    return len(array_values) - len(values)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads VAL 3 applications back: what the controller would do, from the text alone.
+"""Reads VAL 3 applications back: the behaviour of the controller, from nothing but the text.
 
-Shares nothing with the writer. Understands the plain instructions a path needs and refuses every other one, so
-that no motion can hide in what was not understood.
+Shares nothing with the writer. Understands the plain instructions a path needs and refuses every
+other one, so that no motion can hide in unknown text.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ _NUMBER = re.compile(r".*%[IQ](\d+)$")
 
 @dataclass
 class _Run:
-    """What happened so far while the programs are followed."""
+    """The state while the programs are followed."""
 
-    found: dict[str, Application]
+    applications: dict[str, Application]
     steps: list[Step] = field(default_factory=list)
     loaded: dict[tuple[str, str], str] = field(default_factory=dict)
     output: str = ""
@@ -57,16 +57,18 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
     Raises InputError UNREADABLE_PROGRAM, naming file and line.
     """
-    found = applications(files)
+    by_folder = applications(files)
     outer = [
-        folder for folder in found if not any(folder.startswith(f"{other}/") for other in found)
+        folder
+        for folder in by_folder
+        if not any(folder.startswith(f"{other_folder}/") for other_folder in by_folder)
     ]
     if len(outer) != 1:
         raise unreadable(
             "program", Text("there are {} applications, expected one with its parts", len(outer))
         )
-    run = _Run(found)
-    _follow(found[outer[0]], "start", run, ())
+    run = _Run(by_folder)
+    _follow(by_folder[outer[0]], "start", run, ())
     if not run.steps:
         raise unreadable("program", "there are no moves")
     if run.moving:
@@ -77,13 +79,13 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     read_moves = dataclasses.replace(
         moves_of(run.steps), events=tuple(run.events), lines=lines.read()
     )
-    for app in found.values():
+    for app in by_folder.values():
         _check_stop(app, run.output)
     return read_moves
 
 
 def _check_stop(app: Application, output: str) -> None:
-    """Stopping an application must end its motion and switch off what it may have switched on."""
+    """Stopping an application must end its motion and switch off its outputs."""
     lines = [line for _, line in app.programs.get("stop", [])]
     named = [
         name
@@ -100,9 +102,9 @@ def _check_stop(app: Application, output: str) -> None:
 
 
 def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, str], ...]) -> None:
-    """Carry out the statements of a program in order, and of those it calls."""
-    here = (app.folder, name)
-    if name not in app.programs or here in callers:
+    """Carry out the statements of a program in order, and of programs it calls."""
+    caller = (app.folder, name)
+    if name not in app.programs or caller in callers:
         raise unreadable(app.folder, Text("{} is not a program of it, or calls itself", name))
     statements = iter(app.programs[name])
     for number, line in statements:
@@ -129,7 +131,7 @@ def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, st
         elif call := _CALL.match(line):
             called = app if call[1] is None else _library(app, call[1], run, where)
             if called is not None:
-                _follow(called, call[2], run, (*callers, here))
+                _follow(called, call[2], run, (*callers, caller))
             else:
                 run.happens(
                     "call", str(call[1]).upper() if call[2] == "start" else f"{call[1]}:{call[2]}"
@@ -141,31 +143,33 @@ def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, st
 def _load(
     app: Application,
     alias: str,
-    part: str,
+    part_name: str,
     statements: Iterator[tuple[int, str]],
     run: _Run,
     where: str,
 ) -> None:
     """Loading a part stops the program where it fails; the robot must not deposit meanwhile."""
-    rest = [next(statements, (0, ""))[1] for _ in range(3)]
-    if not rest[0].startswith("popUpMsg(") or rest[1:] != ["return", "endIf"]:
+    next_statements = [next(statements, (0, ""))[1] for _ in range(3)]
+    if not next_statements[0].startswith("popUpMsg(") or next_statements[1:] != ["return", "endIf"]:
         raise unreadable(where, "a part is loaded without stopping where it cannot be")
-    if run.on or f"{app.folder}/{part}" not in run.found or alias not in app.libraries:
+    if run.on or f"{app.folder}/{part_name}" not in run.applications or alias not in app.libraries:
         raise unreadable(
             where,
             Text(
-                "{} is loaded while depositing, is not there, or {} is not a library", part, alias
+                "{} is loaded while depositing, is not there, or {} is not a library",
+                part_name,
+                alias,
             ),
         )
-    run.loaded[app.folder, alias] = f"{app.folder}/{part}"
+    run.loaded[app.folder, alias] = f"{app.folder}/{part_name}"
 
 
 def _library(app: Application, alias: str, run: _Run, where: str) -> Application | None:
-    """The application behind an alias; None for one that stands elsewhere on the controller."""
+    """The application behind an alias; None for one elsewhere on the controller."""
     if alias not in app.libraries:
         raise unreadable(where, Text("{} is not a library of the project", alias))
     if (app.folder, alias) in run.loaded:
-        return run.found[run.loaded[app.folder, alias]]
+        return run.applications[run.loaded[app.folder, alias]]
     if not app.libraries[alias].startswith("Disk://"):
         raise unreadable(where, Text("{} is called before it is loaded", alias))
     return None
@@ -218,13 +222,18 @@ def _move(app: Application, line: str, counter: Integers, run: _Run, where: str)
     rows = []
     for name, kind, index in zip(names, kinds, arguments[1::2], strict=True):
         data = app.data.get(name, Data("", ()))
-        taken = _indices(index, counter)
-        if data.kind != kind or taken is None or taken.min() < 0 or taken.max() >= len(data.values):
+        indices = _indices(index, counter)
+        if (
+            data.kind != kind
+            or indices is None
+            or indices.min() < 0
+            or indices.max() >= len(data.values)
+        ):
             raise unreadable(
                 where,
                 Text("{} is not {} data of the project, or has not so many values", name, kind),
             )
-        rows.append(taken)
+        rows.append(indices)
     run.moving = True
     run.moves += len(rows[0])
     run.steps.append(

@@ -55,10 +55,10 @@ _FRAME = " ".join(
 def project(name: str, programs: Sequence[str], libraries: dict[str, str]) -> bytes:
     """The project of an application. programs: their names; libraries: path of each alias."""
     files = "".join(f'    <Program file="{program}.pgx" />\n' for program in programs)
-    others = "".join(
+    library_files = "".join(
         f'    <Library alias="{alias}" path="{path}" />\n' for alias, path in libraries.items()
     )
-    return _file(_PROJECT.format(programs=files, name=name, libraries=others))
+    return _file(_PROJECT.format(programs=files, name=name, libraries=library_files))
 
 
 def database(arrays: dict[str, tuple[str, list[str]]]) -> bytes:
@@ -78,7 +78,7 @@ def _data_element(name: str, kind: str, values: list[str]) -> str:
 
 
 def code(name: str, lines: Iterable[str]) -> bytes:
-    """A program of these lines."""
+    """A program with the given lines."""
     lines = [f"  {line}\n" for line in lines]
     variables = _LOCALS if any("l_nI" in line for line in lines) else ""
     return _file(_PROGRAM.format(name=name, locals=variables, code="".join(lines)))
@@ -93,9 +93,11 @@ def joints(values: Array) -> list[str]:
     return _rows(_JOINTS, values)
 
 
-def frames(values: Array, more: str) -> list[str]:
-    """Attributes of points, frames or tools (n, 6), mm and degrees, with `more` attributes behind each."""
-    return _rows(f"{_FRAME} {more}", values)
+def frames(values: Array, attributes: str) -> list[str]:
+    """Attributes of points, frames or tools (n, 6), mm and degrees, with further `attributes`
+    behind each.
+    """
+    return _rows(f"{_FRAME} {attributes}", values)
 
 
 def _rows(template: str, values: Array) -> list[str]:
@@ -104,8 +106,8 @@ def _rows(template: str, values: Array) -> list[str]:
 
 def remark(text: str) -> list[str]:
     """A comment on as many lines as it needs, in plain characters."""
-    apart = unicodedata.normalize("NFKD", text.replace("ß", "ss"))
-    plain = apart.encode("ascii", "ignore").decode("ascii").replace("]]>", "")
+    decomposed = unicodedata.normalize("NFKD", text.replace("ß", "ss"))
+    plain = decomposed.encode("ascii", "ignore").decode("ascii").replace("]]>", "")
     return [f"// {line}" for line in textwrap.wrap(plain, 80)]
 
 

@@ -17,7 +17,7 @@ DECIMALS = 7  # of rad and m
 LARGEST_SHARE = 0.4
 MICRON = 1e-6  # m, the step of a blend radius
 # s: the controller's own step, and the shortest time that is written
-CYCLE, SHORTEST = 0.002, 0.001
+CYCLE, MIN_TIME_S = 0.002, 0.001
 # mm/s: a path speed is written to 0.001 mm/s
 SLOWEST, FASTEST = 0.01, 1000.0
 # mm on the flange: places for the point whose way the blends of joint moves count on, the part being carried
@@ -29,13 +29,13 @@ TOOL_POINTS = np.array(
 class Words:
     """The words of each move about time or speed and blend, asked for block by block; and the tool point of the blends.
 
-    tool_point: mm on the flange, where the part is carried; None where the tip itself is the tool. Raises InputError
-    MOVE_TIME, MOVE_SPEED, BLEND_RADIUS.
+    tool_point: mm on the flange, if the robot carries the part; None if the tip itself is the tool.
+    Raises InputError MOVE_TIME, MOVE_SPEED, BLEND_RADIUS.
     """
 
     def __init__(self, program: Program) -> None:
-        self.tool_point, ways = _ways(program)
-        radii = _radii(program, ways)
+        self.tool_point, tip_steps = _ways(program)
+        radii = _radii(program, tip_steps)
         counts = np.cumsum([0] + [len(run) for run in program.moves])
         self.radii = {
             id(run): radii[start : start + len(run)]
@@ -59,28 +59,30 @@ def _ways(program: Program) -> tuple[Array | None, Array]:
     if not program.holds_part:  # the tip is the tool
         return None, np.concatenate([run.speed * run.duration for run in moves])
     flange = np.concatenate([run.flange for run in moves if run.flange is not None])
-    at = flange[:, :3, :3] @ TOOL_POINTS.T + flange[:, :3, 3:]
-    ways = np.linalg.norm(np.diff(at, axis=0, prepend=at[:1]), axis=1)
+    tool_positions = flange[:, :3, :3] @ TOOL_POINTS.T + flange[:, :3, 3:]
+    tip_steps = np.linalg.norm(np.diff(tool_positions, axis=0, prepend=tool_positions[:1]), axis=1)
     through = ~np.concatenate([run.stops for run in moves])
-    shortest = np.minimum(ways, np.vstack([ways[1:], ways[-1:]]))[through].min(
+    shortest = np.minimum(tip_steps, np.vstack([tip_steps[1:], tip_steps[-1:]]))[through].min(
         axis=0, initial=np.inf
     )
     best = int(np.argmax(np.round(shortest, 6)))
-    return TOOL_POINTS[best], ways[:, best]
+    return TOOL_POINTS[best], tip_steps[:, best]
 
 
-def _radii(program: Program, ways: Array) -> Array:
-    """(n,) m: the blend at the end of each move, 0 where it stops. A share of the shorter way beside the point."""
+def _radii(program: Program, tip_steps: Array) -> Array:
+    """(n,) m: the blend at the end of each move, 0 where it stops. A share of the shorter of the
+    two adjacent moves.
+    """
     moves = program.moves
     stops = np.concatenate([run.stops for run in moves])
-    adjacent = np.minimum(ways, np.append(ways[1:], 0.0))
+    adjacent = np.minimum(tip_steps, np.append(tip_steps[1:], 0.0))
     microns = np.floor(LARGEST_SHARE * 0.01 * program.blend * adjacent * 0.001 / MICRON + 1e-6)
     radii: Array = np.where(stops, 0.0, microns * MICRON)
     short = ~stops & (radii < MICRON)
     if program.blend and short.any():
-        first = int(np.argmax(short))
+        shortest_row = int(np.argmax(short))
         run = moves[
-            int(np.searchsorted(np.cumsum([len(run) for run in moves]), first, side="right"))
+            int(np.searchsorted(np.cumsum([len(run) for run in moves]), shortest_row, side="right"))
         ]
         raise InputError(
             "BLEND_RADIUS",
@@ -88,7 +90,7 @@ def _radii(program: Program, ways: Array) -> Array:
             "the tool goes {:.3g} mm past a point that is not stopped at, too little for a blend radius, and the robot "
             "would stop there with the deposit on; use a larger strategy.chord_error, or `program.blend: 0` to stop at "
             "every point",
-            adjacent[first],
+            adjacent[shortest_row],
         )
     return radii
 
@@ -105,7 +107,7 @@ def _times(moves: Moves) -> Array:
             1000.0 * seconds.min(),
             1000.0 * CYCLE,
         )
-    times: Array = np.maximum(seconds, SHORTEST)
+    times: Array = np.maximum(seconds, MIN_TIME_S)
     return times
 
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Universal Robots: URScript of joint moves by time, or of beads in process moves (movep) with the tool on the robot.
 
-Rapids are joint moves that stop at every point, in either. A script is one file: parts are functions in it, for URScript
-cannot load another file. What is written, what must be set on the controller and what was confirmed where: docs/posts/ur.md.
+Rapids are joint moves that stop at every point, in either. A script is one file: parts are
+functions in it, for URScript cannot load another file. Output, controller settings and
+confirmations: docs/posts/ur.md.
 """
 
 from __future__ import annotations
@@ -34,8 +35,8 @@ from ...core.program import (
 )
 from ..names import Naming
 from ..nc import parts as common
-from ..on_controller import on_controller
-from ..parts import Piece, Run, grouped, lines_of, packed, whole
+from ..on_controller import controller_checks
+from ..parts import Piece, Run, grouped, keep_whole, lines_of, packed
 from ..refusals import (
     refuse_calls_of_own,
     refuse_continuous,
@@ -55,7 +56,7 @@ __all__ = ["read", "write"]
 
 
 AXES = 6
-# why the speed of the wire cannot follow that of the torch
+# why the speed of the wire cannot follow the torch speed
 CONTROLLER = Controller(
     point_bytes=140, configurations=False, flange=True, least_step=2.0001e-3, least_blend=2.6e-3
 )
@@ -67,7 +68,7 @@ refuse_process = refuse_no_process
 NO_SCHEDULE = {"arc": "URScript has no arc instructions"}
 LAST_REGISTER, LAST_SCHEDULE = 47, 65535
 MOVE_LINE = re.compile(rb" *move[jlp]\(")
-ON_CONTROLLER = on_controller(
+ON_CONTROLLER = controller_checks(
     "Joint programs rely on the nominal arm; the calibrated one stands up to millimetres off it",
     "The robot keeps the time of every move through the blends",
     "Payload is set, safety limits allow the speeds, and the speed slider is at 100 %",
@@ -76,7 +77,7 @@ ON_CONTROLLER = on_controller(
 LAST_PIN = 16  # digital inputs and outputs: 1 to 8 are the standard ones 0 to 7, 9 to 16 the configurable ones
 LAST_ANALOGUE = 2
 
-# words of the language, and functions of its library that programs here or beside them use
+# words of the language, and functions of its library that our programs or programs next to them use
 _RESERVED = INSTRUCTIONS | frozenset(
     (
         "AND",
@@ -170,8 +171,9 @@ _INDENT = "  "
 def write(program: Program) -> dict[str, bytes]:
     """The script of a program, file name -> content; the same bytes for the same program.
 
-    One file: a function of the program's name, which calls functions inside it, NAME01, NAME02 and so on, where it has more
-    than max_points. The duration of the very first move is not told by the plan but is that of `FIRST_TIME`.
+    One file: a function of the program's name, which calls functions inside it, NAME01, NAME02 and
+    so on, where it has more than max_points. The duration of the very first move is not planned but
+    equals `FIRST_TIME`.
 
     Raises InputError: PROGRAM_NAME, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, MOVE_TIME, MOVE_SPEED,
     BLEND_RADIUS, NO_POSITIONS, DEPOSIT_OUTPUT, DEPOSIT_INPUT, NO_WIRE_OUTPUT, ANALOGUE_INPUT, UNREACHABLE,
@@ -181,8 +183,8 @@ def write(program: Program) -> dict[str, bytes]:
     _refuse(program)
     words = numbers.Words(program)
     groups = list(grouped(program, words, lambda block: _instructions(program, block)))
-    parts = packed(groups, program.max_points, _NO_END, whole)
-    names = NAMING.parts(name, len(parts)) if len(parts) > 1 else []
+    part_pieces = packed(groups, program.max_points, _NO_END, keep_whole)
+    names = NAMING.parts(name, len(part_pieces)) if len(part_pieces) > 1 else []
     refuse_calls_of_own(program, {name, *names}, program_name)
     remarks = [
         f"# {line}"
@@ -191,10 +193,10 @@ def write(program: Program) -> dict[str, bytes]:
     ]
     lines = [*remarks, *_frames(program, words.tool_point)]
     if not names:
-        lines += _lines(parts[0])
-    for part, pieces in zip(names, parts):
-        lines += [f"def {part}():", *(_INDENT + line for line in _lines(pieces)), "end"]
-    lines += [f"{part}()" for part in names]
+        lines += _lines(part_pieces[0])
+    for part_name, entries in zip(names, part_pieces):
+        lines += [f"def {part_name}():", *(_INDENT + line for line in _lines(entries)), "end"]
+    lines += [f"{part_name}()" for part_name in names]
     text = "\n".join([f"def {name}():", *(_INDENT + line for line in lines), "end", ""])
     return {f"{name}.script": text.encode("ascii")}
 
@@ -331,33 +333,33 @@ def _sleep(seconds: float) -> list[str]:
     return [f"sleep({max(seconds, 0.001):.3f})"] if seconds > 0.0 else []
 
 
-def _lines(pieces: Sequence[Piece]) -> list[str]:
-    return lines_of(pieces, _motion)
+def _lines(entries: Sequence[Piece]) -> list[str]:
+    return lines_of(entries, _motion)
 
 
 def _motion(run: Run) -> list[str]:
     """Moves through all points of a run."""
-    moves, part = run.moves, slice(run.start, run.stop)
+    moves, rows = run.moves, slice(run.start, run.stop)
     if moves.interpolation == LINEAR_MOVE:
-        pattern, values = f"movep({_SEEN}, a=1.2, %s)", _seen(moves, part)
+        pattern, values = f"movep({_POSE_ON_PLATFORM}, a=1.2, %s)", _poses(moves, rows)
     elif moves.position is None:
-        pattern, values = f"movej({_JOINTS}, a=1.4, v=1.05, %s)", _joints(moves, part)
+        pattern, values = f"movej({_JOINTS}, a=1.4, v=1.05, %s)", _joints(moves, rows)
     else:  # the controller's own arm finds the joints of the position, those next to the planned ones
-        pattern = f"movej(get_inverse_kin({_SEEN}, {_JOINTS}), a=1.4, v=1.05, %s)"
-        values = np.hstack([_seen(moves, part), _joints(moves, part)])
+        pattern = f"movej(get_inverse_kin({_POSE_ON_PLATFORM}, {_JOINTS}), a=1.4, v=1.05, %s)"
+        values = np.hstack([_poses(moves, rows), _joints(moves, rows)])
     return [
-        pattern % (*row, word) for row, word in zip(values.tolist(), run.words[part], strict=True)
+        pattern % (*row, word) for row, word in zip(values.tolist(), run.words[rows], strict=True)
     ]
 
 
-_SEEN = f"pose_trans(platform, p{_JOINTS})"
+_POSE_ON_PLATFORM = f"pose_trans(platform, p{_JOINTS})"
 
 
-def _joints(moves: Moves, part: slice) -> Array:
-    values: Array = np.round(moves.joints[part], numbers.DECIMALS) + 0.0
+def _joints(moves: Moves, rows: slice) -> Array:
+    values: Array = np.round(moves.joints[rows], numbers.DECIMALS) + 0.0
     return values
 
 
-def _seen(moves: Moves, part: slice) -> Array:
+def _poses(moves: Moves, rows: slice) -> Array:
     assert moves.position is not None and moves.rotation is not None
-    return numbers.poses(moves.position[part], moves.rotation[part])
+    return numbers.poses(moves.position[rows], moves.rotation[rows])

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads URScript back: what the controller would do, from the text alone.
+"""Reads URScript back: the behaviour of the controller, from nothing but the text.
 
-Shares nothing with the writer. Nothing is evaluated: each line has to be one of the few that a path needs, as it stands, and
-every other one is refused, so that no motion can hide in what was not understood.
+Shares nothing with the writer. Nothing is evaluated: each line has to be one of the few that a path
+needs, unchanged, and every other one is refused, so that no motion can hide in unknown text.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _BY_JOINTS = re.compile(rf"movej\({_SIX}, a=1\.4, v=1\.05, t=({_N}), r=({_N})\)$
 _BY_POSE = re.compile(
     rf"movej\(get_inverse_kin\(pose_trans\(platform, p{_SIX}\), {_SIX}\), a=1\.4, v=1\.05, t=({_N}), r=({_N})\)$"
 )
-_STRAIGHT = re.compile(rf"movep\(pose_trans\(platform, p{_SIX}\), a=1\.2, v=({_N}), r=({_N})\)$")
+_LINEAR_MOVE = re.compile(rf"movep\(pose_trans\(platform, p{_SIX}\), a=1\.2, v=({_N}), r=({_N})\)$")
 _TCP = re.compile(rf"set_tcp\(p{_SIX}\)$")
 _PLATFORM = re.compile(rf"global platform = p{_SIX}$")
 _OUTPUT = re.compile(r"set_(standard|configurable)_digital_out\(([0-7]), (True|False)\)$")
@@ -39,7 +39,7 @@ _SLEEP = re.compile(r"sleep\((\d+\.(\d+))\)$")
 _INPUT = re.compile(r"while get_(standard|configurable)_digital_in\(([0-7])\) == False:$")
 _BELOW = re.compile(r"while get_standard_analog_in\(([01])\) >= (-?\d+\.(\d+)):$")
 _LAYER = re.compile(r"# layer (\d+)$")
-_FIRST = {"standard": 1.0, "configurable": 9.0}  # number of pin 0
+_FIRST_PIN = {"standard": 1.0, "configurable": 9.0}  # number of pin 0
 
 
 @dataclass
@@ -71,7 +71,7 @@ _NONE = ("nan",) * 6
 
 @dataclass
 class _Run:
-    """What happened so far while the functions are followed: packed. decimals: the fewest of the numbers in columns."""
+    """The state while the functions are followed, packed. decimals: the fewest in each column."""
 
     file: str
     numbers: array[float] = field(default_factory=lambda: array("d"))
@@ -90,7 +90,7 @@ class _Run:
 
 
 def unreadable(where: str, why: str) -> InputError:
-    """What is raised for a text that is not understood."""
+    """The error for a text that is not understood."""
     return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)
 
 
@@ -119,22 +119,22 @@ def _parsed(file: str, content: bytes) -> tuple[str, _Function]:
     if title is None or len(lines) < 2 or lines[-2:] != ["end", ""]:
         raise unreadable(file, "it is not one function from its first line to its last")
     main = _Function(1)
-    here, depth = main, 1
+    current_function, depth = main, 1
     for number, line in enumerate(lines[1:-2], 2):
         where = f"{file} line {number}"
         text = line[2 * depth :]
         if line[: 2 * depth].strip() or not text:
             if depth == 2 and line == "  end":
-                here, depth = main, 1
+                current_function, depth = main, 1
                 continue
             raise unreadable(where, Text("{!r} stands outside of its function", line))
         inner = _DEF.match(text)
         if inner is None:
-            here.lines.append(_Line(number, text))
+            current_function.lines.append(_Line(number, text))
             continue
         if depth == 2 or inner[1] in main.inside or inner[1] == title[1]:
             raise unreadable(where, Text("{} is defined again, or within a part", inner[1]))
-        here = main.inside[inner[1]] = _Function(number)
+        current_function = main.inside[inner[1]] = _Function(number)
         depth = 2
     if depth == 2:
         raise unreadable(file, "a part does not end")
@@ -142,17 +142,21 @@ def _parsed(file: str, content: bytes) -> tuple[str, _Function]:
 
 
 def _follow(
-    name: str, function: _Function, known: dict[str, _Function], run: _Run, callers: tuple[str, ...]
+    name: str,
+    function: _Function,
+    functions: dict[str, _Function],
+    run: _Run,
+    callers: tuple[str, ...],
 ) -> None:
-    """Carry out the lines of a function in order, and those of the functions of this script that it calls."""
+    """Carry out the lines of a function in order, and of the functions of the script that it calls."""
     lines = iter(function.lines)
-    known = {**known, **function.inside}
+    functions = {**functions, **function.inside}
     for line in lines:
         where, text = f"{run.file} line {line.number}", line.text
         if _move(text, run, where):
             continue
         if output := _OUTPUT.match(text):
-            number = _FIRST[output[1]] + float(output[2])
+            number = _FIRST_PIN[output[1]] + float(output[2])
             if run.output not in (None, number):
                 raise unreadable(where, "a second output is switched")
             run.output, run.on = number, output[3] == "True"
@@ -161,9 +165,9 @@ def _follow(
             run.happens("schedule", float(register[1]), float(register[2]))
         elif sleep := _SLEEP.match(text):
             run.happens("wait", float(sleep[1]), digits=0.5 * 10.0 ** -len(sleep[2]))
-        elif given := _INPUT.match(text):
+        elif wait := _INPUT.match(text):
             _loop(lines, where)
-            run.happens("input", _FIRST[given[1]] + float(given[2]))
+            run.happens("input", _FIRST_PIN[wait[1]] + float(wait[2]))
         elif below := _BELOW.match(text):
             _loop(lines, where)
             run.happens(
@@ -172,10 +176,10 @@ def _follow(
         elif (call := _CALL.match(text)) and call[1].upper() not in INSTRUCTIONS:
             if call[1] in (*callers, name):
                 raise unreadable(where, Text("{} calls itself", call[1]))
-            if call[1] in known and line.number < known[call[1]].begins:
+            if call[1] in functions and line.number < functions[call[1]].begins:
                 raise unreadable(where, Text("{} is called before it is defined", call[1]))
-            if call[1] in known:
-                _follow(call[1], known[call[1]], known, run, (*callers, name))
+            if call[1] in functions:
+                _follow(call[1], functions[call[1]], functions, run, (*callers, name))
             else:
                 run.happens("call", call[1].upper())
         elif layer := _LAYER.match(text):
@@ -193,13 +197,13 @@ def _loop(lines: Iterator[_Line], where: str) -> None:
 
 def _move(text: str, run: _Run, where: str) -> bool:
     """Whether the line moves, or says what moves count on, which has to come before them."""
-    found: tuple[str, ...]
+    columns_read: tuple[str, ...]
     if move := _BY_JOINTS.match(text):
-        found = (*_NONE, *move.groups()[:6], move[7], "nan", move[8])
+        columns_read = (*_NONE, *move.groups()[:6], move[7], "nan", move[8])
     elif move := _BY_POSE.match(text):
-        found = (*move.groups()[:13], "nan", move[14])
-    elif move := _STRAIGHT.match(text):
-        found = (*move.groups()[:6], *_NONE, "nan", move[7], move[8])
+        columns_read = (*move.groups()[:13], "nan", move[14])
+    elif move := _LINEAR_MOVE.match(text):
+        columns_read = (*move.groups()[:6], *_NONE, "nan", move[7], move[8])
     else:
         frame = _TCP.match(text) or _PLATFORM.match(text)
         if frame is None:
@@ -211,19 +215,19 @@ def _move(text: str, run: _Run, where: str) -> bool:
         else:
             run.platform = frame.groups()
         return True
-    if not run.tcp or (found[0] == "nan") is bool(run.platform):
+    if not run.tcp or (columns_read[0] == "nan") is bool(run.platform):
         raise unreadable(
             where,
             "it moves without a tool, without the platform, or in joints where positions are given",
         )
-    values = [float(number) for number in found]
+    values = [float(number) for number in columns_read]
     if values[12] <= 0.0 or values[13] <= 0.0 or values[14] < 0.0:
         raise unreadable(where, "its time, speed or blend is none that is kept")
     run.numbers.extend(values)
     run.deposit.append(run.on)
     run.lines.add(where)
     for name, columns in _COLUMNS.items():
-        run.decimals[name] = min(run.decimals[name], _decimals(found[columns]))
+        run.decimals[name] = min(run.decimals[name], _decimals(columns_read[columns]))
     return True
 
 
@@ -249,7 +253,7 @@ def _moves(run: _Run) -> ReadMoves:
     )
     if not run.platform:
         return moves
-    seen = _poses(pose)
+    poses = _poses(pose)
     digits = max(half["pose"], 0.5 * 10.0 ** -_decimals((*run.tcp, *run.platform)))
     return dataclasses.replace(
         moves,
@@ -257,8 +261,8 @@ def _moves(run: _Run) -> ReadMoves:
         digits=0.0,
         near=joints,
         near_digits=half["joints"],
-        position=seen[:, :3, 3],
-        rotation=seen[:, :3, :3],
+        position=poses[:, :3, 3],
+        rotation=poses[:, :3, :3],
         position_digits=1000.0 * digits,
         rotation_digits=digits,
         frame=_poses(np.array([run.platform], dtype=np.float64))[0],
@@ -266,7 +270,7 @@ def _moves(run: _Run) -> ReadMoves:
 
 
 def _decimals(texts: tuple[str, ...]) -> int:
-    """The fewest decimals of numbers, many where there are none."""
+    """The fewest decimals of numbers, a large number without any."""
     return 99 if texts[0] == "nan" else min(len(text) - text.index(".") - 1 for text in texts)
 
 
@@ -277,7 +281,7 @@ def _poses(values: Array) -> Array:
     none = np.zeros(len(values))
     cross = np.stack([none, -z, y, z, none, -x, -y, x, none], axis=1).reshape(-1, 3, 3)
     sine, versine = np.sin(angle)[:, None, None], (1.0 - np.cos(angle))[:, None, None]
-    found = np.tile(np.eye(4), (len(values), 1, 1))
-    found[:, :3, :3] += sine * cross + versine * (cross @ cross)
-    found[:, :3, 3] = 1000.0 * values[:, :3]
-    return found
+    matrices = np.tile(np.eye(4), (len(values), 1, 1))
+    matrices[:, :3, :3] += sine * cross + versine * (cross @ cross)
+    matrices[:, :3, 3] = 1000.0 * values[:, :3]
+    return matrices

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Yaskawa: INFORM jobs (.JBI) of joint moves, or of beads in linear moves with the tool on the robot, all to pulses.
 
-Rapids are joint moves that stop at every point, in either. Pulses need no option of the controller and say the arm's
-configuration and turns by themselves; how many there are to a degree is in the machine file, for each robot has its own.
-What is written, what must be set on the controller and what was confirmed where: docs/posts/yaskawa.md.
+Rapids are joint moves that stop at every point, in either. Pulses need no option of the controller
+and define the arm's configuration and turns; the pulses per degree are in the machine file, as they
+depend on the robot. Output, controller settings and confirmations: docs/posts/yaskawa.md.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from ...core.program import (
     Weave,
 )
 from ..names import Naming, plain
-from ..on_controller import on_controller
+from ..on_controller import controller_checks
 from ..parts import continued, grouped, packed, place
 from ..refusals import (
     refuse_calls_of_own,
@@ -60,7 +60,7 @@ from .text import AXES, BASE, job, pulses
 __all__ = ["read", "write"]
 
 NO_ANALOGUE = "how a job waits for an analogue input differs with the controller's options, and the post yaskawa knows none"
-# why the speed of the wire cannot follow that of the torch
+# why the speed of the wire cannot follow the torch speed
 CONTROLLER = Controller(point_bytes=75, external=True, positioner="ST1", pulses=True)
 PENDANT = Pendant("Yaskawa", ("Rx", "Ry", "Rz"), FIXED_XYZ)
 NO_WIRE = "AOUT between two moves of an INFORM job is set when its line is reached, which rounded corners move"
@@ -68,14 +68,14 @@ NO_WEAVE = ""  # linear moves can be woven
 NO_TRIGGER = "how an INFORM job switches an output ahead of a place was not confirmed"
 refuse_process = refuse_no_process
 LAST_WEAVE = 255  # files of weaving conditions
-NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
+NO_SCHEDULE: dict[str, str] = {}  # schedules are supported in every way
 LAST_GROUP, LAST_SCHEDULE, LAST_FILE = (
     512,
     255,
     1000,
 )  # groups of eight outputs; files of arc conditions
 MOVE_LINE = re.compile(rb"MOV[JL] ")
-ON_CONTROLLER = on_controller(
+ON_CONTROLLER = controller_checks(
     "Pulses per degree of the machine file are the controller's, and zero pulses the zero of its angles",
     "VJ is a share of the largest speeds of the machine file, those of the axis that takes longest",
     "The tool file of the number in the job is the nozzle's tip, and speeds have the unit of the remarks",
@@ -85,7 +85,8 @@ MOST_EXTERNAL = 6
 MOST_LINES = 9999
 OUTPUTS = 4096
 LONGEST_WAIT = 600.0  # s of one TIMER
-# percent of the largest joint speed: the step it is told in, and what a bead may go at least, where that is right to 10 %
+# percent of the largest joint speed: its step, and the lowest value in a bead, which is right to 10
+# %
 STEP_PERCENT, LEAST_PERCENT = 0.01, 0.05
 LEVELS = 8  # of rounded corners
 # what a unit of path speed is in mm/s, and its decimals
@@ -116,23 +117,27 @@ def write(program: Program) -> dict[str, bytes]:
         for line in _remark(text)
     ]
     meaning = [line for text in _meaning(program) for line in _remark(text)]
-    most = MOST_LINES - len(remarks) - len(meaning) - 2  # NOP and END
-    parts = packed(groups, min(program.max_points, most), most, continued(_remark, program.woven))
-    if len(parts) == 1:
+    max_lines = MOST_LINES - len(remarks) - len(meaning) - 2  # NOP and END
+    part_pieces = packed(
+        groups, min(program.max_points, max_lines), max_lines, continued(_remark, program.woven)
+    )
+    if len(part_pieces) == 1:
         refuse_calls_of_own(program, {name}, program_name)
-        return {f"{name}.JBI": job(program, name, [*remarks, *meaning], parts[0])}
-    names = NAMING.parts(name, len(parts))
+        return {f"{name}.JBI": job(program, name, [*remarks, *meaning], part_pieces[0])}
+    names = NAMING.parts(name, len(part_pieces))
     refuse_calls_of_own(program, {name, *names}, program_name)
     header = [
         *remarks,
         *_remark(f"{sum(len(run) for run in program.moves)} moves in {len(names)} parts"),
     ]
     files = {
-        f"{name}.JBI": job(program, name, [*header, *(f"CALL JOB:{part}" for part in names)], [])
+        f"{name}.JBI": job(
+            program, name, [*header, *(f"CALL JOB:{part_name}" for part_name in names)], []
+        )
     }
-    for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
-        head = [*_remark(f"part {number} of {len(parts)}"), *meaning]
-        files[f"{part}.JBI"] = job(program, part, head, pieces)
+    for number, (part_name, entries) in enumerate(zip(names, part_pieces, strict=True), 1):
+        head = [*_remark(f"part {number} of {len(part_pieces)}"), *meaning]
+        files[f"{part_name}.JBI"] = job(program, part_name, head, entries)
     return files
 
 
@@ -167,7 +172,9 @@ def refuse_setup(
 
 
 def _refuse_coordinated(motion: str, external: tuple[str, ...]) -> None:
-    """Raises InputError COORDINATED_MOTION for what cannot be said with external axes of these kinds."""
+    """Raises InputError COORDINATED_MOTION for a motion that is not supported with external axes of
+    the given kinds.
+    """
     if motion != "cartesian":
         return
     why = (
@@ -238,7 +245,7 @@ def _own_remarks(program: Program, off: float) -> Iterator[str]:
 
 
 def _meaning(program: Program) -> Iterator[str]:
-    """What the numbers of a job mean, which its own words do not tell."""
+    """The meaning of the numbers of a job, which its own words do not give."""
     external = [f"E{number + 1}" for number in range(len(program.external_kinds))]
     for axis, slides, count in zip(
         [*AXES, *external], program.slides.tolist(), program.pulses_per_degree, strict=True
@@ -256,7 +263,7 @@ def _remark(text: str) -> list[str]:
 class _Words:
     """The words of each move behind its position, asked for in the order of motion.
 
-    off: by what share of it the speed of a joint move of a bead is off at most, for the steps of VJ.
+    off: largest relative error of the speed of a joint move of a bead, from the steps of VJ.
     """
 
     def __init__(self, program: Program) -> None:
@@ -266,31 +273,33 @@ class _Words:
 
     def __call__(self, moves: Moves) -> Sequence[str]:
         values = pulses(self.program, moves.joints) / np.array(self.program.pulses_per_degree)
-        shown = np.where(self.program.slides, values, np.radians(values))
-        start = shown[:1] if self.before is None else self.before
+        displayed = np.where(self.program.slides, values, np.radians(values))
+        start = displayed[:1] if self.before is None else self.before
         if moves.interpolation == LINEAR_MOVE:
             speeds = _path_speeds(self.program, moves)
         else:
             percent = _percent(
-                self.program, moves, np.diff(shown, axis=0, prepend=start), self.before is None
+                self.program, moves, np.diff(displayed, axis=0, prepend=start), self.before is None
             )
             speeds = [f"VJ={share:.2f}" for share in percent.tolist()]
             if moves.kind == DEPOSIT:
                 self.off = max(self.off, float(np.abs(np.round(percent, 2) / percent - 1.0).max()))
-        self.before = shown[-1:]
+        self.before = displayed[-1:]
         levels = np.where(moves.stops, 0, self.level).tolist()
         return [f"{speed} PL={level}" for speed, level in zip(speeds, levels, strict=True)]
 
 
-def _percent(program: Program, moves: Moves, steps: Array, first: bool) -> Array:
-    """Of the largest joint speeds, (n,): the axis that takes longest gets through its step in the time of the move."""
+def _percent(program: Program, moves: Moves, steps: Array, is_first: bool) -> Array:
+    """Percent of the largest joint speeds, (n,): the axis that takes longest gets through its step
+    in the time of the move.
+    """
     share = (np.abs(steps) / np.array(program.max_speed)).max(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         percent = 100.0 * share / moves.duration
     wrong = (share > 0.0) & ~(percent <= 100.0 + 0.5 * STEP_PERCENT)
     if moves.kind == DEPOSIT:
         wrong |= percent < LEAST_PERCENT
-    if first:
+    if is_first:
         wrong[0] = False
     if wrong.any():
         raise InputError(
@@ -303,15 +312,15 @@ def _percent(program: Program, moves: Moves, steps: Array, first: bool) -> Array
             LEAST_PERCENT,
         )
     percent = np.where(share > 0.0, np.clip(percent, STEP_PERCENT, 100.0), 100.0)
-    if first:
+    if is_first:
         percent[0] = 100.0 * FIRST_SHARE
     return np.asarray(percent, dtype=np.float64)
 
 
 def _path_speeds(program: Program, moves: Moves) -> list[str]:
     unit, decimals = UNITS[program.speed_unit]
-    least = 10.0**-decimals * unit
-    fits = (moves.speed >= least) & (moves.speed <= FASTEST)
+    min_speed = 10.0**-decimals * unit
+    fits = (moves.speed >= min_speed) & (moves.speed <= FASTEST)
     if not fits.all():
         raise InputError(
             "MOVE_SPEED",
@@ -319,7 +328,7 @@ def _path_speeds(program: Program, moves: Moves) -> list[str]:
             "{:.4g} mm/s cannot be written in {}; use {:.3g} to {:.0f} mm/s",
             moves.speed[~fits][0],
             program.speed_unit,
-            least,
+            min_speed,
             FASTEST,
         )
     return [f"V={speed:.{decimals}f}" for speed in (moves.speed / unit).tolist()]
@@ -351,6 +360,13 @@ def _instructions(program: Program, block: Block) -> list[str]:
 
 def _timer(seconds: float) -> list[str]:
     """Standing still for a time, to 0.01 s; nothing for no time."""
-    hundredths, most = max(round(100.0 * seconds), int(seconds > 0.0)), round(100.0 * LONGEST_WAIT)
-    whole, rest = divmod(hundredths, most)
-    return [f"TIMER T={step / 100.0:.2f}" for step in (*(most,) * whole, rest) if step]
+    hundredths, max_hundredths = (
+        max(round(100.0 * seconds), int(seconds > 0.0)),
+        round(100.0 * LONGEST_WAIT),
+    )
+    full_waits, remainder = divmod(hundredths, max_hundredths)
+    return [
+        f"TIMER T={step / 100.0:.2f}"
+        for step in (*(max_hundredths,) * full_waits, remainder)
+        if step
+    ]

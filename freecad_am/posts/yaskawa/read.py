@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads INFORM jobs back: what the controller would do, from the text alone.
+"""Reads INFORM jobs back: the behaviour of the controller, from nothing but the text.
 
-Shares nothing with the writer. How many pulses there are to a degree, and the unit of V, are what the text's own remarks
-say. Understands the plain instructions a path needs and refuses every other one, so that no motion can hide in what was
-not understood.
+Shares nothing with the writer. The pulses per degree and the unit of V come from the text's own
+remarks. Understands the plain instructions a path needs and refuses every other one, so that no
+motion can hide in unknown text.
 """
 
 from __future__ import annotations
@@ -50,29 +50,32 @@ _LAYER = re.compile(r"'layer (\d+)$")
 _PER_UNIT = re.compile(r"'pulses/(deg [SLURBT]|(?:deg|mm) E[1-7]) (-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)$")
 _UNIT = re.compile(r"'V in (mm/s|cm/min|mm/min)$")
 _MM_PER_S = {"mm/s": 1.0, "cm/min": 10.0 / 60.0, "mm/min": 1.0 / 60.0}
-_OWN = 6  # axes of a robot
+_ROBOT_AXES = 6  # axes of a robot
 _LINE = 34  # characters of a remark with its sign, and one
 
 
 @dataclass
 class _Job:
-    """One job: its tool, its positions (n, 6, that of a track, and those of a station) in pulses, and its lines from NOP to
-    END with the number of the first; whether there is a track in its group, and the station there, '' for none."""
+    """One job: its tool, its positions (n, 6 + track + station) in pulses, and its lines from NOP
+    to END with the number of the first; whether its group has a track, and its station, '' for
+    none.
+    """
 
     file: str
     tool: float
     points: Array
     lines: list[str]
-    first: int
+    first_line: int
     track: bool
     station: str
 
 
 @dataclass
 class _Run:
-    """What happened so far while the jobs are followed. moves: of each share, V, corner level and tool, and pulses; beside:
-    track and station of all moves, None before the first; per_unit: pulses to a degree or a mm of axes, and slides those
-    that are told in mm."""
+    """The state while the jobs are followed. moves: share, V, corner level and tool, and pulses of
+    each; beside: track and station of all moves, None before the first; per_unit: pulses per degree
+    or mm of axes, and slides the axes in mm.
+    """
 
     moves: array[float] = field(default_factory=lambda: array("d"))
     deposit: bytearray = field(default_factory=bytearray)
@@ -97,7 +100,7 @@ _WORDS = 4  # of a move besides its pulses
 
 
 def unreadable(where: str, why: str) -> InputError:
-    """What is raised for a text that is not understood."""
+    """The error for a text that is not understood."""
     return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)
 
 
@@ -135,11 +138,9 @@ def _moves(run: _Run) -> ReadMoves:
         np.array([axis in run.slides for axis in names]),
     )
     pulses = table[:, _WORDS:]
-    if (
-        slides.any()
-    ):  # the track stands before the station in a job, wherever its axis is among them
-        track, at = pulses[:, _OWN], int(np.argmax(slides))
-        pulses = np.insert(np.delete(pulses, _OWN, axis=1), at, track, axis=1)
+    if slides.any():  # the track comes before the station in a job, independent of its axis number
+        track, column = pulses[:, _ROBOT_AXES], int(np.argmax(slides))
+        pulses = np.insert(np.delete(pulses, _ROBOT_AXES, axis=1), column, track, axis=1)
     values, per_mm = pulses / per_unit, float(np.abs(per_unit[slides]).min(initial=np.inf))
     share, path, level, tool = table[:, :_WORDS].T
     linear = np.isfinite(path)
@@ -181,21 +182,22 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
         or lines[-2:] != ["END", ""]
     ):
         raise unreadable(file, "it is not a job from /JOB to END")
-    points, at, tool = int(count[1]), 4, float("nan")
+    points, line_index, tool = int(count[1]), 4, float("nan")
     values = np.zeros((points, 6))
     if points:
-        chosen = _TOOL.match(lines[4])
-        if chosen is None or lines[5:7] != ["///POSTYPE PULSE", "///PULSE"]:
+        tool_match = _TOOL.match(lines[4])
+        if tool_match is None or lines[5:7] != ["///POSTYPE PULSE", "///PULSE"]:
             raise unreadable(f"{file} line 5", "its positions are not pulses of one tool")
-        tool, at = float(chosen[1]), 7
-        for number, line in enumerate(lines[at : at + points]):
+        tool, line_index = float(tool_match[1]), 7
+        for number, line in enumerate(lines[line_index : line_index + points]):
             point = _POINT.match(line)
             if point is None or int(point[1]) != number:
                 raise unreadable(
-                    f"{file} line {at + number + 1}", Text("{!r} is not position {}", line, number)
+                    f"{file} line {line_index + number + 1}",
+                    Text("{!r} is not position {}", line, number),
                 )
             values[number] = [float(value) for value in point.groups()[1:]]
-        at += points
+        line_index += points
     counts = {letters: int(number) for letters, number in zip(_EXTERNAL, count.groups()[1:])}
     for letters, external in counts.items():
         if external not in (0, points):
@@ -204,27 +206,36 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
                 "not every position has one of the external axes, or these are alone",
             )
         values = (
-            np.hstack([values, _external_pulses(file, letters, lines[at : at + external], at)])
+            np.hstack(
+                [
+                    values,
+                    _external_pulses(
+                        file, letters, lines[line_index : line_index + external], line_index
+                    ),
+                ]
+            )
             if external
             else values
         )
-        at += external
+        line_index += external
     for number, pattern in enumerate(_INST):
-        if at + number >= len(lines) or not re.fullmatch(pattern, lines[at + number]):
+        if line_index + number >= len(lines) or not re.fullmatch(
+            pattern, lines[line_index + number]
+        ):
             raise unreadable(
-                f"{file} line {at + number + 1}",
+                f"{file} line {line_index + number + 1}",
                 "the instructions do not begin as those of a robot's job do",
             )
-    first = at + len(_INST)
-    group = _GROUP.match(lines[first - 2])
+    first_index = line_index + len(_INST)
+    group = _GROUP.match(lines[first_index - 2])
     track, station = (bool(group[1]), group[2] or "") if group else (False, "")
     if points and (track, bool(station)) != (counts["BC"] > 0, counts["EC"] > 0):
-        raise unreadable(f"{file} line {first - 1}", "its group is not that of its positions")
-    return name[1], _Job(file, tool, values, lines[first:-2], first + 1, track, station)
+        raise unreadable(f"{file} line {first_index - 1}", "its group is not that of its positions")
+    return name[1], _Job(file, tool, values, lines[first_index:-2], first_index + 1, track, station)
 
 
-def _external_pulses(file: str, letters: str, lines: list[str], at: int) -> Array:
-    """(n, k) pulses of a track or a station at the positions, told on lines after number `at`."""
+def _external_pulses(file: str, letters: str, lines: list[str], line_index: int) -> Array:
+    """(n, k) pulses of a track or a station at the positions, on lines after number `line_index`."""
     rows: list[list[float]] = []
     for number, line in enumerate(lines):
         point = _EXTERNAL[letters].match(line)
@@ -234,7 +245,7 @@ def _external_pulses(file: str, letters: str, lines: list[str], at: int) -> Arra
             or (rows and len(rows[0]) != point[2].count(",") + 1)
         ):
             raise unreadable(
-                f"{file} line {at + number + 1}",
+                f"{file} line {line_index + number + 1}",
                 Text("{!r} is not position {} of {}", line, number, letters),
             )
         rows.append([float(value) for value in point[2].split(",")])
@@ -242,12 +253,12 @@ def _external_pulses(file: str, letters: str, lines: list[str], at: int) -> Arra
 
 
 def _axes(count: int) -> list[str]:
-    """What the axes are called, those of the robot and of a station."""
-    return [*"SLURBT", *(f"E{number + 1}" for number in range(count - _OWN))]
+    """Names of the axes of the robot and of a station."""
+    return [*"SLURBT", *(f"E{number + 1}" for number in range(count - _ROBOT_AXES))]
 
 
 def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...]) -> None:
-    """Carry out the lines of a job in order, and of those it calls."""
+    """Carry out the lines of a job in order, and of jobs it calls."""
     job = jobs[name]
     if name in callers:
         raise unreadable(job.file, "it calls itself")
@@ -267,7 +278,7 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
         _UNIT.match(line) for line in job.lines
     ):
         raise unreadable(job.file, "it does not say what unit V has")
-    for number, text in enumerate(job.lines, job.first):
+    for number, text in enumerate(job.lines, job.first_line):
         where = f"{job.file} line {number}"
         if text.startswith("MOV"):
             _move(job, text, run, where)
@@ -284,8 +295,8 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
             _weave(weave, run, where)
         elif timer := _TIMER.match(text):
             run.happens("wait", float(timer[1]), digits=0.5 * 10.0 ** -len(timer[2]))
-        elif given := _INPUT.match(text):
-            run.happens("input", float(given[1]))
+        elif wait := _INPUT.match(text):
+            run.happens("input", float(wait[1]))
         elif call := _CALL.match(text):
             if call[1] in jobs:
                 _follow(call[1], jobs, run, (*callers, name))
@@ -314,17 +325,19 @@ def _weave(weave: re.Match[str], run: _Run, where: str) -> None:
 
 
 def _remark(text: str, run: _Run, where: str) -> None:
-    """What remarks say of the numbers, the same in all jobs, and where layers begin."""
+    """Read a remark: the meaning of the numbers, equal in all jobs, or the start of a layer."""
     if layer := _LAYER.match(text):
         run.happens("layer", float(layer[1]))
     elif ratio := _PER_UNIT.match(text):
-        of, axis = ratio[1].split()
+        unit_name, axis = ratio[1].split()
         if (
             run.per_unit.setdefault(axis, float(ratio[2])) != float(ratio[2])
             or float(ratio[2]) == 0.0
         ):
-            raise unreadable(where, Text("the pulses per {} of {} differ, or are none", of, axis))
-        run.slides |= {axis} if of == "mm" else set()
+            raise unreadable(
+                where, Text("the pulses per {} of {} differ, or are none", unit_name, axis)
+            )
+        run.slides |= {axis} if unit_name == "mm" else set()
     elif unit := _UNIT.match(text):
         if run.unit not in ("", unit[1]):
             raise unreadable(where, "V has two units")

@@ -23,9 +23,9 @@ def pulses(program: Program, joints: Array) -> Integers:
     return counts
 
 
-def job(program: Program, name: str, head: Sequence[str], pieces: Sequence[Piece]) -> bytes:
+def job(program: Program, name: str, head: Sequence[str], entries: Sequence[Piece]) -> bytes:
     """A whole file. head: lines before the first instruction."""
-    runs = [piece for piece in pieces if isinstance(piece, Run)]
+    runs = [entry for entry in entries if isinstance(entry, Run)]
     texts = [pulses(program, run.moves.joints[run.start : run.stop]) for run in runs]
     rows = np.concatenate(texts) if texts else np.zeros((0, len(program.slides)), dtype=np.int64)
     turning = ~program.slides[len(AXES) :]
@@ -42,16 +42,19 @@ def job(program: Program, name: str, head: Sequence[str], pieces: Sequence[Piece
         for number, row in enumerate(values.tolist())
     ]
     lines, point = ["NOP", *head], 0
-    for piece in pieces:
-        if isinstance(piece, Run):
-            letter = "L" if piece.moves.interpolation == LINEAR_MOVE else "J"
-            words = piece.words[piece.start : piece.stop]
+    for entry in entries:
+        if isinstance(entry, Run):
+            letter = "L" if entry.moves.interpolation == LINEAR_MOVE else "J"
+            words = entry.words[entry.start : entry.stop]
             numbers = [f"{point + k:05d}" for k in range(len(words))]
-            named = [" ".join(f"{letters}{one}" for letters in columns) for one in numbers]
-            lines += [f"MOV{letter} {one} {word}" for one, word in zip(named, words, strict=True)]
-            point += len(piece)
+            named = [
+                " ".join(f"{letters}{number_text}" for letters in columns)
+                for number_text in numbers
+            ]
+            lines += [f"MOV{letter} {text} {word}" for text, word in zip(named, words, strict=True)]
+            point += len(entry)
         else:
-            lines += piece
+            lines += entry
     group = ",".join(
         [
             "///GROUP1 RB1",
