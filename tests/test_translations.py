@@ -455,5 +455,5 @@ def test_a_missing_input_is_told_in_french(stages, told):
         == f"Feature manque{NO_BREAK}; choisissez l'élément à déposer"
     )
     for link in (link for stage in collect.STAGES for link in stage.links if link.required):
-        text = told(Text("{} is missing; choose {}", link.name, link.wanted))
-        assert text.startswith(f"{link.name} manque") and link.wanted not in text
+        text = told(Text("{} is missing; choose {}", link.name, link.help_phrase))
+        assert text.startswith(f"{link.name} manque") and link.help_phrase not in text

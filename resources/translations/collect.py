@@ -174,7 +174,7 @@ class Collected:
             self.messages.setdefault(link.help, place)
             self.properties.setdefault(link.help, place)
             if link.required:  # 'Cell is missing; choose the cell that runs it'
-                self.messages.setdefault(link.wanted, place)
+                self.messages.setdefault(link.help_phrase, place)
         for section in stage.sections:
             self.messages.setdefault(section.group, place)
             for row in rows(section.cls):

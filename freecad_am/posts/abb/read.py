@@ -96,7 +96,7 @@ def _load(
 ) -> None:
     """A part is loaded, run and removed by the next lines; the robot must not deposit meanwhile."""
     number, called = next(lines, (0, ""))
-    name, loaded = _RUN.match(called), run.found.get(part_name.lower())
+    name, loaded = _RUN.match(called), run.modules.get(part_name.lower())
     if name is None:
         place_of_line = f"{module.file} line {number}"
         raise unreadable(
@@ -138,7 +138,7 @@ def _other(line: str, run: Run, where: str) -> None:
     elif (call := _CALL.match(line)) and call[1].upper() not in INSTRUCTIONS:
         if any(
             call[1].lower() in (module.routine.lower(), module.name)
-            for module in run.found.values()
+            for module in run.modules.values()
         ):
             raise unreadable(
                 where,
