@@ -50,10 +50,11 @@ def make_scan(
     measured = point_file.read(file, unit)
     scan_checks.refuse_size(measured.points, measured.label, body)
     asked = fit == BEST or (
-        fit == AUTO and scan_checks.near(measured.points, body, within) < scan_checks.LEAST_ON_PART
+        fit == AUTO
+        and scan_checks.share_near(measured.points, body, within) < scan_checks.LEAST_ON_PART
     )
     if asked and not pairs:
-        motion = scan_motion.aligned(measured.points, body, measured.label)
+        motion = scan_motion.align_scan(measured.points, body, measured.label)
         pairs = scan_motion.as_pairs(motion, scan_checks.extent(body.vertices))
     values = {"fit": NONE, "unit": unit, "pairs": pairs}
     with one_step(doc, f"Make {label}"):

@@ -14,7 +14,7 @@ from ..core.geometry.curves.profile import RevolvedWall
 from ..core.geometry.file_content import digest
 from ..core.geometry.located import is_there
 from ..core.inspection import inspect, point_file, surfaces, table
-from ..core.inspection.planned import Planned, of_triangles
+from ..core.inspection.planned import Planned, triangle_surface
 from ..core.issues import InputError, Text
 from ..core.parameters.inspection import InspectionParameters
 from ..core.parameters.process import ProcessParameters
@@ -170,7 +170,7 @@ def file_of(obj: Any) -> str:
 
 def _digest(path: str, where: str) -> str:
     try:
-        return digest(path, point_file.LARGEST, "BAD_FILE", where)
+        return digest(path, point_file.MAX_FILE_MB, "BAD_FILE", where)
     except (OSError, ValueError) as error:
         why = (getattr(error, "strerror", None) or str(error)).lower()
         raise InputError(
@@ -193,17 +193,17 @@ def _shape_surface(target: Any) -> Callable[[], Planned]:
 
     def mesh_surface() -> Planned:
         body = source.body()
-        return of_triangles(source.label, body.vertices, body.triangles)
+        return triangle_surface(source.label, body.vertices, body.triangles)
 
     def shape_surface() -> Planned:
         faces = skin(source.shape.copy(False), source.label)
-        return of_triangles(
+        return triangle_surface(
             source.label,
             faces.vertices,
             faces.triangles,
             exact=faces.exact,
             chord=faces.deflection,
-            most=FACES_FITTED,
+            max_points=FACES_FITTED,
         )
 
     return mesh_surface if source.shape is None else shape_surface

@@ -93,9 +93,9 @@ def test_a_fitted_wall_is_held_against_its_faces_once_it_is_fitted(doc, tmp_path
     assert promise.ok and promise.worst < 0.12 and "less what a scan moved" in promise.how
     few, promise = toolpath(-4.6)  # 24 mm lead back 4.8 mm, a fifth of them
     assert "SCAN_REMAINS" in {issue.code for issue in few.issues} and promise.ok is False
-    moved = fit_layers.moved
+    moved = fit_layers.move_bead
     monkeypatch.setattr(
-        fit_layers, "moved", lambda one, share, *more: moved(one, 2.0 * share, *more)
+        fit_layers, "move_bead", lambda one, share, *more: moved(one, 2.0 * share, *more)
     )
     wrong, promise = toolpath(-1.0)
     (issue,) = [issue for issue in wrong.issues if issue.code == "OFF_PART"]

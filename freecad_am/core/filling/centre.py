@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads in what other beads leave open: along the middle of it, until no gap is wider than stated."""
+"""Beads in the gaps between other beads: along their middle, until no gap is wider than stated."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .curve import Beads, PlaneCurve
 
 ROUNDS = 12  # of beads within one gap
 FINE = 0.04  # of the spacing, mm between the places that the middle is found from
-LONGER = 8  # attempts to make a bead long enough
+MAX_EXTENSIONS = 8  # attempts to make a bead long enough
 COARSE = 0.01  # of the gap; what is open is found no finer
 NETWORK = 12.0  # squares of half a bead's width: a region that large, without room for contours, is not a dot but ribs
 RIB = 0.6  # of a bead's width; what stands out thicker than that in the mean is a rib
@@ -36,32 +36,33 @@ ENDS = 0.5  # of the gap; a bead in it ends where it is that narrow
 def centre_beads(
     gaps: Sequence[Region], beads: Beads, ring: int, inner: Sequence[Region], kind: str = "centre"
 ) -> list[PlaneCurve]:
-    """Open beads along the middle of gaps, or closed ones where those go round; no gap stays wider than stated.
+    """Open beads along the middle of gaps, or closed ones in gaps that go round; no gap stays wider than stated.
 
-    inner: where the middles of beads may lie; beads are moved there, and those too short go on in there until they are long
-    enough.
+    inner: allowed positions of bead middles; beads are moved there, and short ones extended in there until they are long enough.
     """
-    found: list[PlaneCurve] = []
+    curves: list[PlaneCurve] = []
     for _ in range(ROUNDS):
         gaps = select_wider(gaps, beads.gap, beads.chord_error)
-        rest: list[Region] = []
+        remaining: list[Region] = []
         for region in gaps:
             points, closed = _spine(region, beads, 0.5 * ENDS * beads.gap)
             points = moved(points if len(points) > 1 else _dab(region, beads), inner)
             if not closed:
                 points = _lengthened(points, beads, inner)
-            found.append(PlaneCurve(points, closed, kind, ring))
-            rest += region.without(
+            curves.append(PlaneCurve(points, closed, kind, ring))
+            remaining += region.without(
                 along([(points, closed)], 0.5 * beads.spacing, beads.chord_error), beads.gap
             )
-        gaps = rest
+        gaps = remaining
         if not gaps:
             break
-    return found
+    return curves
 
 
-def left_open(curves: Sequence[PlaneCurve], inner: Sequence[Region], beads: Beads) -> list[Region]:
-    """What curves leave open, wider than the gap allowed, of what beads can reach with their middles in `inner`."""
+def open_regions(
+    curves: Sequence[PlaneCurve], inner: Sequence[Region], beads: Beads
+) -> list[Region]:
+    """Regions that curves leave open, wider than the allowed gap, within reach of beads with their middles in `inner`."""
     half, error = 0.5 * beads.spacing, max(beads.chord_error, COARSE * beads.gap)
     lines = [(simplified(curve.points, error, curve.closed), curve.closed) for curve in curves]
     return select_wider(
@@ -71,25 +72,25 @@ def left_open(curves: Sequence[PlaneCurve], inner: Sequence[Region], beads: Bead
     )
 
 
-def closing(
+def closing_beads(
     inner: Sequence[Region],
     curves: Sequence[PlaneCurve],
     beads: Beads,
     ring: int,
     ends: Sequence[Region] = (),
 ) -> list[PlaneCurve]:
-    """Beads in what other beads leave open of what beads can reach with their middles in `inner`, and of that without the
-    ends, `lines.Frame`, that lines fill."""
-    gaps = left_open(curves, inner, beads)
+    """Beads in the gaps within reach of beads with their middles in `inner`, except the ends, `lines.Frame`, that lines fill."""
+    gaps = open_regions(curves, inner, beads)
     if ends:
         gaps = select_wider(subtract_regions(gaps, ends), beads.gap, beads.chord_error)
     return centre_beads(gaps, beads, ring, inner, "closing")
 
 
 def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
-    """Beads along the middle of all branches of regions narrower than a bead, of each the longest first; none begins inside
-    of others. InfeasibleError THIN_REGION where none is wanted."""
-    found: list[PlaneCurve] = []
+    """Beads along the middle of the branches of regions narrower than a bead, the longest first; none begins inside of others.
+    InfeasibleError THIN_REGION if beads refuse thin regions.
+    """
+    curves: list[PlaneCurve] = []
     for region in thin:
         if beads.thin == "refuse":
             raise InfeasibleError(
@@ -101,31 +102,31 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
                 region.width,
                 2.0 * beads.inset,
             )
-        before = len(found)
-        rest: Sequence[Region] = (region,)
+        start = len(curves)
+        remaining: Sequence[Region] = (region,)
         if region.width >= beads.thinnest and region.extent < DOT * beads.inset:
             points, closed = _spine(region, beads, 0.15 * region.width)
             if len(points) < 2 or length(points, closed) < beads.shortest:
-                found.append(dot(region, beads))
+                curves.append(dot(region, beads))
                 continue
         for _ in range(ROUNDS):
-            parts, rest = rest, []
-            for part in parts:
-                sliver = part.width < SLIVER * beads.chord_error
+            pieces, remaining = remaining, []
+            for piece in pieces:
+                sliver = piece.width < SLIVER * beads.chord_error
                 points, closed = (
-                    _along_border(part) if sliver else _spine(part, beads, 0.15 * part.width)
+                    _along_border(piece) if sliver else _spine(piece, beads, 0.15 * piece.width)
                 )
                 if len(points) > 1 and (
-                    len(found) == before or length(points, closed) >= beads.shortest
+                    len(curves) == start or length(points, closed) >= beads.shortest
                 ):
-                    found.append(PlaneCurve(points, closed, "centre", 0))
-                    rest += part.without(
+                    curves.append(PlaneCurve(points, closed, "centre", 0))
+                    remaining += piece.without(
                         along([(points, closed)], beads.inset, beads.chord_error), beads.gap
                     )
-            # what a bead has ended in, as it narrows, is narrower than the narrowest bead by far; a
-            # threshold that it may lie about would give equal sections different beads
-            rest = select_wider(rest, max(beads.gap, beads.thinnest), beads.chord_error)
-    return found
+            # the narrowing rest at the end of a bead is far narrower than the narrowest bead; a
+            # threshold near its width would give equal sections different beads
+            remaining = select_wider(remaining, max(beads.gap, beads.thinnest), beads.chord_error)
+    return curves
 
 
 def dot(region: Region, beads: Beads) -> PlaneCurve:
@@ -145,62 +146,70 @@ def dot(region: Region, beads: Beads) -> PlaneCurve:
 def bare_parts(
     region: Region, curves: Sequence[PlaneCurve], beads: Beads
 ) -> list[tuple[Region, float]]:
-    """Parts of a region in which no bead lies, as they are too narrow, and how far (mm) each reaches from the beads: more
-    than a bead is wide. All of a region without beads is one."""
+    """Pieces of a region too narrow for any bead, with the distance (mm) each reaches from the beads: more than a bead is wide. A
+    region without beads is one piece.
+    """
     if not curves:
         return [(region, region.extent)]
     lines = [(curve.points, curve.closed) for curve in curves]
     if region.extent < 2.0 * beads.inset or curves[0].dot:
         return []
     reached = along(lines, beads.inset, max(beads.chord_error, COARSE * beads.inset))
-    parts = []
-    for part in region.without(reached, least_area=LEAST_BARE * beads.inset**2):
-        if part.extent <= 2.0 * beads.inset:
+    bare = []
+    for piece in region.without(reached, least_area=LEAST_BARE * beads.inset**2):
+        if piece.extent <= 2.0 * beads.inset:
             continue
-        border = part.borders()[0]
-        out = float(np.min([near.nearest(border)[1] for near in reached], axis=0).max())
+        border = piece.borders()[0]
+        out = float(
+            np.min([covered_region.nearest(border)[1] for covered_region in reached], axis=0).max()
+        )
         if out > 2.0 * beads.inset:
-            parts.append((part, out))
-    return parts
+            bare.append((piece, out))
+    return bare
 
 
 def outermost(
     region: Region, inner: tuple[Region, ...], beads: Beads
 ) -> tuple[tuple[Region, ...], list[PlaneCurve]]:
-    """What of `inner`, where middles of beads may lie, the outermost bead goes round, and beads in what is too thin for
-    that: necks of the region, or all of it. Places that are hardly wider than a bead, as where ribs meet, are left to the
-    beads along the middle of the ribs. InfeasibleError THIN_REGION where none are wanted there."""
+    """The regions of `inner`, the allowed positions of bead middles, inside the outermost bead, and beads in regions too thin for it:
+    necks, or the whole region.
+
+    Places hardly wider than a bead, as where ribs meet, are left to the beads along the middle of the ribs. InfeasibleError
+    THIN_REGION if beads refuse thin regions.
+    """
     if beads.thin != "refuse":
         long = select_longer(inner, beads.shortest)
         inner = long if long or region.area > NETWORK * beads.inset**2 else inner
     if not inner:
         return (), single_beads((region,), beads)
     reached = grow_regions(inner, beads.inset, beads.chord_error)
-    parts, hair = region.without(reached), HAIR_SHARE * beads.chord_error
-    if any(part.extent > beads.inset and len(part.grown(-hair, hair)) > 1 for part in parts):
+    uncovered, hair = region.without(reached), HAIR_SHARE * beads.chord_error
+    if any(piece.extent > beads.inset and len(piece.grown(-hair, hair)) > 1 for piece in uncovered):
         # beads touch the border, where rounding leaves slits that join corners in one section and not
         # in an equal one
         reached = grow_regions(inner, beads.inset + hair, beads.chord_error)
-        parts = region.without(reached)
-    return inner, single_beads([part for part in parts if _is_neck(part, reached, beads)], beads)
+        uncovered = region.without(reached)
+    return inner, single_beads(
+        [piece for piece in uncovered if _is_neck(piece, reached, beads)], beads
+    )
 
 
-def _is_neck(part: Region, reached: Sequence[Region], beads: Beads) -> bool:
-    """Whether a part that beads do not reach joins two places which they do reach, or stands out from one as ribs and blades
-    do: for longer than a bead is wide it is wider than the narrowest bead, or nearly as thick as a bead all along. A corner
-    is shorter."""
-    adjacent = [other for other in reached if other.distance(part) < 2.0 * beads.chord_error]
+def _is_neck(piece: Region, reached: Sequence[Region], beads: Beads) -> bool:
+    """Whether a piece without beads joins two places with beads, or protrudes like ribs and blades: longer than a bead is wide, it is
+    wider than the narrowest bead, or nearly as thick as a bead all along. A corner is shorter.
+    """
+    adjacent = [region for region in reached if region.distance(piece) < 2.0 * beads.chord_error]
     width = 2.0 * beads.inset
     if len(adjacent) != 1:
         return len(adjacent) > 1
-    if part.extent <= width:
+    if piece.extent <= width:
         return False
-    out = float(adjacent[0].nearest(part.borders()[0])[1].max())
+    out = float(adjacent[0].nearest(piece.borders()[0])[1].max())
     if out <= width:
         return False
-    if part.area > RIB * width * max(out, width):
+    if piece.area > RIB * width * max(out, width):
         return True
-    wide = part.grown(-0.5 * beads.thinnest, beads.chord_error)
+    wide = piece.grown(-0.5 * beads.thinnest, beads.chord_error)
     return any(float(adjacent[0].nearest(core.borders()[0])[1].max()) > width for core in wide)
 
 
@@ -212,16 +221,16 @@ def _along_border(region: Region) -> tuple[Array, bool]:
     end = 0
     for _ in range(2):
         start, end = end, int(np.argmax(np.hypot(*(border - border[end]).T)))
-    ways = [
+    paths = [
         np.roll(border, -a, axis=0)[: (b - a) % len(border) + 1]
         for a, b in ((start, end), (end, start))
     ]
-    return min(ways, key=lambda way: length(way, False)), False
+    return min(paths, key=lambda path: length(path, False)), False
 
 
-def _spine(region: Region, beads: Beads, least: float) -> tuple[Array, bool]:
-    step = min(FINE * beads.spacing, 0.4 * least)
-    points, closed = spine(region, least, step)
+def _spine(region: Region, beads: Beads, min_width: float) -> tuple[Array, bool]:
+    step = min(FINE * beads.spacing, 0.4 * min_width)
+    points, closed = spine(region, min_width, step)
     if len(points) > 1:
         points = _smooth(points, closed, 0.2 * beads.chord_error)
         if not closed and tuple(points[-1]) < tuple(points[0]):
@@ -241,10 +250,10 @@ def _smooth(points: Array, closed: bool, tolerance: float) -> Array:
 
 def _dab(region: Region, beads: Beads) -> Array:
     """Two places (2, 2) in the middle of a region too round for a path, along it."""
-    core = max(region.grown(-0.5 * beads.gap, beads.chord_error), key=lambda part: part.area)
+    core = max(region.grown(-0.5 * beads.gap, beads.chord_error), key=lambda region_: region_.area)
     border = region.borders()[0]
-    way = np.linalg.svd(border - border.mean(axis=0), full_matrices=False)[2][0]
-    reach = 0.5 * ENDS * beads.gap * way
+    direction = np.linalg.svd(border - border.mean(axis=0), full_matrices=False)[2][0]
+    reach = 0.5 * ENDS * beads.gap * direction
     ends: Array = core.inside() + np.stack([-reach, reach])
     return ends
 
@@ -252,16 +261,19 @@ def _dab(region: Region, beads: Beads) -> Array:
 def _lengthened(points: Array, beads: Beads, inner: Sequence[Region]) -> Array:
     """An open bead gone on at both ends, along itself and then along the border of its room, until it is long enough; as it
     is where the room is too small."""
-    for _ in range(LONGER):
+    for _ in range(MAX_EXTENSIONS):
         lack = beads.shortest - length(points, False)
         if lack <= 0.0:
             break
         share = np.linspace(0.0, 0.6 * lack, 5)[1:, None]
-        ways = [
+        directions = [
             out / max(float(np.hypot(*out)), 1e-300)
             for out in (points[0] - points[1], points[-1] - points[-2])
         ]
-        ends = [moved(end + share * way, inner) for end, way in zip((points[0], points[-1]), ways)]
+        ends = [
+            moved(end + share * direction, inner)
+            for end, direction in zip((points[0], points[-1]), directions)
+        ]
         longer = simplified(np.vstack([ends[0][::-1], points, ends[1]]), 0.2 * beads.chord_error)
         if length(longer, False) <= length(points, False):
             break

@@ -8,22 +8,22 @@ from dataclasses import dataclass
 from ..geometry.regions.region import Region
 from ..geometry.regions.several import grow_regions, select_longer, shrink_region, subtract_regions
 from .centre import centre_beads, outermost
-from .curve import Beads, PlaneCurve, begun, contours_of
+from .curve import Beads, PlaneCurve, contours_of, start_curve
 
 
 @dataclass(frozen=True)
 class Levels:
-    """regions[k]: those whose borders are the contours k; gaps[k]: what stays open inside of them, where it has room for the
-    gap allowed."""
+    """regions[k]: the regions whose borders are the contours k; gaps[k]: the open regions inside that have room for the allowed gap."""
 
     regions: tuple[tuple[Region, ...], ...]
     gaps: tuple[tuple[Region, ...], ...]
-    thin: list[PlaneCurve]  # beads in what is narrower than a bead
+    thin: list[PlaneCurve]  # beads in regions narrower than a bead
 
 
 def levels(region: Region, inner: tuple[Region, ...], beads: Beads) -> Levels:
-    """The contours of a region, each parallel to its border, not to the contour before, so that errors do not add. Contours
-    too short are left open, for the beads in the middle. inner: where the middles of beads may lie."""
+    """The contours of a region, each parallel to its border, not to the contour before, so that errors do not add. Short contours are
+    left out, for the beads in the middle. inner: allowed positions of bead middles.
+    """
     half, error = 0.5 * beads.spacing, beads.chord_error
     inner, thin = outermost(region, inner, beads)
     regions, gaps = [], []
@@ -41,22 +41,25 @@ def levels(region: Region, inner: tuple[Region, ...], beads: Beads) -> Levels:
 
 def contours(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[PlaneCurve]:
     """Closed contours from outside in, then the beads in their middle. InfeasibleError THIN_REGION, see `Beads`."""
-    found = levels(region, inner, beads)
-    return rounds(found, beads) + centres(found, beads)
+    contour_levels = levels(region, inner, beads)
+    return rounds(contour_levels, beads) + centres(contour_levels, beads)
 
 
-def rounds(found: Levels, beads: Beads) -> list[PlaneCurve]:
+def rounds(contour_levels: Levels, beads: Beads) -> list[PlaneCurve]:
     """The contours, from outside in."""
     return [
-        curve for k, regions in enumerate(found.regions) for curve in contours_of(regions, beads, k)
+        curve
+        for k, regions in enumerate(contour_levels.regions)
+        for curve in contours_of(regions, beads, k)
     ]
 
 
-def centres(found: Levels, beads: Beads) -> list[PlaneCurve]:
-    """The beads in what contours leave open, and in thin places."""
-    curves = list(found.thin)
-    for k, gaps in enumerate(found.gaps):
+def centres(contour_levels: Levels, beads: Beads) -> list[PlaneCurve]:
+    """The beads in the gaps of contours, and in thin places."""
+    curves = list(contour_levels.thin)
+    for k, gaps in enumerate(contour_levels.gaps):
         curves += [
-            begun(curve, beads) for curve in centre_beads(gaps, beads, k + 1, found.regions[0])
+            start_curve(curve, beads)
+            for curve in centre_beads(gaps, beads, k + 1, contour_levels.regions[0])
         ]
     return curves

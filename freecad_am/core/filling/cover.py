@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How well beads, as wide as they are laid, cover a region: what they leave of it, and what of them lies beside it."""
+"""Coverage of a region by its beads: missed area and stray area."""
 
 from __future__ import annotations
 
@@ -17,47 +17,46 @@ from ..types import Array
 from .curve import Beads, PlaneCurve
 from .strip_closing import near_windows
 
-COARSE = 0.01  # of half a bead; beads round a hub are looked at no finer
-DOT = 1e-6  # of a dot's length: of the line that its disc is laid about
+COARSE = 0.01  # of half a bead; finest chord error of beads round a hub
+DOT = 1e-6  # of a dot's length: the line about which its disc is drawn
 SHARES = 0.02  # of a bead's usual width; shares that differ by less are one
 
 Line = tuple[Array, bool]  # points (n, 2), and whether they close
 
 
 class Cover(NamedTuple):
-    """Areas, mm^2: of regions, what beads leave of them, what of beads lies beside them, and what beads cover, in and beside
-    them."""
+    """Areas, mm^2: of regions, their missed area, the stray area of beads, and the area covered inside and outside."""
 
     area: float = 0.0
-    left: float = 0.0
+    missed: float = 0.0
     outside: float = 0.0
     covered: float = 0.0
 
     def scaled(self, share: float) -> Cover:
-        """Of a layer that is not as high as others."""
+        """The cover of a layer with another height, as a share."""
         return Cover(*(share * area for area in self))
 
     def over(self, area: float) -> float:
-        """What of beads of an area, mm^2, lies over other beads."""
+        """Over-deposited area of beads of an area, mm^2."""
         return area - self.covered
 
 
 def total(covers: Sequence[Cover]) -> Cover:
-    """Of all of several regions."""
+    """The sum over several regions."""
     return Cover(*map(math.fsum, zip(*covers))) if covers else Cover()
 
 
-def covered(
+def measure_cover(
     region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads, density: float = 1.0
 ) -> Cover:
-    """How well beads cover a region; what they leave open on purpose, at a density below 1, does not count."""
+    """The cover of a region by beads; areas left open on purpose, at a density below 1, do not count."""
     if isinstance(
         region, Strip
     ):  # window by window; beads of regions round a hub are as wide as usual
         beads = replace(beads, chord_error=max(beads.chord_error, COARSE * beads.inset))
         cover = total(
             [
-                _of_regions(
+                _cover_regions(
                     region.flat(window),
                     [_lines(adjacent, beads.chord_error)],
                     beads,
@@ -67,25 +66,26 @@ def covered(
             ]
         )
     else:
-        cover = _of_regions((region,), [_widths(curve, beads) for curve in curves], beads, ())
-    return cover if density == 1.0 else cover._replace(left=0.0)
+        cover = _cover_regions((region,), [_widths(curve, beads) for curve in curves], beads, ())
+    return cover if density == 1.0 else cover._replace(missed=0.0)
 
 
-def _of_regions(
+def _cover_regions(
     regions: Sequence[Region],
     widths: Sequence[tuple[list[Line], list[float]]],
     beads: Beads,
     pane: Sequence[Region],
 ) -> Cover:
-    """Of regions of the plane, with what lies in a pane of it alone where there is one. widths: lines of beads, and the
-    share of the usual width of each."""
-    lines = [line for some, _ in widths for line in some]
+    """The cover of regions of the plane, limited to a pane if given. widths: lines of beads, and the share of the usual width of
+    each.
+    """
+    lines = [line for region_lines, _ in widths for line in region_lines]
     half = beads.inset * np.array([share for _, shares in widths for share in shares])
-    whole = math.fsum(region.area for region in regions)
+    total_area = math.fsum(region.area for region in regions)
     if not lines:
-        return Cover(whole, whole)
+        return Cover(total_area, total_area)
     inside, area = measure_bands(regions, lines, half, beads.chord_error, pane)
-    return Cover(whole, whole - inside, area - inside, area)
+    return Cover(total_area, total_area - inside, area - inside, area)
 
 
 def _lines(curves: Sequence[PlaneCurve], chord_error: float) -> tuple[list[Line], list[float]]:
@@ -97,8 +97,7 @@ def _lines(curves: Sequence[PlaneCurve], chord_error: float) -> tuple[list[Line]
 
 
 def _widths(curve: PlaneCurve, beads: Beads) -> tuple[list[Line], list[float]]:
-    """A bead in lines along which its width is one, and the share of the usual width of each. A dot is a disc as large as
-    what is fed along it covers."""
+    """A bead as lines of constant width, and the share of the usual width of each. A dot is a disc as large as its fed volume."""
     if curve.dot:
         share = 1.0 if curve.share is None else curve.share[0]
         fed = 2.0 * beads.inset * share * length(curve.points, curve.closed)
@@ -109,7 +108,7 @@ def _widths(curve: PlaneCurve, beads: Beads) -> tuple[list[Line], list[float]]:
         return [(curve.points, curve.closed)], [1.0]
     if np.ptp(curve.share) < SHARES:
         return [(curve.points, curve.closed)], [float(curve.share.mean())]
-    points, share = curve.whole()
+    points, share = curve.closed_points()
     assert share is not None
     level = np.round(0.5 * (share[1:] + share[:-1]) / SHARES)
     starts = np.flatnonzero(np.diff(level, prepend=np.nan))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a filling is made of, and what its patterns share."""
+"""The elements of a filling, and helpers shared by its patterns."""
 
 from __future__ import annotations
 
@@ -17,20 +17,21 @@ NEXT, OVER = (
     0.7548776662,
     0.5698402910,
 )  # of a length: starts of the next contour, of the next layer (the sequence R2)
-THINNEST = 0.6  # of a bead's width; ribs that wide get a bead even where no bead is laid narrower than usual
-LEVEL = 1e-9  # of a ring's extent; points less apart are equally far out
+THINNEST = (
+    0.6  # of a bead's width; ribs that wide get a bead even if all beads have the usual width
+)
+FARTHEST_TOLERANCE = 1e-9  # of a ring's extent; points less apart are equally far out
 
 
 @dataclass(frozen=True, eq=False)
 class PlaneCurve:
     """The middle of a bead: points (n, 2) mm; a closed one does not repeat its first point.
 
-    kind: 'contour', 'connected', 'line', 'spiral', 'zigzag', 'centre' or 'closing'. ring: counts from the outermost contour,
-    0, inwards.
-    turns: how often a closed one goes round the hub, so that behind its last point follows the first, moved on by the period
-    as often. sheet: u (`strip.Period`), mm, about which it lies: on a wide cone it may be more than half a turn of the
-    plane from 0. share: (n,) of its usual width that the bead has at each point; None: all of it. dot: whether it is a short
-    bead in a round place narrower than a bead: what is fed along it spreads to the size of that place.
+    kind: 'contour', 'connected', 'line', 'spiral', 'zigzag', 'centre' or 'closing'. ring: counts from the outermost contour, 0,
+    inwards. turns: how often a closed one goes round the hub, so that its last point is followed by the first, moved by as many
+    periods. sheet: u (`strip.Period`), mm, about which it is unrolled: on a wide cone it may be more than half a turn of the plane
+    from 0. share: (n,) of the usual bead width at each point; None: 1. dot: a short bead in a round place narrower than a bead:
+    the fed volume spreads to the size of that place.
     """
 
     points: Array
@@ -49,8 +50,8 @@ class PlaneCurve:
             points, share = np.roll(points, 1, axis=0), None if share is None else np.roll(share, 1)
         return replace(self, points=points, share=share)
 
-    def whole(self, period: Period | None = None) -> tuple[Array, Array | None]:
-        """Its points and shares; of a closed one the first again at the end, a period on where it goes round."""
+    def closed_points(self, period: Period | None = None) -> tuple[Array, Array | None]:
+        """Points and shares; of a closed curve with the first repeated at the end, a period on if it goes round."""
         if not self.closed:
             return self.points, self.share
         start = self.points[:1]
@@ -61,23 +62,22 @@ class PlaneCurve:
         ]
 
 
-def on_plane(point: Array) -> str:
-    """A place (2,) in words."""
+def plane_text(point: Array) -> str:
+    """A point (2,) as text."""
     return f"({point[0]:.4g}, {point[1]:.4g}) mm"
 
 
 @dataclass(frozen=True, eq=False)
 class Beads:
-    """How a region is filled: what all patterns ask for.
+    """Options for filling a region, shared by all patterns.
 
-    spacing: mm between the middles of neighbouring beads. width: mm of a bead, which the outermost lies half of inside the
-    border; 0: the spacing. gap: the widest (mm) that may stay open between beads.
-    shortest: beads that close gaps go on until they are that long (mm), others below it are dropped. thin: 'single' lays one
-    bead where a region, or a neck of it, is narrower than a bead; 'refuse' refuses. clockwise: sense of closed beads. start:
-    a point (x, y) that closed beads begin nearest to, or the direction (rad) in which they begin farthest out. chord_error:
-    mm, of arcs; 0: 0.005 spacings. where: a place (2,) in words. spread: by what share of its length the outermost closed
-    bead begins behind `start`, those inside of it by ever other ones; None: none does. narrowest: share of the width that
-    no bead is laid below.
+    spacing: mm between the middles of neighbouring beads. width: mm of a bead; the outermost is half a width inside the border;
+    0: the spacing. gap: the widest (mm) that may stay open between beads. shortest: beads that close gaps are extended to this
+    length (mm), others below it are dropped. thin: 'single' deposits one bead in regions, or necks, narrower than a bead;
+    'refuse' rejects them. clockwise: sense of closed beads. start: a point (x, y) near which closed beads begin, or the direction
+    (rad) in which they begin farthest out. chord_error: mm, of arcs; 0: 0.005 spacings. where: a point (2,) as text. spread: share
+    of its length by which the outermost closed bead begins behind `start`, inner ones at further ones; None: none does.
+    narrowest: least share of the width of a bead.
     """
 
     spacing: float
@@ -87,19 +87,19 @@ class Beads:
     clockwise: bool = False
     start: tuple[float, float] | float = 0.0
     chord_error: float = 0.0
-    where: Callable[[Array], str] = on_plane
+    where: Callable[[Array], str] = plane_text
     width: float = 0.0
     spread: float | None = None
     narrowest: float = 0.3
 
     @property
     def inset(self) -> float:
-        """How far (mm) inside the border the middle of the outermost bead lies."""
+        """Distance (mm) of the middle of the outermost bead from the border."""
         return 0.5 * (self.width or self.spacing)
 
     @property
     def thinnest(self) -> float:
-        """How narrow (mm) ribs and round places may be for a bead to be laid in them."""
+        """Least width (mm) of ribs and round places that get a bead."""
         return 2.0 * self.inset * min(self.narrowest, THINNEST)
 
     def __post_init__(self) -> None:
@@ -116,24 +116,26 @@ class Beads:
             object.__setattr__(self, "chord_error", 0.005 * self.spacing)
 
     def ring(self, points: Array, number: int = 0) -> Array:
-        """A ring (n, 2) with the sense and the start asked for; number: of contours outside of it."""
+        """A ring (n, 2) with the requested sense and start; number: of contours outside."""
         turned = points[::-1] if (doubled_area(points) < 0.0) != self.clockwise else points
-        begun = start_at(turned, self.start_of(turned))
+        started = start_at(turned, self.start_of(turned))
         behind = 0.0 if self.spread is None else (self.spread + NEXT * number) % 1.0
         if behind == 0.0:
-            return begun
-        whole = np.vstack([begun, begun[:1]])
-        return start_at(begun, cut_at_length(whole, behind * length(begun, True))[-1])
+            return started
+        loop = np.vstack([started, started[:1]])
+        return start_at(started, cut_at_length(loop, behind * length(started, True))[-1])
 
     def start_of(self, points: Array) -> Array:
         """The place (2,) that a ring should begin nearest to."""
         if isinstance(self.start, tuple):
             return np.array(self.start, dtype=float)
-        way = np.array([np.cos(self.start), np.sin(self.start)])
-        out, aside = points @ way, points @ np.array([-way[1], way[0]])
-        far = np.flatnonzero(out >= out.max() - LEVEL * max(np.ptp(out), np.ptp(aside)))
-        found: Array = points[far[np.argmax(aside[far])]]
-        return found
+        direction = np.array([np.cos(self.start), np.sin(self.start)])
+        out, aside = points @ direction, points @ np.array([-direction[1], direction[0]])
+        farthest = np.flatnonzero(
+            out >= out.max() - FARTHEST_TOLERANCE * max(np.ptp(out), np.ptp(aside))
+        )
+        point: Array = points[farthest[np.argmax(aside[farthest])]]
+        return point
 
 
 def long_enough(curves: list[PlaneCurve], shortest: float) -> list[PlaneCurve]:
@@ -148,7 +150,7 @@ def long_enough(curves: list[PlaneCurve], shortest: float) -> list[PlaneCurve]:
     ]
 
 
-def begun(curve: PlaneCurve, beads: Beads) -> PlaneCurve:
+def start_curve(curve: PlaneCurve, beads: Beads) -> PlaneCurve:
     """A closed curve with the sense and start asked for; an open one as it is."""
     return (
         replace(curve, points=beads.ring(curve.points, curve.ring))
@@ -157,17 +159,17 @@ def begun(curve: PlaneCurve, beads: Beads) -> PlaneCurve:
     )
 
 
-def contours_of(parts: Sequence[Strip | Region], beads: Beads, ring: int) -> list[PlaneCurve]:
+def contours_of(regions: Sequence[Strip | Region], beads: Beads, ring: int) -> list[PlaneCurve]:
     """The borders of regions and strips as contours."""
     curves = []
-    for part in parts:
-        if isinstance(part, Region):
+    for region in regions:
+        if isinstance(region, Region):
             curves += [
-                PlaneCurve(border, True, "contour", ring, sheet=part.sheet)
-                for border in part.borders()
+                PlaneCurve(border, True, "contour", ring, sheet=region.sheet)
+                for border in region.borders()
             ]
             continue
-        for border, turns in part.borders():
+        for border, turns in region.borders():
             against = turns != 0 and (turns < 0) != beads.clockwise
             curves.append(
                 PlaneCurve(
@@ -178,4 +180,4 @@ def contours_of(parts: Sequence[Strip | Region], beads: Beads, ring: int) -> lis
                     -turns if against else turns,
                 )
             )
-    return [begun(curve, beads) for curve in curves]
+    return [start_curve(curve, beads) for curve in curves]

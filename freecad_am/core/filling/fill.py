@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One way into all patterns, and what they share: where the middles of beads may lie, what is too thin for that, walls,
-beads that close gaps, none too short."""
+"""One entry to all patterns, with their common steps: room for bead middles, thin regions, walls, gap-closing beads, short beads."""
 
 from __future__ import annotations
 
@@ -12,8 +11,8 @@ from ..geometry.regions.strip import Strip
 from ..issues import InputError
 from ..types import Array
 from .balanced_ring import balanced
-from .centre import closing, left_open
-from .connected import connected
+from .centre import closing_beads, open_regions
+from .connected import connect_contours
 from .contours import contours
 from .curve import Beads, PlaneCurve, long_enough
 from .lines import frame, lines
@@ -39,7 +38,7 @@ CURVED = (
     "connected",
     "spiral",
 )  # without walls: the border's parallel curves are all they have
-WHOLE = Infill()
+SOLID = Infill()
 LINK = 3.0  # of the spacing
 Gaps = list[tuple[Array, float]]  # a place (2,) in each, and how wide it is, mm
 
@@ -51,15 +50,28 @@ def fill(
     angle: float = 0.0,
     walls: float = 0,
     longest_link: float = 0.0,
-    infill: Infill = WHOLE,
+    infill: Infill = SOLID,
 ) -> tuple[PlaneCurve, ...]:
     """The beads that fill a region in one of PATTERNS, from outside in.
 
-    angle (rad) is for lines and zigzags, longest_link (mm, by default 3 spacings) for these; walls: how many contours lie
-    round the others, infinity for contours alone. Grid, triangles, honeycomb and gyroid are lines where the whole is filled.
-    Round a hub, lines run round it where the angle is nearer to that and along it otherwise; all that is not contours or
-    spirals, which are contours there, is lines. InputError PATTERN for another pattern, InfeasibleError THIN_REGION,
-    InputError MISSING_LIBRARY.
+    Grid, triangles, honeycomb and gyroid are lines if the whole is filled. Round a hub, lines run round it if the angle is nearer
+    to that and along it otherwise; spirals are contours there, and every other pattern is lines.
+
+    Parameters
+    ----------
+    angle
+        rad, of lines and zigzags.
+    walls
+        Number of contours round the others, infinity for contours only.
+    longest_link
+        mm, of lines and zigzags, by default 3 spacings.
+
+    Raises
+    ------
+    InputError
+        PATTERN for another pattern, MISSING_LIBRARY.
+    InfeasibleError
+        THIN_REGION.
     """
     if pattern not in PATTERNS:
         raise InputError(
@@ -70,7 +82,7 @@ def fill(
             ", ".join(PATTERNS),
         )
     if pattern not in CURVED and math.isinf(walls):
-        pattern, infill = "contours", WHOLE
+        pattern, infill = "contours", SOLID
     if isinstance(region, Strip):
         inner = region.grown(-beads.inset, beads.chord_error)
         if pattern in CURVED or not inner:
@@ -83,7 +95,7 @@ def fill(
         return tuple(long_enough(curves, beads.shortest))
     inner = region.grown(-beads.inset, beads.chord_error)
     if pattern in CURVED and infill.density == 1.0:
-        curves = {"contours": contours, "connected": connected, "spiral": spiral}[pattern](
+        curves = {"contours": contours, "connected": connect_contours, "spiral": spiral}[pattern](
             region, inner, beads
         )
     else:
@@ -93,7 +105,7 @@ def fill(
         curves = framed.thin + framed.curves
         if infill.density == 1.0:
             curves += lines(framed, beads, angle, rounds, link)
-            curves += closing(inner, curves, beads, rounds)
+            curves += closing_beads(inner, curves, beads, rounds)
         else:
             curves += sparse(framed, inner, beads, pattern, angle, rounds, link, infill)
     curves = long_enough(curves, beads.shortest)
@@ -101,8 +113,7 @@ def fill(
 
 
 def open_places(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads) -> Gaps:
-    """Places (2,) that beads leave open of what beads inside can reach, and how wide (mm) each is, more than the gap
-    allowed."""
+    """Points (2,) left open within reach of the beads inside, and the width (mm) of each gap, more than the allowed one."""
     if isinstance(region, Strip):
         return [
             (region.moved_back(window, gap.inside()[None])[0][0], gap.width)
@@ -110,4 +121,6 @@ def open_places(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Bea
             for gap in gaps
         ]
     inner = region.grown(-beads.inset, beads.chord_error)
-    return [(gap.inside(), gap.width) for gap in left_open(curves, inner, beads)] if inner else []
+    return (
+        [(gap.inside(), gap.width) for gap in open_regions(curves, inner, beads)] if inner else []
+    )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Closed curves by arc length, and where two of them run side by side."""
+"""Closed curves by arc length, and the places where two of them run side by side."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from scipy.spatial import cKDTree
 from ..geometry.curves.plane_curve import arcs, nearest
 from ..types import Array, Index
 
-MARK = 0.25  # of the reach, mm between the places of a ring that tell which others are near
+MARK = 0.25  # of the reach, distance between samples of a ring in the search for adjacent rings
 
 
 class AdjacentRings(NamedTuple):
-    """Two rings by their numbers, and arcs (n,) mm of the first that are near to the second."""
+    """Two rings by number, and arcs (n,) mm of the first that are near the second."""
 
-    one: int
-    other: int
+    from_ring: int
+    to_ring: int
     arcs: Array
 
 
 class Ring:
-    """A closed curve (n, 2), and what of it is taken: intervals of its arc length, mm."""
+    """A closed curve (n, 2), and its occupied intervals of arc length, mm."""
 
     def __init__(self, points: Array) -> None:
         self.points = points
@@ -33,20 +33,20 @@ class Ring:
         self._whole = np.vstack([points, points[:1]])
         self._taken: list[tuple[float, float]] = []
 
-    def at(self, arcs: Array) -> Array:
+    def points_at(self, arcs: Array) -> Array:
         """Points (n, 2) at arc lengths (n,), any number of times round."""
         arcs = np.remainder(arcs, self.length)
         return np.stack([np.interp(arcs, self.arc, self._whole[:, k]) for k in (0, 1)], axis=1)
 
     def way(self, arcs: Array, step: float) -> Array:
-        """Unit directions (n, 2) of the ring about arc lengths, over so many mm."""
-        ahead = self.at(arcs + 0.5 * step) - self.at(arcs - 0.5 * step)
+        """Unit directions (n, 2) of the ring about arc lengths, over a step, mm."""
+        ahead = self.points_at(arcs + 0.5 * step) - self.points_at(arcs - 0.5 * step)
         return np.asarray(ahead / np.maximum(np.hypot(*ahead.T), 1e-300)[:, None])
 
     def foot(self, points: Array) -> tuple[Array, Array]:
         """Arc lengths (n,) of the places nearest to points (n, 2), and how far they are."""
-        found = nearest(self.points, points, closed=True)
-        return self.arc[found.edge] + found.share * np.diff(self.arc)[found.edge], found.distance
+        feet = nearest(self.points, points, closed=True)
+        return self.arc[feet.edge] + feet.share * np.diff(self.arc)[feet.edge], feet.distance
 
     def piece(self, start: float, end: float, sense: int) -> Array:
         """The points (m, 2) from one arc length to another, with the sense of the ring (1) or against it (-1)."""
@@ -59,7 +59,11 @@ class Ring:
             (inner[order] > 1e-9 * self.length) & (inner[order] < span - 1e-9 * self.length)
         ]
         return np.vstack(
-            [self.at(np.array([start])), self.points[between], self.at(np.array([end]))]
+            [
+                self.points_at(np.array([start])),
+                self.points[between],
+                self.points_at(np.array([end])),
+            ]
         )
 
     def is_free(self, start: float, end: float) -> bool:
@@ -70,35 +74,39 @@ class Ring:
         )
 
     def take(self, start: float, end: float) -> None:
-        """What lies from start to end is taken."""
+        """Occupy the arc from start to end."""
         self._taken.append((start, end))
 
 
 def side_by_side(rings: Sequence[Ring], reach: float) -> list[AdjacentRings]:
     """All pairs of rings that come nearer to each other than `reach` mm, both ways round."""
     marks = [np.arange(0.0, ring.length, MARK * reach) for ring in rings]
-    places = np.vstack([ring.at(at) for ring, at in zip(rings, marks)])
-    number: Index = np.repeat(np.arange(len(rings)), [len(at) for at in marks])
-    pairs = cKDTree(places).query_pairs(reach, output_type="ndarray")
+    points = np.vstack([ring.points_at(arcs) for ring, arcs in zip(rings, marks)])
+    number: Index = np.repeat(np.arange(len(rings)), [len(arcs) for arcs in marks])
+    pairs = cKDTree(points).query_pairs(reach, output_type="ndarray")
     pairs = pairs[number[pairs[:, 0]] != number[pairs[:, 1]]]
     pairs = np.vstack([pairs, pairs[:, ::-1]])
     key = np.unique(
         np.stack([number[pairs[:, 0]], number[pairs[:, 1]], pairs[:, 0]], axis=1), axis=0
     )
-    whole = np.concatenate(marks)
+    all_arcs = np.concatenate(marks)
     cuts = np.flatnonzero((np.diff(key[:, :2], axis=0) != 0).any(axis=1)) + 1
     return [
-        AdjacentRings(int(lot[0, 0]), int(lot[0, 1]), whole[lot[:, 2]])
+        AdjacentRings(int(lot[0, 0]), int(lot[0, 1]), all_arcs[lot[:, 2]])
         for lot in np.split(key, cuts)
         if len(lot)
     ]
 
 
-def crossed(line: Array, other: Array) -> bool:
+def crossed(line: Array, polyline: Array) -> bool:
     """Whether a straight line (2, 2) crosses a polyline (n, 2)."""
-    way = line[1] - line[0]
-    side = way[0] * (other[:, 1] - line[0, 1]) - way[1] * (other[:, 0] - line[0, 0])
+    direction = line[1] - line[0]
+    side = direction[0] * (polyline[:, 1] - line[0, 1]) - direction[1] * (
+        polyline[:, 0] - line[0, 0]
+    )
     k = np.flatnonzero((side[:-1] > 0.0) != (side[1:] > 0.0))
-    place = other[k] + (side[k] / (side[k] - side[k + 1]))[:, None] * (other[k + 1] - other[k])
-    share = (place - line[0]) @ way / max(float(way @ way), 1e-300)
+    points = polyline[k] + (side[k] / (side[k] - side[k + 1]))[:, None] * (
+        polyline[k + 1] - polyline[k]
+    )
+    share = (points - line[0]) @ direction / max(float(direction @ direction), 1e-300)
     return bool(((share >= 0.0) & (share <= 1.0)).any())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Filling of less than the whole: walls, a pattern that leaves room inside of them, all of it near tops and bottoms."""
+"""Partial filling: walls, an open pattern inside of them, and solid filling near tops and bottoms."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ..geometry.regions.region import Region
 from ..geometry.regions.several import grow_regions, select_wider, shrink_region, subtract_regions
-from .centre import closing
+from .centre import closing_beads
 from .curve import Beads, PlaneCurve, contours_of
 from .lattice import families, gyroid, honeycomb
 from .lines import Frame, rows
@@ -22,9 +22,9 @@ LEAST_HEIGHT = 2.0  # spacings; where less is between tops and bottoms beads cov
 class Infill:
     """How much of the area inside of the walls is filled.
 
-    density: share of it, length of beads times spacing. height: mm of the layer above the origin of a gyroid. angle: rad, of
-    patterns that stand on those of the layer below: grid, triangles, honeycomb, gyroid. buried: what neither a top nor a
-    bottom is near to; outside of it the whole is filled. None: there is neither.
+    density: its share, length of beads times spacing. height: mm of the layer above the origin of a gyroid. angle: rad, of
+    patterns that rest on the layer below: grid, triangles, honeycomb, gyroid. buried: regions not near a top or a bottom; the
+    rest is filled solid. None: there is neither.
     """
 
     density: float = 1.0
@@ -43,26 +43,30 @@ def sparse(
     longest_link: float | None,
     infill: Infill,
 ) -> list[PlaneCurve]:
-    """What is inside of walls, see `Infill`, and beads that close gaps between these. inner: where the middles of beads may
-    lie. angle (rad): of lines and zigzags, and of the lines where the whole is filled. longest_link: as of `lines`."""
+    """The filling inside of walls, see `Infill`, and beads that close gaps between these.
+
+    inner: allowed positions of bead middles. angle (rad): of lines and zigzags, and of the lines of solid regions. longest_link:
+    as in `lines`.
+    """
     curves = (
-        closing(inner, framed.thin + framed.curves, beads, walls, framed.ends)
+        closing_beads(inner, framed.thin + framed.curves, beads, walls, framed.ends)
         if framed.curves
         else []
     )
-    loose, whole = _divided(framed.ends, infill.buried, beads)
-    for part in whole:
-        curves += _whole(part, beads, angle, walls, longest_link)
-    for part in loose:
-        curves += _pattern(part, beads, pattern, angle, walls, longest_link, infill)
+    loose, solid = _divided(framed.ends, infill.buried, beads)
+    for region in solid:
+        curves += _fill_solid(region, beads, angle, walls, longest_link)
+    for region in loose:
+        curves += _pattern(region, beads, pattern, angle, walls, longest_link, infill)
     return curves
 
 
 def _divided(
     ends: Sequence[Region], buried: Sequence[Region] | None, beads: Beads
 ) -> tuple[Sequence[Region], Sequence[Region]]:
-    """What of the inside of walls is filled in part, and what as a whole: that a spacing farther than it has to be, so that
-    it ends on beads of the layer below."""
+    """The partly filled and the solid regions inside of walls; solid ones extend by a spacing, so that they end on beads of the
+    layer below.
+    """
     if buried is None:
         return ends, ()
     if not buried:
@@ -74,15 +78,15 @@ def _divided(
     return loose, subtract_regions(ends, loose)
 
 
-def _whole(
+def _fill_solid(
     region: Region, beads: Beads, angle: float, ring: int, longest_link: float | None
 ) -> list[PlaneCurve]:
-    """Lines, or zigzags, over all of a region that lines end on the border of, and beads in what they leave open."""
+    """Lines, or zigzags, over a region whose border they end on, and beads in their gaps."""
     inner = region.grown(-0.5 * beads.spacing, beads.chord_error)
     curves = in_rows(
         rows(Frame([], inner, (region,), []), beads, angle), (region,), beads, ring, longest_link
     )
-    return curves + (closing(inner, curves, beads, ring) if inner and curves else [])
+    return curves + (closing_beads(inner, curves, beads, ring) if inner and curves else [])
 
 
 def _pattern(
@@ -97,9 +101,9 @@ def _pattern(
     """The beads of a pattern in a region that they end on the border of."""
     spacing, density = beads.spacing, infill.density
     if pattern == "contours":
-        apart = spacing / density
+        pitch = spacing / density
         return _rounds(
-            region, beads, ring, apart - 0.5 * spacing if ring else 0.5 * apart - beads.inset, apart
+            region, beads, ring, pitch - 0.5 * spacing if ring else 0.5 * pitch - beads.inset, pitch
         )
     if pattern in ("honeycomb", "gyroid"):
         across = (
@@ -125,11 +129,11 @@ def _pattern(
 
 
 def _rounds(
-    region: Region, beads: Beads, ring: int, first: float, apart: float
+    region: Region, beads: Beads, ring: int, inset: float, pitch: float
 ) -> list[PlaneCurve]:
-    """Contours so far apart, the first so far inside of a region, mm."""
+    """Contours at a pitch, the first at an inset from the border of a region, mm."""
     curves, k = [], 0
-    while inner := shrink_region(region, first + k * apart, beads.chord_error):
+    while inner := shrink_region(region, inset + k * pitch, beads.chord_error):
         curves += contours_of(inner, beads, ring + k)
         k += 1
     return curves

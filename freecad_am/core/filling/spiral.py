@@ -11,11 +11,11 @@ import numpy as np
 from ..geometry.curves.plane_curve import cut_at_length, doubled_area, length, nearest, start_at
 from ..geometry.regions.region import Region
 from ..types import Array
-from .centre import closing
+from .centre import closing_beads
 from .contours import centres, levels
 from .curve import Beads, PlaneCurve, long_enough
 
-PROBES = 64  # places of a ring that tell which ring it follows
+PROBES = 64  # samples of a ring in the search for its neighbours
 PARALLEL_GAP = (
     0.02  # relative to the spacing; a ring follows another that it is that close to parallel to
 )
@@ -26,13 +26,15 @@ LINK = 3.0  # spacings; longest link
 def spiral(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[PlaneCurve]:
     """One curve from each outer contour and from each hole as far as contours follow one another singly; where they split or
     join, new ones begin. A contour of its own stays closed. What contours leave open is filled as theirs is."""
-    found = levels(region, inner, beads)
+    contour_levels = levels(region, inner, beads)
     rings = [
-        [border for region in regions for border in region.borders()] for regions in found.regions
+        [border for region in regions for border in region.borders()]
+        for regions in contour_levels.regions
     ]
-    follower = [_followers(here, there, beads.spacing) for here, there in zip(rings, rings[1:])] + [
-        {}
-    ]
+    follower = [
+        _followers(outer, inner_rings, beads.spacing)
+        for outer, inner_rings in zip(rings, rings[1:])
+    ] + [{}]
     led: set[tuple[int, int]] = set()
     curves = []
     for k, level in enumerate(rings):
@@ -42,23 +44,25 @@ def spiral(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[Plan
             chain = [(k, number)]
             while (following := follower[chain[-1][0]].get(chain[-1][1])) is not None:
                 chain.append((chain[-1][0] + 1, following))
-            pieces = _linked([rings[j][n] for j, n in chain], found.regions[k:], beads)
-            led.update(chain[: len(pieces)])
-            curves.append(_curve(pieces, beads, k))
-    curves = long_enough(curves + centres(found, beads), beads.shortest)
-    return curves + closing(inner, curves, beads, 0)
+            sections = _linked([rings[j][n] for j, n in chain], contour_levels.regions[k:], beads)
+            led.update(chain[: len(sections)])
+            curves.append(_curve(sections, beads, k))
+    curves = long_enough(curves + centres(contour_levels, beads), beads.shortest)
+    return curves + closing_beads(inner, curves, beads, 0)
 
 
-def _followers(here: Sequence[Array], there: Sequence[Array], spacing: float) -> dict[int, int]:
-    """Which ring of the next level follows each of this one, where no other does and it follows no other."""
-    adjacent = np.zeros((len(here), len(there)), dtype=bool)
-    for j, ring in enumerate(there):
+def _followers(
+    outer_rings: Sequence[Array], inner_rings: Sequence[Array], spacing: float
+) -> dict[int, int]:
+    """Pairs of consecutive rings of two levels, where each ring has a single neighbour on the other level."""
+    adjacent = np.zeros((len(outer_rings), len(inner_rings)), dtype=bool)
+    for j, ring in enumerate(inner_rings):
         probes = ring[np.unique(np.linspace(0, len(ring) - 1, PROBES).astype(int))]
         probes = np.vstack(
             [probes, 0.5 * (probes + np.roll(ring, -1, axis=0)[nearest(ring, probes, True).edge])]
         )
-        away = np.stack([nearest(outer, probes, True).distance for outer in here])
-        close = np.abs(away - spacing) < PARALLEL_GAP * spacing
+        distance = np.stack([nearest(outer, probes, True).distance for outer in outer_rings])
+        close = np.abs(distance - spacing) < PARALLEL_GAP * spacing
         adjacent[:, j] = close.mean(axis=1) > 0.05
     single = adjacent & (adjacent.sum(axis=1) == 1)[:, None] & (adjacent.sum(axis=0) == 1)
     return {int(i): int(j) for i, j in zip(*np.nonzero(single))}
@@ -67,34 +71,35 @@ def _followers(here: Sequence[Array], there: Sequence[Array], spacing: float) ->
 def _linked(
     chain: Sequence[Array], regions: Sequence[Sequence[Region]], beads: Beads
 ) -> list[Array]:
-    """The rings as far as links lead, each begun where the link arrives and ended where the next leaves: the first where it
-    began, the others a spacing before, so that links lie side by side. A ring that no link leads from is whole."""
+    """The rings up to the last link, each begun where the link arrives and ended where the next leaves: the first where it began, the
+    others a spacing before, so that links are side by side. A ring without an outgoing link is whole.
+    """
     ring = beads.ring(chain[0])
-    pieces: list[Array] = []
+    sections: list[Array] = []
     for following, inside in zip(chain[1:], regions):
-        way = length(ring, True)
-        if way < LEAST_LENGTH * beads.spacing:
+        ring_length = length(ring, True)
+        if ring_length < LEAST_LENGTH * beads.spacing:
             break
-        whole = np.vstack([ring, ring[:1]])
-        cut = cut_at_length(whole, way - beads.spacing) if pieces else whole
+        loop = np.vstack([ring, ring[:1]])
+        cut = cut_at_length(loop, ring_length - beads.spacing) if sections else loop
         turned = (
             following[::-1] if (doubled_area(following) < 0.0) != beads.clockwise else following
         )
-        ahead = ring[:1] if pieces else cut_at_length(whole, beads.spacing)[-1:]
+        ahead = ring[:1] if sections else cut_at_length(loop, beads.spacing)[-1:]
         arrives = nearest(turned, ahead, True).points[0]
         link = cut[-1] + np.linspace(0.0, 1.0, 17)[1:-1, None] * (arrives - cut[-1])
         if np.hypot(*(arrives - cut[-1])) > LINK * beads.spacing or not _inside(link, inside):
             break
-        pieces.append(cut)
+        sections.append(cut)
         ring = start_at(turned, arrives)
-    pieces.append(ring)
-    return pieces
+    sections.append(ring)
+    return sections
 
 
-def _curve(pieces: Sequence[Array], beads: Beads, ring: int) -> PlaneCurve:
-    if len(pieces) == 1:
-        return PlaneCurve(pieces[0], True, "spiral", ring)
-    return PlaneCurve(np.vstack([*pieces, pieces[-1][:1]]), False, "spiral", ring)
+def _curve(sections: Sequence[Array], beads: Beads, ring: int) -> PlaneCurve:
+    if len(sections) == 1:
+        return PlaneCurve(sections[0], True, "spiral", ring)
+    return PlaneCurve(np.vstack([*sections, sections[-1][:1]]), False, "spiral", ring)
 
 
 def _inside(points: Array, regions: Sequence[Region]) -> bool:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads in what other beads leave open of a region that runs all the way round a hub: window by window on the plane."""
+"""Beads in the gaps of a region that runs all the way round a hub: window by window on the plane."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from dataclasses import replace
 from ..geometry.regions.region import Region
 from ..geometry.regions.several import grow_regions, intersect_regions
 from ..geometry.regions.strip import Strip, Window
-from .centre import centre_beads, left_open
+from .centre import centre_beads, open_regions
 from .curve import Beads, PlaneCurve
 
-REACH = 3.0  # spacings beside a window that tell what is open in it
+REACH = 3.0  # spacings around a window that decide about its open regions
 
 
 def strip_closing(
@@ -30,25 +30,27 @@ def strip_closing(
 def open_windows(
     strip: Strip, curves: Sequence[PlaneCurve], beads: Beads
 ) -> list[tuple[Window, list[Region], tuple[Region, ...]]]:
-    """Window by window, laid flat about its middle, what is open and where beads may lie."""
-    found = []
+    """Window by window, unrolled about its middle: the open regions and the room for bead middles."""
+    windows = []
     for window, adjacent in near_windows(strip, curves, REACH * beads.spacing):
         inner = grow_regions(strip.flat(window, with_margin=True), -beads.inset, beads.chord_error)
         if inner:
-            found.append(
+            windows.append(
                 (
                     window,
-                    list(intersect_regions(left_open(adjacent, inner, beads), strip.pane(window))),
+                    list(
+                        intersect_regions(open_regions(adjacent, inner, beads), strip.pane(window))
+                    ),
                     inner,
                 )
             )
-    return found
+    return windows
 
 
 def near_windows(
     strip: Strip, curves: Sequence[PlaneCurve], reach: float
 ) -> Iterator[tuple[Window, list[PlaneCurve]]]:
-    """Windows of a strip with what of curves lies in each or up to `reach` mm beside it, laid flat about its middle."""
+    """Windows of a strip with the sections of curves within `reach` mm, unrolled about the middle of the window."""
     curves = [
         replace(curve, points=strip.period.unwrap_curve(curve.points, curve.sheet, curve.turns))
         for curve in curves

@@ -22,7 +22,7 @@ from .strip_closing import strip_closing
 PROBE, HALVES = (
     0.1,
     10,
-)  # of the spacing, between places that tell where lines are inside; and how often that is halved
+)  # of the spacing, between samples of lines inside; and number of halvings
 
 
 class _Frame(NamedTuple):
@@ -38,10 +38,10 @@ def _frame(inner: tuple[Strip | Region, ...], beads: Beads, walls: int) -> _Fram
     half, error = 0.5 * beads.spacing, beads.chord_error
     if not walls:
         return _Frame([], inner, beads.inset)
-    curves, done = contours_of(inner, beads, 0), 1
-    while done < walls and (further := grow_regions(inner, -2.0 * half, error)):
-        curves, inner, done = curves + contours_of(further, beads, done), further, done + 1
-    return _Frame(curves, grow_regions(inner, -half, error), beads.inset + 2.0 * half * done)
+    curves, wall = contours_of(inner, beads, 0), 1
+    while wall < walls and (further := grow_regions(inner, -2.0 * half, error)):
+        curves, inner, wall = curves + contours_of(further, beads, wall), further, wall + 1
+    return _Frame(curves, grow_regions(inner, -half, error), beads.inset + 2.0 * half * wall)
 
 
 def lines_round(
@@ -59,12 +59,12 @@ def lines_round(
         inside = within.contains(np.stack([u, np.full(len(u), level)], axis=1))
         for a, b in _runs(inside[:-1]):
             uv = np.stack([u[0] + turn / count * np.arange(a, b), np.full(b - a, level)], axis=1)
-            points, whole = strip.period.from_uv(uv), b - a == count
-            back = (row % 2 == 1) if not whole else beads.clockwise
-            sense = 0 if not whole else (-1 if back else 1)
+            points, is_closed = strip.period.from_uv(uv), b - a == count
+            back = (row % 2 == 1) if not is_closed else beads.clockwise
+            sense = 0 if not is_closed else (-1 if back else 1)
             sheet = float(uv[:, 0].mean())
             curves.append(
-                PlaneCurve(points[::-1] if back else points, whole, "line", walls, sense, sheet)
+                PlaneCurve(points[::-1] if back else points, is_closed, "line", walls, sense, sheet)
             )
     curves = long_enough(curves, beads.shortest)
     return curves + (
@@ -79,8 +79,8 @@ def lines_along(
     farthest from the apex, and they come nearer to each other towards it. Every other one runs the other way."""
     framed = _frame(inner, beads, walls)
     turn, interior = strip.period.u_period, _Inside(strip, framed.ends)
-    apart = beads.spacing / density
-    count = step_count(turn * _stretch(strip) - 0.01 * turn, apart)
+    pitch = beads.spacing / density
+    count = step_count(turn * _stretch(strip) - 0.01 * turn, pitch)
     low, high = strip.levels
     v: Array = np.linspace(low, high, step_count(high - low, PROBE * beads.spacing, 2))
     u: Array = np.asarray(-0.5 * turn + turn / count * (np.arange(count) + 0.5), dtype=np.float64)
@@ -90,10 +90,10 @@ def lines_along(
     runs = [
         (number, a, b) for number in range(count) for a, b in _runs(inside[number], closed=False)
     ]
-    line, first, past = np.array(runs, dtype=np.intp).reshape(-1, 3).T
+    line, start, past = np.array(runs, dtype=np.intp).reshape(-1, 3).T
     bottom, top = (
         interior.border(u[line], v[within], v[np.clip(beyond, 0, len(v) - 1)])
-        for within, beyond in ((first, first - 1), (past - 1, past))
+        for within, beyond in ((start, start - 1), (past - 1, past))
     )
     curves = list(framed.curves)
     for number, *levels in zip(line.tolist(), bottom, top):
@@ -109,38 +109,38 @@ def _levels(low: float, high: float, beads: Beads, density: float) -> Array:
     """Heights of lines: even between the borders, or as far apart as the density asks for, the same in all layers."""
     if density == 1.0:
         return levels_between(low, high, beads)
-    apart = beads.spacing / density
-    return np.asarray(apart * np.arange(round_up(low / apart), round_down(high / apart) + 1))
+    pitch = beads.spacing / density
+    return np.asarray(pitch * np.arange(round_up(low / pitch), round_down(high / pitch) + 1))
 
 
 class _Inside:
-    """Parts of a strip that are asked often what lies in them."""
+    """Regions of a strip with a fast test for points inside."""
 
-    def __init__(self, strip: Strip, parts: Sequence[Strip | Region]) -> None:
+    def __init__(self, strip: Strip, regions_: Sequence[Strip | Region]) -> None:
         turn = strip.period.u_period
         reach = 0.75 * turn
         self.unrolled = [
-            piece
-            for part in parts
-            if isinstance(part, Strip)
-            for piece in part.between(-reach, reach)
+            section
+            for region in regions_
+            if isinstance(region, Strip)
+            for section in region.between(-reach, reach)
         ]
-        for part in (part for part in parts if isinstance(part, Region)):
+        for region in (region for region in regions_ if isinstance(region, Region)):
             borders = [
-                strip.period.unwrap_curve(dense(border, 0.001 * turn), part.sheet)
-                for border in part.borders()
+                strip.period.unwrap_curve(dense(border, 0.001 * turn), region.sheet)
+                for border in region.borders()
             ]
             for hole in borders[1:] if math.isfinite(strip.period.full_turn) else ():
-                away = 0.5 * (borders[0][:, 0].min() + borders[0][:, 0].max()) - hole[0, 0]
-                hole[:, 0] += strip.period.full_turn * np.round(away / strip.period.full_turn)
+                offset = 0.5 * (borders[0][:, 0].min() + borders[0][:, 0].max()) - hole[0, 0]
+                hole[:, 0] += strip.period.full_turn * np.round(offset / strip.period.full_turn)
             for k in (-1, 0, 1):
                 self.unrolled += regions([uv + np.array([k * turn, 0.0]) for uv in borders])
 
     def contains(self, uv: Array) -> Mask:
-        """Which of (u, v) (n, 2) within one turn lie in one of them."""
+        """Mask of the points (u, v) (n, 2) within one turn inside any region."""
         inside = np.zeros(len(uv), dtype=bool)
-        for piece in self.unrolled:
-            inside |= piece.contains(uv)
+        for region in self.unrolled:
+            inside |= region.contains(uv)
         return inside
 
     def border(self, u: Array, within: Array, beyond: Array) -> Array:

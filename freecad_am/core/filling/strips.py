@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Filling of regions that run all the way round a hub: contours from both borders, and beads in their middle.
 
-Closed beads that go round close over the period of the plane: `PlaneCurve.turns` tells which way.
+Closed beads that go round close over the period of the plane: `PlaneCurve.turns` gives the sense.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from ..geometry.regions.several import grow_regions, halves
 from ..geometry.regions.strip import Strip
 from ..issues import InfeasibleError
 from .centre import FINE, centre_beads
-from .curve import Beads, PlaneCurve, begun, contours_of, long_enough
+from .curve import Beads, PlaneCurve, contours_of, long_enough, start_curve
 from .strip_closing import strip_closing
 
 AFRESH = 4  # contours made from the same borders; farther in, windows would get too narrow and errors are small yet
@@ -21,8 +21,9 @@ AFRESH = 4  # contours made from the same borders; farther in, windows would get
 def strip_contours(
     strip: Strip, inner: tuple[Strip | Region, ...], beads: Beads
 ) -> list[PlaneCurve]:
-    """As `contours`: from both borders and from the holes inwards, then what they leave open; one bead in the middle of a
-    strip narrower than a bead. InfeasibleError THIN_REGION where none is wanted."""
+    """Contours as in `contours`: from both borders and from the holes inwards, then beads in the gaps; one bead in the middle of a
+    strip narrower than a bead. InfeasibleError THIN_REGION if beads refuse thin regions.
+    """
     if not inner and beads.thin == "refuse":
         raise InfeasibleError(
             "THIN_REGION",
@@ -36,22 +37,24 @@ def strip_contours(
     half, error = 0.5 * beads.spacing, beads.chord_error
     curves: list[PlaneCurve] = []
     start: tuple[Strip | Region, ...] = (strip,)
-    k = first = 0
+    k = first_ring = 0
     while inner:
         curves += contours_of(inner, beads, k)
-        if k - first == AFRESH:
-            start, first = grow_regions(inner, -half, error), k + 1
+        if k - first_ring == AFRESH:
+            start, first_ring = grow_regions(inner, -half, error), k + 1
         k += 1
-        before, inner = (
+        last_inner, inner = (
             inner,
-            grow_regions(start, -(half if first else beads.inset) - 2 * (k - first) * half, error),
+            grow_regions(
+                start, -(half if first_ring else beads.inset) - 2 * (k - first_ring) * half, error
+            ),
         )
-    for region in grow_regions(before, -half, error):
+    for region in grow_regions(last_inner, -half, error):
         if isinstance(region, Strip) and region.grown(-0.5 * beads.gap, error):
             curves += _centre(region, beads, k)
     curves = long_enough(curves, beads.shortest)
     return curves + [
-        begun(curve, beads) for curve in strip_closing(strip, curves, beads, k, "centre")
+        start_curve(curve, beads) for curve in strip_closing(strip, curves, beads, k, "centre")
     ]
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads of parallel lines: each by itself, or linked to zigzags, from the end of one along the border to the next."""
+"""Beads of parallel lines: separate, or linked to zigzags, from the end of one along the border to the next."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ def in_rows(
     longest_link: float | None,
     inside: float = 0.0,
 ) -> list[PlaneCurve]:
-    """Beads of lines (2, 2), row by row, that end on the borders of regions: zigzags with links no longer than that, mm;
-    None: each line by itself, every other row the other way round. inside: how far (mm) links lie inside of a border square
-    to the lines."""
+    """Beads of lines (2, 2), row by row, that end on the borders of regions: zigzags with links up to `longest_link`, mm; None:
+    separate lines, every other row reversed. inside: distance (mm) of links from a border square to the lines.
+    """
     if longest_link is None:
         return [
             PlaneCurve(line[::-1] if row % 2 else line, False, "line", ring)
@@ -36,13 +36,13 @@ def in_rows(
             if length(line, False) >= beads.shortest
         ]
     borders = [border for region in ends for border in region.borders()]
-    least = max(FLOOR * beads.chord_error, 1e-6 * beads.spacing)
-    levels = [[line for line in lines if length(line, False) > least] for lines in rows]
+    min_edge = max(FLOOR * beads.chord_error, 1e-6 * beads.spacing)
+    levels = [[line for line in lines if length(line, False) > min_edge] for lines in rows]
     open_ = [list(range(len(level))) for level in levels]
     curves = []
     for row in range(len(levels)):
         while open_[row]:
-            points = _chain(levels, open_, row, borders, longest_link, least, inside)
+            points = _chain(levels, open_, row, borders, longest_link, min_edge, inside)
             if length(points, False) >= beads.shortest:
                 curves.append(PlaneCurve(points, False, "zigzag", ring))
     return curves
@@ -54,79 +54,85 @@ def _chain(
     row: int,
     borders: Sequence[Array],
     limit: float,
-    least: float,
+    min_edge: float,
     inside: float,
 ) -> Array:
-    """A zigzag from the first line open in a row up, without edges shorter than `least` mm; takes its lines off the list."""
-    piece = levels[row][open_[row].pop(0)]
-    parts, far = [piece], 1
+    """A zigzag from the first line open in a row up, without edges shorter than `min_edge` mm; takes its lines off the list."""
+    line_ = levels[row][open_[row].pop(0)]
+    sections, far_end = [line_], 1
     while row + 1 < len(levels):
         row += 1
         links = [
             (length(way, False), number, way)
             for number in open_[row]
-            if (way := _link(parts[-1][-1], levels[row][number][far], borders, limit)) is not None
+            if (way := _link(sections[-1][-1], levels[row][number][far_end], borders, limit))
+            is not None
         ]
         if not links:
             break
         _, number, way = min(links, key=lambda link: link[:2])
         open_[row].remove(number)
-        far = 1 - far
-        line = levels[row][number][:: 1 if far else -1]
-        parts[-1], way, line = _moved_inside(parts[-1], way, line, inside)
-        parts += [_clean(way, least), line]
-    return np.vstack(parts)
+        far_end = 1 - far_end
+        line = levels[row][number][:: 1 if far_end else -1]
+        sections[-1], way, line = _moved_inside(sections[-1], way, line, inside)
+        sections += [_clean(way, min_edge), line]
+    return np.vstack(sections)
 
 
 def _moved_inside(
-    line: Array, way: Array, following: Array, inside: float
+    line: Array, link: Array, following: Array, inside: float
 ) -> tuple[Array, Array, Array]:
-    """A line (2, 2), the link (n, 2) after it and the line after that, moved back along the lines by `inside` mm where the
-    border is square to them, and less the more it is slanted, for what is left open beside its ends grows."""
+    """A line (2, 2), the link (n, 2) after it and the line after that, moved back along the lines by `inside` mm if the border is
+    square to them, and less the more it is slanted, because the gap at their ends grows.
+    """
     back = line[0] - line[1]
     long = float(np.hypot(*back))
     back = back / max(long, 1e-300)
-    chord = way[-1] - way[0]
+    chord = link[-1] - link[0]
     straight = max(float(np.hypot(*chord)), 1e-300)
     by = inside * max(1.0 - abs(float(chord @ back)) / straight, 0.0)
     if (
-        length(way, False) > BOWED * straight
+        length(link, False) > BOWED * straight
         or min(long, length(following, False)) < 2.0 * by + inside
     ):
-        return line, way, following
+        return line, link, following
     shift = by * back
     return (
         np.vstack([line[:1], line[1:] + shift]),
-        way + shift,
+        link + shift,
         np.vstack([following[:1] + shift, following[1:]]),
     )
 
 
-def _clean(way: Array, least: float) -> Array:
-    """The inner points of a link, which begins and ends on lines, without those that hardly turn it and those within `least`
-    mm of others: an edge that short would turn the travel with nothing travelled."""
-    points = simplified(way, least / FLOOR)
-    kept = [points[0]]
+def _clean(link: Array, min_edge: float) -> Array:
+    """The inner points of a link, which begins and ends on lines, without points that hardly turn it and points within `min_edge`
+    mm of others: such a short edge would turn the travel direction without travel.
+    """
+    points = simplified(link, min_edge / FLOOR)
+    points_ = [points[0]]
     for point in points[1:-1]:
-        if np.hypot(*(point - kept[-1])) >= least and np.hypot(*(point - points[-1])) >= least:
-            kept.append(point)
-    return np.array(kept[1:]).reshape(-1, 2)
+        if (
+            np.hypot(*(point - points_[-1])) >= min_edge
+            and np.hypot(*(point - points[-1])) >= min_edge
+        ):
+            points_.append(point)
+    return np.array(points_[1:]).reshape(-1, 2)
 
 
 def _link(start: Array, end: Array, borders: Sequence[Array], limit: float) -> Array | None:
-    """The shorter way (n, 2) along a border that both ends lie on; None where there is none below the limit."""
+    """The shorter path (n, 2) along a border from one point to the other; None if none is below the limit."""
     if float(np.hypot(*(end - start))) > limit:
         return None
-    both = np.stack([start, end])
-    found = [nearest(border, both, closed=True) for border in borders]
-    best = int(np.argmin([places.distance.max() for places in found]))
-    border, places = borders[best], found[best]
-    if places.distance.max() > 1e-6 * limit:
+    ends = np.stack([start, end])
+    feet = [nearest(border, ends, closed=True) for border in borders]
+    best = int(np.argmin([foot.distance.max() for foot in feet]))
+    border, foot = borders[best], feet[best]
+    if foot.distance.max() > 1e-6 * limit:
         return None
-    ways = [_way(border, start, end, *places.edge, *places.share)]
-    ways.append(_way(border, end, start, *places.edge[::-1], *places.share[::-1])[::-1])
-    way = min(ways, key=lambda points: length(points, False))
-    return way if length(way, False) <= limit else None
+    paths = [_way(border, start, end, *foot.edge, *foot.share)]
+    paths.append(_way(border, end, start, *foot.edge[::-1], *foot.share[::-1])[::-1])
+    path = min(paths, key=lambda points: length(points, False))
+    return path if length(path, False) <= limit else None
 
 
 def _way(

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Bands of deviations and their colours: green within tolerance, to red outside of it and to blue inside, alike on both
-sides."""
+"""Bands of deviations and their colours: green within tolerance, to red outside of it and to blue inside, symmetric."""
 
 from __future__ import annotations
 
@@ -13,7 +12,7 @@ from ..types import Array, Integers, Mask
 
 STEPS = 3  # tolerances at which bands end
 NICE = (1.0, 2.0, 5.0, 10.0)  # tolerances, times powers of ten
-IN_BANDS = 0.95  # of the deviations lie within the outermost limit, where no tolerance is given
+IN_BANDS = 0.95  # of the deviations are within the outermost limit, if no tolerance is given
 _COLOURS = (
     (0.19, 0.21, 0.58),
     (0.10, 0.45, 0.82),
@@ -55,17 +54,16 @@ def band_of(deviation: Array, tolerance: float) -> Integers:
 
 def css(colour: tuple[float, float, float]) -> str:
     """A colour as #rrggbb."""
-    return "#" + "".join(f"{round(255 * part):02x}" for part in colour)
+    return "#" + "".join(f"{round(255 * component):02x}" for component in colour)
 
 
 def colours(deviation: Array, within: Mask, tolerance: float) -> Array:
     """Colours (n, 3) of deviations (n,); grey where they do not count."""
-    found = np.array(_COLOURS)[band_of(deviation, tolerance)]
-    found[~within] = PAST_EDGES
-    return found
+    colours_ = np.array(_COLOURS)[band_of(deviation, tolerance)]
+    colours_[~within] = PAST_EDGES
+    return colours_
 
 
 def step_of(deviation: Array) -> float:
-    """mm that the bands are wide where no tolerance is given: a round figure, of which STEPS reach as far as most of the
-    deviations (n,)."""
+    """Width of the bands, mm, without a tolerance: a round figure, so that STEPS bands cover most of the deviations (n,)."""
     return round_step(max(float(np.quantile(np.abs(deviation), IN_BANDS)), 1e-3) / STEPS, NICE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What deviations amount to: their spread, sphericity, circularity at heights, thickness (Chalvin 2020, table 2)."""
+"""Figures of deviations: their spread, sphericity, circularity at heights, thickness (Chalvin 2020, table 2)."""
 
 from __future__ import annotations
 
@@ -13,19 +13,20 @@ from ..geometry.curves.profile import Meridian
 from ..issues import InputError, Text
 from ..types import Array, Integers, Mask
 from .planned import Planned
-from .roundness import Round, least, narrowest
+from .roundness import Round, least_squares_round, narrowest
 
 BARS = 40  # of a histogram at most
 ZONE_SIZE = 600  # points from each end and from all over that a narrowest zone is begun with
-ROUND = 1e-3  # of the radius: what is planned within is a sphere
-FLAT = 0.1  # of a normal along the radius: a surface that lies flatter has no circle at a height
+ROUND = 1e-3  # of the radius: a planned zone within this is a sphere
+MIN_RADIAL_NORMAL = 0.1  # of a normal along the radius: a flatter surface has no circle at a height
 ALL_ROUND = 0.25  # turns between neighbours on a circle beyond which it is not measured all round
 
 
 @dataclass(frozen=True, eq=False)
 class Spread:
-    """Of the deviations that count: how many, mean, standard deviation, root mean square, extremes, and what 95 % of their
-    amounts do not exceed, mm; the share within tolerance. edges: (k + 1,) mm of the bars of a histogram with counts (k,)."""
+    """The deviations that count: number, mean, standard deviation, root mean square, extremes, and the 95 % quantile of their
+    amounts, mm; the share within tolerance. edges: (k + 1,) mm of the bars of a histogram with counts (k,).
+    """
 
     count: int
     mean: float
@@ -41,8 +42,9 @@ class Spread:
 
 @dataclass(frozen=True)
 class Circle:
-    """Of count points at a height, mm: the circles of least squares and of the narrowest zone in the plane there, relative
-    to the part's axis. gap: the largest angle between neighbours, rad."""
+    """Circularity of count points at a height, mm: the least-squares circle and the narrowest zone in the plane there, relative to
+    the part's axis. gap: the largest angle between neighbours, rad.
+    """
 
     height: float
     count: int
@@ -68,7 +70,7 @@ class Ball:
 
 @dataclass(frozen=True)
 class Thickness:
-    """Of a wall measured on both sides, at count pairs of places, mm."""
+    """A wall measured on both sides, at count pairs of points, mm."""
 
     count: int
     mean: float
@@ -77,14 +79,14 @@ class Thickness:
     most: float
 
 
-def spread(deviation: Array, tolerance: float) -> Spread:
+def summarise(deviation: Array, tolerance: float) -> Spread:
     """The figures of deviations (n,), n >= 1."""
     low, high = float(deviation.min()), float(deviation.max())
     step = _nice(
         max(high - low, 1e-9, 1e-12 * max(-low, high)) / BARS
     )  # so that its multiples are apart
-    first, last = np.floor(low / step), max(np.floor(low / step) + 1, np.ceil(high / step))
-    edges = step * np.arange(first, last + 1)
+    first_bar, last_bar = np.floor(low / step), max(np.floor(low / step) + 1, np.ceil(high / step))
+    edges = step * np.arange(first_bar, last_bar + 1)
     edges[0], edges[-1] = min(edges[0], low), max(edges[-1], high)
     amount = np.abs(deviation)
     return Spread(
@@ -102,12 +104,14 @@ def spread(deviation: Array, tolerance: float) -> Spread:
 
 
 def ball(points: Array, feet: Array, where: str) -> Ball | None:
-    """Sphericity of points (n, 3) whose places on the planned surface (n, 3) lie on a sphere; None where they do not."""
+    """Sphericity of points (n, 3) whose feet on the planned surface (n, 3) are on a sphere; None if they are not."""
     try:
-        planned = least(feet, where)
+        planned = least_squares_round(feet, where)
         if planned.zone > ROUND * planned.radius:
             return None
-        return Ball(len(points), least(points, where), zone_of(points, where), planned.radius)
+        return Ball(
+            len(points), least_squares_round(points, where), zone_of(points, where), planned.radius
+        )
     except InputError:  # too few, or in a plane
         return None
 
@@ -115,26 +119,26 @@ def ball(points: Array, feet: Array, where: str) -> Ball | None:
 def circle(
     planned: Planned, points: Array, normal: Array, height: float, band: float, where: str
 ) -> Circle:
-    """Circularity of those of the points (n, 3), with the planned normals (n, 3), that are within a band of a height, mm.
+    """Circularity of the points (n, 3), with the planned normals (n, 3), within a band of a height, mm.
 
-    They are slid to the height by what the planned radius differs there, along the meridian of a part of revolution, else
-    along the slope of the planned surface, so that a point at the height stays what it is. InputError FEW_POINTS.
+    They are moved to the height by the change of the planned radius, along the meridian of a part of revolution, else along the
+    slope of the planned surface, so that a point at the height does not move. InputError FEW_POINTS.
     """
-    own = (points - planned.frame[:3, 3]) @ planned.frame[:3, :3]
-    near = np.abs(own[:, 2] - height) <= band
-    own, side = own[near], normal[near] @ planned.frame[:3, :3]
-    radius = np.hypot(own[:, 0], own[:, 1])
+    local = (points - planned.frame[:3, 3]) @ planned.frame[:3, :3]
+    in_band = np.abs(local[:, 2] - height) <= band
+    local, side = local[in_band], normal[in_band] @ planned.frame[:3, :3]
+    radius = np.hypot(local[:, 0], local[:, 1])
     if planned.wall is not None:
-        grown = _grown(planned.wall.meridian, own[:, 2], radius, height)
+        grown = _radius_change(planned.wall.meridian, local[:, 2], radius, height)
     else:
-        outward = (own[:, :2] * side[:, :2]).sum(axis=1) / np.maximum(radius, 1e-9)
+        outward = (local[:, :2] * side[:, :2]).sum(axis=1) / np.maximum(radius, 1e-9)
         slope = np.where(
-            np.abs(outward) > FLAT,
-            -side[:, 2] / np.where(np.abs(outward) > FLAT, outward, 1.0),
+            np.abs(outward) > MIN_RADIAL_NORMAL,
+            -side[:, 2] / np.where(np.abs(outward) > MIN_RADIAL_NORMAL, outward, 1.0),
             0.0,
         )
-        grown = slope * (height - own[:, 2])
-    slid = own[:, :2] * (1.0 + grown / np.maximum(radius, 1e-9))[:, None]
+        grown = slope * (height - local[:, 2])
+    slid = local[:, :2] * (1.0 + grown / np.maximum(radius, 1e-9))[:, None]
     if len(slid) < 4:
         raise InputError(
             "FEW_POINTS",
@@ -147,66 +151,69 @@ def circle(
         )
     angle = np.sort(np.arctan2(slid[:, 1], slid[:, 0]))
     gap = float(np.diff(angle, append=angle[0] + 2.0 * np.pi).max())
-    return Circle(height, len(slid), least(slid, where), zone_of(slid, where), gap)
+    return Circle(height, len(slid), least_squares_round(slid, where), zone_of(slid, where), gap)
 
 
-def _grown(meridian: Meridian, heights: Array, radius: Array, height: float) -> Array:
-    """By how much (n,) the planned radius at a height differs from that at heights (n,), on the stretch of the meridian that
-    is nearest to the measured radius (n,); nothing where it does not reach both."""
-    there = meridian.s_at_height([height])[0]
+def _radius_change(meridian: Meridian, heights: Array, radius: Array, height: float) -> Array:
+    """Change (n,) of the planned radius between heights (n,) and a height, on the stretch of the meridian nearest to the measured
+    radius (n,); 0 if it does not reach both.
+    """
+    end_arcs = meridian.s_at_height([height])[0]
     grown = np.zeros(len(heights))
-    if not len(there):
+    if not len(end_arcs):
         return grown
-    end = meridian.at(there)[0]
-    for k, here in enumerate(meridian.s_at_height(heights)):
-        if len(here):
-            own = meridian.at(here)[0]
-            chosen = int(np.argmin(np.abs(own - radius[k])))
-            grown[k] = end[np.argmin(np.abs(there - here[chosen]))] - own[chosen]
+    end = meridian.at(end_arcs)[0]
+    for k, arcs in enumerate(meridian.s_at_height(heights)):
+        if len(arcs):
+            radii = meridian.at(arcs)[0]
+            nearest = int(np.argmin(np.abs(radii - radius[k])))
+            grown[k] = end[np.argmin(np.abs(end_arcs - arcs[nearest]))] - radii[nearest]
     return grown
 
 
 def thickness(
     feet: Array, deviation: Array, outer: Mask, planned: float, reach: float
 ) -> Thickness | None:
-    """Thickness where places (n, 3) of the planned surface that were measured on its outer side have others of the inner
-    side within `reach` mm: `planned` mm and both deviations (n,). None where there are no such pairs."""
-    one, other = np.flatnonzero(outer), np.flatnonzero(~outer)
-    if not len(one) or not len(other):
+    """Thickness where feet (n, 3) on the planned surface measured on its outer side have feet of the inner side within `reach` mm:
+    `planned` mm plus both deviations (n,). None without such pairs.
+    """
+    outer_rows, inner_rows = np.flatnonzero(outer), np.flatnonzero(~outer)
+    if not len(outer_rows) or not len(inner_rows):
         return None
-    found_at = cKDTree(feet[other]).query(feet[one])
-    off, at = np.asarray(found_at[0]), np.asarray(found_at[1])
+    found_at = cKDTree(feet[inner_rows]).query(feet[outer_rows])
+    off, partner = np.asarray(found_at[0]), np.asarray(found_at[1])
     met = off <= reach
     if not met.any():
         return None
-    found = planned + deviation[one[met]] + deviation[other[at[met]]]
+    thicknesses = planned + deviation[outer_rows[met]] + deviation[inner_rows[partner[met]]]
     return Thickness(
         int(met.sum()),
-        float(found.mean()),
-        float(found.std()),
-        float(found.min()),
-        float(found.max()),
+        float(thicknesses.mean()),
+        float(thicknesses.std()),
+        float(thicknesses.min()),
+        float(thicknesses.max()),
     )
 
 
 def zone_of(points: Array, where: str) -> Round:
-    """The narrowest zone of points (n, d) as `roundness.narrowest` finds it, of many by those that matter: what holds all
-    others too is the narrowest of all."""
+    """The narrowest zone of points (n, d) as in `roundness.narrowest`; for many points it is computed on a subset that grows until
+    its zone holds every point, which makes it the narrowest zone of the whole.
+    """
     if len(points) <= 4 * ZONE_SIZE:
         return narrowest(points, where)
-    distance = np.linalg.norm(points - least(points, where).centre, axis=1)
+    distance = np.linalg.norm(points - least_squares_round(points, where).centre, axis=1)
     order = np.argsort(distance)
     evenly = np.linspace(0, len(points) - 1, ZONE_SIZE).astype(np.intp)
-    chosen = np.unique(np.r_[order[:ZONE_SIZE], order[-ZONE_SIZE:], evenly])
+    sample = np.unique(np.r_[order[:ZONE_SIZE], order[-ZONE_SIZE:], evenly])
     for _ in range(20):
-        found = narrowest(points[chosen], where)
-        distance = np.linalg.norm(points - found.centre, axis=1)
-        if np.ptp(distance) <= found.zone + 1e-9 * found.outer:
+        zone = narrowest(points[sample], where)
+        distance = np.linalg.norm(points - zone.centre, axis=1)
+        if np.ptp(distance) <= zone.zone + 1e-9 * zone.outer:
             break
         order = np.argsort(distance)
-        chosen = np.unique(np.r_[chosen, order[:ZONE_SIZE], order[-ZONE_SIZE:]])
+        sample = np.unique(np.r_[sample, order[:ZONE_SIZE], order[-ZONE_SIZE:]])
     inner, outer = float(distance.min()), float(distance.max())
-    return Round(found.centre, 0.5 * (inner + outer), inner, outer)
+    return Round(zone.centre, 0.5 * (inner + outer), inner, outer)
 
 
 def default_heights(planned: Planned, points: Array) -> tuple[float, ...]:
@@ -218,15 +225,15 @@ def default_heights(planned: Planned, points: Array) -> tuple[float, ...]:
 
 
 def warnings_of(circles: Sequence[Circle]) -> list[str]:
-    """What to know about circles that were not measured all round."""
+    """Warnings about circles that were not measured all round."""
     return [
         Text(
             "the circle at {:g} mm was not measured all round: {:.0f} deg between neighbours",
-            one.height,
-            np.degrees(one.gap),
+            circle.height,
+            np.degrees(circle.gap),
         )
-        for one in circles
-        if one.gap > 2.0 * np.pi * ALL_ROUND
+        for circle in circles
+        if circle.gap > 2.0 * np.pi * ALL_ROUND
     ]
 
 

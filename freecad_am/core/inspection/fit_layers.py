@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers fitted to what was scanned: the first one lies on it, and the next ones lead back to the plan.
+"""Layers fitted to a scan: the first one is on it, and the next ones lead back to the plan.
 
-Points move along the direction in which layers grow, by less and less from layer to layer; where layers get thinner or
-thicker by that, the torch is faster or slower, so that as much is deposited as there is room for.
+Points move along the direction in which layers grow, by less from layer to layer; where layers get thinner or thicker, the
+torch is faster or slower, so that the deposit fills its room.
 """
 
 from __future__ import annotations
@@ -21,25 +21,26 @@ from ..parameters.scan import ScanParameters
 from ..toolpath import Bead, Layer, Toolpath
 from ..types import Array, Index
 from .scan_heights import Scan
-from .scanned_beads import STEP, Off, Scanned, Ways, along_beads, moved
+from .scanned_beads import STEP, Off, Scanned, Ways, along_beads, move_bead
 
 FAMILIES = ("solid", "surface")  # solids in plane layers, and walls
-RUN = 20  # steps over which a slope is told
+RUN = 20  # steps over which a slope is measured
 LOOKED = 20_000  # places of the first layer that are kept for pictures
 
 
 @dataclass(frozen=True)
 class _Course:
-    """Which layers move by which share of what the scan is off: all of it in the layer `first`, nothing `layers` later. What
-    lies below was scanned from above: it moves in proportion to its height."""
+    """Shares of the scan deviation by which layers move: 1 in the layer `first_layer`, 0 `layers` later. Layers below were scanned from
+    above: they move in proportion to their height.
+    """
 
-    first: int
+    first_layer: int
     layers: int
 
     def share(self, layer: int) -> float:
-        if layer < self.first:
-            return layer / self.first
-        return max(0.0, 1.0 - (layer - self.first) / self.layers)
+        if layer < self.first_layer:
+            return layer / self.first_layer
+        return max(0.0, 1.0 - (layer - self.first_layer) / self.layers)
 
 
 def refuse_family(toolpath: Toolpath, where: str) -> None:
@@ -54,54 +55,71 @@ def refuse_family(toolpath: Toolpath, where: str) -> None:
         )
 
 
-def fitted(
+def fit_layers(
     toolpath: Toolpath, scan: Scan, parameters: ScanParameters, left_out: int, motion: Array
 ) -> Toolpath:
-    """The toolpath with its layers fitted to a scan. left_out: points of its file that are not in it; motion: (4, 4) from
-    where it was measured to the part. InputError NO_LAYER, SCAN_MISSES, SCAN_OFF, and those of `refuse_family`."""
+    """The toolpath with its layers fitted to a scan.
+
+    left_out: points of its file that were dropped; motion: (4, 4) from the measuring coordinates to the part. InputError
+    NO_LAYER, SCAN_MISSES, SCAN_OFF, and the errors of `refuse_family`.
+    """
     refuse_family(toolpath, scan.label)
-    first = parameters.first
-    if first >= len(toolpath.layers):
+    first_layer = parameters.first
+    if first_layer >= len(toolpath.layers):
         raise InputError(
             "NO_LAYER",
             "substrate.after_layer",
             "there is no layer above {}: the last one of {} is {}; give a lower one",
-            first - 1,
+            first_layer - 1,
             len(toolpath.layers),
             len(toolpath.layers) - 1,
         )
-    ways = ways_of(toolpath)
-    beads = toolpath.layers[first].beads
+    directions_of = ways_of(toolpath)
+    beads = toolpath.layers[first_layer].beads
     planned = along_beads(
-        beads, ways, _refusing(scan, first, toolpath.layer_height), 1.0, toolpath.chord_error
+        beads,
+        directions_of,
+        _refusing(scan, first_layer, toolpath.layer_height),
+        1.0,
+        toolpath.chord_error,
     )
-    off = np.concatenate([one.off for one in planned])
-    most = float(np.abs(off).max())
-    count = max(1, math.ceil(most / (parameters.scan_band * toolpath.layer_height) - 1e-9))
-    course = _Course(first, count)
-    above = _Above(toolpath, planned, ways, scan)
+    off = np.concatenate([scanned_bead.off for scanned_bead in planned])
+    largest = float(np.abs(off).max())
+    count = max(1, math.ceil(largest / (parameters.scan_band * toolpath.layer_height) - 1e-9))
+    course = _Course(first_layer, count)
+    above = _Above(toolpath, planned, directions_of, scan)
     layers, uneven = [], []
     for number, layer in enumerate(toolpath.layers):
         share = course.share(number)
         if share == 0.0:
             layers.append(layer)
             continue
-        found = (
+        scanned = (
             planned
-            if number == first
-            else along_beads(layer.beads, ways, above, share, toolpath.chord_error)
+            if number == first_layer
+            else along_beads(layer.beads, directions_of, above, share, toolpath.chord_error)
         )
-        thinner = share - course.share(number + 1) if number >= first else 0.0
-        made = [
-            moved(one, share, thinner / toolpath.layer_height, toolpath.layer_height)
-            for one in found
+        thinner = share - course.share(number + 1) if number >= first_layer else 0.0
+        moved_beads = [
+            move_bead(scanned_bead, share, thinner / toolpath.layer_height, toolpath.layer_height)
+            for scanned_bead in scanned
         ]
-        layers.append(replace(layer, beads=tuple(made)))
+        layers.append(replace(layer, beads=tuple(moved_beads)))
         if thinner:
-            heights = toolpath.layer_height - thinner * np.concatenate([one.off for one in found])
+            heights = toolpath.layer_height - thinner * np.concatenate(
+                [scanned_bead.off for scanned_bead in scanned]
+            )
             uneven.append((number, heights.min(), heights.max()))
     record = _record(
-        planned, layers[first], ways, scan, course, most, len(toolpath.layers), left_out, motion
+        planned,
+        layers[first_layer],
+        directions_of,
+        scan,
+        course,
+        largest,
+        len(toolpath.layers),
+        left_out,
+        motion,
     )
     return replace(
         toolpath,
@@ -112,16 +130,18 @@ def fitted(
     )
 
 
-def moved_most(record: Fitted, layers: Index) -> Array:
+def max_moves(record: Fitted, layers: Index) -> Array:
     """(n,) mm that points of the layers (n,) were moved at most to fit them to a scan."""
-    most = float(np.abs(record.off).max(initial=0.0))
-    left = 1.0 - (
-        record.remains / most if most else 0.0
-    )  # of the way back, what the last layer has gone
-    count = (record.layers - 1) / left if record.remains and record.layers > 1 else record.layers
+    largest = float(np.abs(record.off).max(initial=0.0))
+    reduction = 1.0 - (
+        record.remains / largest if largest else 0.0
+    )  # share of the way back at the last layer
+    count = (
+        (record.layers - 1) / reduction if record.remains and record.layers > 1 else record.layers
+    )
     course = _Course(record.layer, max(1, round(count)))
     return (
-        most
+        largest
         * np.array([course.share(layer) for layer in range(int(layers.max(initial=0)) + 1)])[layers]
     )
 
@@ -135,11 +155,11 @@ def ways_of(toolpath: Toolpath) -> Ways:
 
 
 def _refusing(scan: Scan, layer: int, height: float) -> Off:
-    """How far the scan is from points of the first layer that lies on it. InputError where it is not, or too far off."""
+    """Offset of the scan from points of the first layer on it. InputError if it does not cover them, or is too far off."""
 
-    def off(points: Array, ways: Array) -> Array:
-        found = scan.heights(points, ways)
-        bare = np.flatnonzero(~found.covered)
+    def off(points: Array, directions: Array) -> Array:
+        heights = scan.heights(points, directions)
+        bare = np.flatnonzero(~heights.covered)
         if len(bare):
             size = float(np.linalg.norm(np.ptp(scan.points, axis=0))) if len(scan.points) else 0.0
             raise InputError(
@@ -155,54 +175,54 @@ def _refusing(scan: Scan, layer: int, height: float) -> Off:
                 size,
                 float(np.linalg.norm(np.ptp(points, axis=0))),
             )
-        far = int(np.abs(found.off).argmax())
-        if abs(found.off[far]) > scan.within:
+        farthest = int(np.abs(heights.off).argmax())
+        if abs(heights.off[farthest]) > scan.within:
             raise InputError(
                 "SCAN_OFF",
                 scan.label,
                 "the scan lies {:.4g} mm from layer {} at {}, more than substrate.scan_within = "
                 "{:g} mm; check that it is of this part, its unit and its fit",
-                found.off[far],
+                heights.off[farthest],
                 layer,
-                place(points[far]),
+                place(points[farthest]),
                 scan.within,
             )
-        return found.off
+        return heights.off
 
     return off
 
 
 class _Above:
-    """How far the scan is from what lies above or below its layer, at the places of that layer below or above them."""
+    """Offset of the scan for layers above or below its layer, from the points of that layer below or above them."""
 
     def __init__(
-        self, toolpath: Toolpath, planned: Sequence[Scanned], ways: Ways, scan: Scan
+        self, toolpath: Toolpath, planned: Sequence[Scanned], directions_of: Ways, scan: Scan
     ) -> None:
         self.first = planned
         self.solid, self.scan = toolpath.family == "solid", scan
-        points, off = zip(*(one.samples() for one in planned), strict=True)
+        points, off = zip(*(scanned_bead.samples() for scanned_bead in planned), strict=True)
         self.off, self.tree = np.concatenate(off), cKDTree(np.concatenate(points))
         self.plane = planned[0].bead.points[0]
 
-    def __call__(self, points: Array, ways: Array) -> Array:
+    def __call__(self, points: Array, directions: Array) -> Array:
         if not self.solid:
             return np.asarray(self.off[self.tree.query(points)[1]])
-        feet = points - ((points - self.plane) * ways).sum(axis=1)[:, None] * ways
-        found = self.scan.heights(feet, ways)
-        sure = found.covered & (
-            np.abs(np.where(found.covered, found.off, np.inf)) <= np.abs(self.off).max() + 1e-9
+        feet = points - ((points - self.plane) * directions).sum(axis=1)[:, None] * directions
+        heights = self.scan.heights(feet, directions)
+        sure = heights.covered & (
+            np.abs(np.where(heights.covered, heights.off, np.inf)) <= np.abs(self.off).max() + 1e-9
         )
-        # beyond the first layer it leads on as at its edge
-        return np.where(sure, found.off, self.off[self.tree.query(feet)[1]])
+        # beyond the first layer the offset at its edge continues
+        return np.where(sure, heights.off, self.off[self.tree.query(feet)[1]])
 
 
 def _record(
     planned: Sequence[Scanned],
     layer: Layer,
-    ways: Ways,
+    directions_of: Ways,
     scan: Scan,
     course: _Course,
-    most: float,
+    largest: float,
     layers: int,
     left_out: int,
     motion: Array,
@@ -211,31 +231,31 @@ def _record(
         bead.halved(np.arange(len(bead) - 1)) for bead in layer.beads
     ]  # between points, too
     deposited = np.concatenate([bead.points for bead in beads])
-    found = scan.heights(deposited, np.concatenate([ways(bead) for bead in beads]))
-    looked = np.unique(np.linspace(0, len(deposited) - 1, LOOKED).astype(np.intp))
-    places, off = (
-        np.concatenate([one.bead.points for one in planned]),
-        np.concatenate([one.off for one in planned]),
+    heights = scan.heights(deposited, np.concatenate([directions_of(bead) for bead in beads]))
+    sample = np.unique(np.linspace(0, len(deposited) - 1, LOOKED).astype(np.intp))
+    positions, off = (
+        np.concatenate([scanned_bead.bead.points for scanned_bead in planned]),
+        np.concatenate([scanned_bead.off for scanned_bead in planned]),
     )
-    some = np.unique(np.linspace(0, len(places) - 1, LOOKED).astype(np.intp))
+    position_sample = np.unique(np.linspace(0, len(positions) - 1, LOOKED).astype(np.intp))
     return Fitted(
         scan.label,
         len(scan.points),
         left_out,
-        course.first,
-        min(course.layers, layers - course.first),
-        places[some],
-        off[some],
-        deposited[looked],
-        np.where(found.covered, found.off, 0.0)[looked],
+        course.first_layer,
+        min(course.layers, layers - course.first_layer),
+        positions[position_sample],
+        off[position_sample],
+        deposited[sample],
+        np.where(heights.covered, heights.off, 0.0)[sample],
         _slope(planned),
-        most * course.share(layers - 1),
+        largest * course.share(layers - 1),
         motion,
     )
 
 
-def _moved(motion: Array) -> str:
-    """In words, how a scan was laid onto what was planned."""
+def _motion_words(motion: Array) -> str:
+    """The motion that aligned a scan with the plan, in words."""
     if np.array_equal(motion, np.eye(4)):
         return Text("; it was taken as it was measured, in the part's coordinates")
     angle = math.degrees(
@@ -251,8 +271,8 @@ def _moved(motion: Array) -> str:
 def _slope(planned: Sequence[Scanned]) -> float:
     """The most that the scan rises along a bead against the plan, per mm."""
     rises = [0.0]
-    for one in planned:
-        off = one.samples()[1]
+    for scanned_bead in planned:
+        off = scanned_bead.samples()[1]
         if len(off) > RUN:
             rises.append(float(np.abs(off[RUN:] - off[:-RUN]).max()) / (RUN * STEP))
     return max(rises)
@@ -276,7 +296,7 @@ def _issues(record: Fitted, height: float) -> list[Issue]:
                 record.points,
                 record.left_out,
                 math.degrees(math.atan(record.slope)),
-                _moved(record.motion),
+                _motion_words(record.motion),
             ),
         )
     ]

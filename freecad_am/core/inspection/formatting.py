@@ -13,9 +13,9 @@ NO_TURN = 1e-6  # rad per mm of shift: no turn
 
 def motion_text(turn: Array, shift: Array, middle: Array) -> str:
     """A motion by its turn (3,) rad and the shift (3,) mm of the point `middle` (3,): a turn about an axis, or a shift."""
-    angle, way = float(np.linalg.norm(turn)), float(np.linalg.norm(shift))
-    if angle <= NO_TURN * way:
-        return f"a shift along {place(_upward(shift / way))}"
+    angle, distance = float(np.linalg.norm(turn)), float(np.linalg.norm(shift))
+    if angle <= NO_TURN * distance:
+        return f"a shift along {place(_upward(shift / distance))}"
     axis = turn / angle
     return f"a turn about the axis through {place(middle + np.cross(axis, shift) / angle)} along {place(_upward(axis))}"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Measured points against the plan: laid onto it, and what their deviations amount to."""
+"""Measured points against the plan: alignment and the figures of their deviations."""
 
 from __future__ import annotations
 
@@ -32,20 +32,19 @@ from .registration import (
 Report = Callable[[float, str], None]
 
 PREDICTED = "predicted deposit"  # in place of a file, where nothing was measured
-UNLIKE = 8.0  # times smaller than the part points are hardly of all of it; cm, inches and m are 10 times and more
+UNLIKE = 8.0  # ratio of part to points from which a unit is suspected; cm, inches and m are 10 times and more
 SHIFTS = np.vstack([np.zeros((3, 3)), np.eye(3)])
 
 
 @dataclass(frozen=True, eq=False)
 class Inspected:
-    """Measured points laid onto the part.
+    """Measured points aligned with the part.
 
-    points: (n, 3) mm in part coordinates, where the surface was met: a ball's radius from its centre. deviation: (n,) mm
-    from what was planned, plus where there is more. counted: (n,) False for points past the edges of what was planned, which
-    no figure counts; fitted: (n,) False for those and for what the fit left out. motion: (4, 4) from where points were
-    measured. free: motions that the deviations do not feel. tolerance: mm. file, against: what was compared with what.
-    laid: (m, 5) of a deposit that was predicted, not measured: mm of the middles of its pieces, their layers, and mm of its
-    surface above them; None of what was measured.
+    points: (n, 3) mm in part coordinates, where the surface was touched: a ball's radius from its centre. deviation: (n,) mm
+    from the planned surface, positive for excess. counted: (n,) False for points past the edges of the plan, which no figure counts;
+    fitted: (n,) False for uncounted points and those left out of the fit. motion: (4, 4) from the measuring coordinates. free:
+    motions without influence on the deviations. tolerance: mm. file, against: the compared objects. laid: (m, 5) for a predicted
+    deposit: mm of the middles of its pieces, their layers, and mm of its surface above them; None for a measurement.
     """
 
     points: Array
@@ -68,33 +67,39 @@ class Inspected:
 def inspect(
     measured: Measured, planned: Planned, parameters: InspectionParameters, report: Report
 ) -> Inspected:
-    """Lay measured points onto the planned surface and judge them. InputError; InfeasibleError NOT_SETTLED."""
+    """Align measured points with the planned surface and judge them. InputError; InfeasibleError NOT_SETTLED."""
     refuse_too_few(measured.points, measured.label)
     report(0.05, "laying the points onto the part")
-    found, within, distances = _aligned(measured, planned, parameters)
+    registration, within, distances = _aligned(measured, planned, parameters)
     report(0.6, "sphericity and circularity")
-    aligned = measured.points @ found.motion[:3, :3].T + found.motion[:3, 3]
+    aligned = measured.points @ registration.motion[:3, :3].T + registration.motion[:3, 3]
     distance, normal = distances(aligned)
     deviation = distance - parameters.probe_radius
     points = aligned - parameters.probe_radius * normal
-    # what is farther off than all that was fitted was left out, too
-    fitted = within & (np.abs(deviation) <= np.abs(found.distance[found.used]).max() + 1e-9)
-    kept, where = points[within], measured.label
-    ball = figures.ball(kept, kept - deviation[within, None] * normal[within], where)
+    # points farther off than every fitted point were left out, too
+    fitted = within & (
+        np.abs(deviation) <= np.abs(registration.distance[registration.used]).max() + 1e-9
+    )
+    inside_points, where = points[within], measured.label
+    ball = figures.ball(
+        inside_points, inside_points - deviation[within, None] * normal[within], where
+    )
     issues = [
         *measured.issues,
         *_unlike(measured.points, planned),
-        *_issues(found, planned, within, fitted, ball is not None),
+        *_issues(registration, planned, within, fitted, ball is not None),
     ]
     # without a wall nothing says that it is round
     levels = parameters.levels() or (
-        () if planned.wall is None else figures.default_heights(planned, kept)
+        () if planned.wall is None else figures.default_heights(planned, inside_points)
     )
     circles = []
     for height in levels:
         try:
             circles.append(
-                figures.circle(planned, kept, normal[within], height, parameters.band, where)
+                figures.circle(
+                    planned, inside_points, normal[within], height, parameters.band, where
+                )
             )
         except InputError as error:
             if parameters.heights:
@@ -106,12 +111,12 @@ def inspect(
         deviation,
         within,
         fitted,
-        found.motion,
-        found.free,
+        registration.motion,
+        registration.free,
         parameters.tolerance,
         where,
         planned.name,
-        figures.spread(deviation[within], parameters.tolerance),
+        figures.summarise(deviation[within], parameters.tolerance),
         ball,
         tuple(circles),
         _thickness(aligned, deviation, within, planned, parameters),
@@ -122,18 +127,18 @@ def inspect(
 def _aligned(
     measured: Measured, planned: Planned, parameters: InspectionParameters
 ) -> tuple[Registration, Mask, Surface]:
-    """The fit, which points are not past the edges, and the surface that was fitted to."""
+    """The fit, the points within the edges, and the surface of the fit."""
     radius, trim, where = parameters.probe_radius, parameters.trim, measured.label
     points = measured.points
-    few = points[np.unique(np.linspace(0, len(points) - 1, planned.most).astype(np.intp))]
+    sample = points[np.unique(np.linspace(0, len(points) - 1, planned.max_points).astype(np.intp))]
     exact = sided(planned.exact, parameters.side, parameters.thickness)
     if parameters.fit == NONE:
         start = _by_pairs(parameters, where)
     else:
         nearest = sided(planned.nearest, parameters.side, parameters.thickness)
-        start = _begun(few, nearest, exact, planned, parameters, where)
-    for _ in range(2):  # which points are past the edges, the fit tells
-        on_part = few[planned.within_edges(few @ start[:3, :3].T + start[:3, 3])]
+        start = _start_motion(sample, nearest, exact, planned, parameters, where)
+    for _ in range(2):  # the fit decides which points are past the edges
+        on_part = sample[planned.within_edges(sample @ start[:3, :3].T + start[:3, 3])]
         if len(on_part) < LEAST_POINTS:
             raise InputError(
                 "NOT_ON_PART",
@@ -145,11 +150,11 @@ def _aligned(
             )
         if parameters.fit == NONE:
             distance, _ = exact(on_part)
-            found = Registration(
+            registration = Registration(
                 start, on_part, distance - radius, np.ones(len(on_part), dtype=np.bool_), ()
             )
         else:
-            found = register(
+            registration = register(
                 on_part,
                 exact,
                 start[None],
@@ -159,11 +164,11 @@ def _aligned(
                 _allowed(planned, parameters),
                 planned.free,
             )
-            start = found.motion
-    return found, planned.within_edges(points @ start[:3, :3].T + start[:3, 3]), exact
+            start = registration.motion
+    return registration, planned.within_edges(points @ start[:3, :3].T + start[:3, 3]), exact
 
 
-def _begun(
+def _start_motion(
     points: Array,
     nearest: Surface,
     exact: Surface,
@@ -171,8 +176,9 @@ def _begun(
     parameters: InspectionParameters,
     where: str,
 ) -> Array:
-    """The motion (4, 4) to begin with: from pairs of points where they are given. Else, where that does about as well as the
-    best of many attitudes, from as it was measured by shifts first, so that what deviations do not feel is not turned."""
+    """The initial motion (4, 4): from pairs of points if given. Else, if it does about as well as the best of many attitudes, from
+    the measured attitude, first by shifts, so that motions without influence on the deviations are not made.
+    """
     trim, radius = parameters.trim, parameters.probe_radius
     if parameters.start_pairs():
         start = _by_pairs(parameters, where)[None]
@@ -181,20 +187,28 @@ def _begun(
         return roughly(points, nearest, as_measured(), trim, radius, _allowed(planned, parameters))
     start = roughly(points, exact, as_measured(), trim, radius, SHIFTS, planned.free)
     start = roughly(points, exact, start[None], trim, radius, None, planned.free)
-    other = roughly(points, nearest, by_extents(points, planned.spread), trim, radius)
-    few = points[:: max(1, len(points) // 400)]
-    first, second = (mean_square(few, nearest, one, trim, radius) for one in (start, other))
-    return start if first <= EQUAL_RATIO * second + planned.chord**2 + 1e-18 else other
+    best_attitude = roughly(points, nearest, by_extents(points, planned.spread), trim, radius)
+    sample = points[:: max(1, len(points) // 400)]
+    measured_square, second = (
+        mean_square(sample, nearest, motion_, trim, radius) for motion_ in (start, best_attitude)
+    )
+    return (
+        start
+        if measured_square <= EQUAL_RATIO * second + planned.chord**2 + 1e-18
+        else best_attitude
+    )
 
 
 def _by_pairs(parameters: InspectionParameters, where: str) -> Array:
-    """The motion (4, 4) that pairs of points say; none without them."""
+    """The motion (4, 4) from pairs of points; the identity without them."""
     pairs = parameters.start_pairs()
     if not pairs:
         return np.eye(4)
     return np.asarray(
         by_pairs(
-            np.array([one for one, _ in pairs]), np.array([other for _, other in pairs]), where
+            np.array([measured_point for measured_point, _ in pairs]),
+            np.array([planned_point for _, planned_point in pairs]),
+            where,
         )[0]
     )
 
@@ -227,11 +241,11 @@ def _thickness(
 
 
 def _unlike(points: Array, planned: Planned) -> list[Issue]:
-    """That the points (n, 3) are of another size than the part, as they are in another unit: a few of them fit anywhere."""
-    measured, part = (
-        float(np.linalg.norm(np.ptp(one, axis=0))) for one in (points, planned.spread)
+    """A warning that the points (n, 3) have another size than the part, probably another unit: small clouds fit anywhere."""
+    measured, part_size = (
+        float(np.linalg.norm(np.ptp(cloud, axis=0))) for cloud in (points, planned.spread)
     )
-    if measured * UNLIKE > part:
+    if measured * UNLIKE > part_size:
         return []
     return [
         Issue(
@@ -241,19 +255,19 @@ def _unlike(points: Array, planned: Planned) -> list[Issue]:
                 "the points reach over {:.3g} mm, {} over {:.3g} mm; check the unit of the file",
                 measured,
                 planned.name,
-                part,
+                part_size,
             ),
         )
     ]
 
 
 def _issues(
-    found: Registration, planned: Planned, within: Mask, fitted: Mask, is_ball: bool
+    registration: Registration, planned: Planned, within: Mask, fitted: Mask, is_ball: bool
 ) -> list[Issue]:
     free = (
         ("turning it about the centre of the sphere",)
-        if is_ball and len(found.free) == 3
-        else found.free
+        if is_ball and len(registration.free) == 3
+        else registration.free
     )
     issues = [
         Issue(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The vertices of STL, OBJ and PLY files, as scanners write them; in the file's unit, which such files do not tell."""
+"""The vertices of STL, OBJ and PLY files, as scanners write them; in the file's unit, which these formats do not name."""
 
 from __future__ import annotations
 
@@ -42,10 +42,10 @@ def stl(data: bytes, where: str) -> Array:
     points = points[
         np.lexsort(points.T[::-1])
     ]  # as np.unique of rows has them, which holds up other threads meanwhile
-    other: Mask = np.ones(len(points), dtype=bool)
-    other[1:] = (points[1:] != points[:-1]).any(axis=1)
-    kept: Array = points[other]
-    return kept
+    differs: Mask = np.ones(len(points), dtype=bool)
+    differs[1:] = (points[1:] != points[:-1]).any(axis=1)
+    unique: Array = points[differs]
+    return unique
 
 
 def obj(data: bytes, where: str) -> Array:
@@ -59,24 +59,29 @@ def ply(data: bytes, where: str) -> Array:
     body = body.partition(b"\n")[2]
     lines = [line.split() for line in head.decode("latin-1").splitlines()]
     kind = next((line[1] for line in lines if line[:1] == ["format"] and len(line) > 1), "")
-    at = [number for number, line in enumerate(lines) if line[:1] == ["element"]]
-    first = lines[at[0]] if at else []
-    if not mark or first[1:2] != ["vertex"] or not first[2:3] or not first[2].isdecimal():
+    element_lines = [number for number, line in enumerate(lines) if line[:1] == ["element"]]
+    first_element = lines[element_lines[0]] if element_lines else []
+    if (
+        not mark
+        or first_element[1:2] != ["vertex"]
+        or not first_element[2:3]
+        or not first_element[2].isdecimal()
+    ):
         raise InputError(
             "BAD_FILE", where, "it is no PLY file that begins with its vertices; export it again"
         )
-    end = at[1] if len(at) > 1 else len(lines)
-    fields = [line for line in lines[at[0] + 1 : end] if line[:1] == ["property"]]
+    end = element_lines[1] if len(element_lines) > 1 else len(lines)
+    fields = [line for line in lines[element_lines[0] + 1 : end] if line[:1] == ["property"]]
     names = [line[-1] for line in fields]
     if not {"x", "y", "z"} <= set(names) or any(line[1] not in _PLY_TYPES for line in fields):
         raise InputError(
             "BAD_FILE", where, "its vertices have no plain x, y and z; export it again"
         )
-    count = int(first[2])
+    count = int(first_element[2])
     if kind == "ascii":
         rows = [line.split() for line in body.splitlines()[:count]]
         columns = [names.index(axis) for axis in "xyz"]
-        found = _numbers(
+        vertices = _numbers(
             [[row[k] for k in columns] for row in rows if len(row) >= len(names)], where
         )
     else:
@@ -84,18 +89,18 @@ def ply(data: bytes, where: str) -> Array:
         row = np.dtype(
             [(name, order + _PLY_TYPES[line[1]]) for name, line in zip(names, fields, strict=True)]
         )
-        held = min(count, len(body) // row.itemsize)
-        table = np.frombuffer(body, dtype=row, count=held)
-        found = np.column_stack([table[axis].astype(np.float64) for axis in "xyz"])
-    if len(found) < count:
+        row_count = min(count, len(body) // row.itemsize)
+        table = np.frombuffer(body, dtype=row, count=row_count)
+        vertices = np.column_stack([table[axis].astype(np.float64) for axis in "xyz"])
+    if len(vertices) < count:
         raise InputError(
             "BAD_FILE",
             where,
             "it is cut short after {} of {} vertices; export it again",
-            len(found),
+            len(vertices),
             count,
         )
-    return found
+    return vertices
 
 
 def _numbers(texts: list[list[bytes]], where: str) -> Array:

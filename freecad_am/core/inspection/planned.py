@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Planned surfaces that measured points are laid onto: how far points are from them, and whether past their edges."""
+"""Planned surfaces for the alignment of measured points: distances from them, and beyond their edges."""
 
 from __future__ import annotations
 
@@ -25,12 +25,11 @@ TOUCHING = 1e-9  # mm; nearer than this, what leads away from a surface is its n
 class Planned:
     """A surface in part coordinates, mm.
 
-    name: how messages call it. nearest: distances from what there is of it, edges included, to begin with. exact: distances
-    along its normals, past its edges from what goes on there. past: (n,) how far points (n, 3) are past its edges, mm.
-    spread: (m, 3) points all over it. frame: (4, 4) whose Z is its axis, at the height of its base. wall: where it is of
-    revolution, with its exact meridian. chord: mm within which it is known. most: points that it is worth fitting with.
-    free: share of the most that a motion may be felt by without being told from none, as facets have other normals than
-    what they are of.
+    name: for messages. nearest: distances from the surface, edges included, for the first alignment. exact: distances along its
+    normals, past its edges from its continuation. past: (n,) how far points (n, 3) are past its edges, mm. spread: (m, 3) points
+    all over it. frame: (4, 4) whose Z is its axis, at the height of its base. wall: if it is of revolution, with its exact
+    meridian. chord: its accuracy, mm. max_points: useful number of points for a fit. free: least influence of a motion on the
+    distances, relative to the largest, because facets have other normals than their surface.
     """
 
     name: str
@@ -41,7 +40,7 @@ class Planned:
     frame: Array
     wall: RevolvedWall | None = None
     chord: float = 0.0
-    most: int = 20_000
+    max_points: int = 20_000
     free: float = 1e-5
 
     def within_edges(self, points: Array) -> Mask:
@@ -68,72 +67,86 @@ def sided(surface: Surface, side: str, thickness: float) -> Surface:
     return one
 
 
-def of_triangles(
+def triangle_surface(
     name: str,
     vertices: Array,
     triangles: Index,
     frame: Array | None = None,
     exact: Surface | None = None,
     chord: float = 0.0,
-    most: int = 20_000,
+    max_points: int = 20_000,
 ) -> Planned:
-    """A surface of triangles, those of a solid counter-clockwise seen from outside; or what they stand for, by `exact`."""
+    """A surface of triangles, counter-clockwise seen from outside for a solid; or the surface that they approximate, by `exact`."""
     mesh = SolidMesh(vertices, triangles)
     extent = float(np.ptp(vertices, axis=0).max())
     search = mesh.searched(0.02 * extent)
 
     def nearest(points: Array) -> tuple[Array, Array]:
         distance, foot, triangle = search.signed(points)
-        return distance, _away(points, foot, distance, mesh.units[triangle])
+        return distance, _directions_away(points, foot, distance, mesh.units[triangle])
 
     def past(points: Array) -> Array:
         if exact is None:
             return np.zeros(len(points))
-        away, normal = exact(points)
-        foot = points - away[:, None] * normal
+        distance, normal = exact(points)
+        foot = points - distance[:, None] * normal
         off = np.linalg.norm(foot - search.signed(points)[1], axis=1)
         return np.asarray(np.where(off > 4.0 * chord, off, 0.0))
 
     corners = vertices[triangles]
     area = np.linalg.norm(mesh.normals, axis=1)
-    place = (np.arange(4000) + 0.5) / 4000.0 * area.sum()
-    chosen = np.searchsorted(np.cumsum(area), place).clip(max=len(area) - 1)
-    own, middles = np.eye(4) if frame is None else frame, corners[chosen].mean(axis=1)
+    area_positions = (np.arange(4000) + 0.5) / 4000.0 * area.sum()
+    triangle_rows = np.searchsorted(np.cumsum(area), area_positions).clip(max=len(area) - 1)
+    own_frame, middles = np.eye(4) if frame is None else frame, corners[triangle_rows].mean(axis=1)
     free = 1e-5 if exact is not None else FACETED
     return Planned(
-        name, nearest, exact or nearest, past, middles, own, chord=chord, most=most, free=free
+        name,
+        nearest,
+        exact or nearest,
+        past,
+        middles,
+        own_frame,
+        chord=chord,
+        max_points=max_points,
+        free=free,
     )
 
 
-def of_beads(name: str, samples: Array, normals: Array, frame: Array, step: float) -> Planned:
+def bead_surface(name: str, samples: Array, normals: Array, frame: Array, step: float) -> Planned:
     """Planned beads as points (n, 3) along them with the wall's normals (n, 3) there, no farther apart than `step` mm."""
     tree = cKDTree(samples)
 
     def surface(points: Array) -> tuple[Array, Array]:
-        _, at = tree.query(points)
-        return dot(points - samples[at], normals[at]), normals[at]
+        _, nearest_row = tree.query(points)
+        return dot(points - samples[nearest_row], normals[nearest_row]), normals[nearest_row]
 
     def off(points: Array) -> tuple[Array, Index, Array]:
-        found = tree.query(points)
-        distance, at = np.asarray(found[0]), np.asarray(found[1])
-        along = dot(points - samples[at], normals[at])
-        return along, at, np.maximum(np.sqrt(np.maximum(distance**2 - along**2, 0.0)) - step, 0.0)
+        query = tree.query(points)
+        distance, nearest_row = np.asarray(query[0]), np.asarray(query[1])
+        along = dot(points - samples[nearest_row], normals[nearest_row])
+        return (
+            along,
+            nearest_row,
+            np.maximum(np.sqrt(np.maximum(distance**2 - along**2, 0.0)) - step, 0.0),
+        )
 
     def nearest(points: Array) -> tuple[Array, Array]:
-        along, at, over = off(points)
+        along, nearest_row, over = off(points)
         distance = np.hypot(along, over) * np.where(along < 0.0, -1.0, 1.0)
-        whole = np.linalg.norm(points - samples[at], axis=1) * np.where(along < 0.0, -1.0, 1.0)
-        away = _away(points, samples[at], whole, normals[at])
-        return distance, np.where((over > 0.0)[:, None], away, normals[at])
+        signed = np.linalg.norm(points - samples[nearest_row], axis=1) * np.where(
+            along < 0.0, -1.0, 1.0
+        )
+        direction = _directions_away(points, samples[nearest_row], signed, normals[nearest_row])
+        return distance, np.where((over > 0.0)[:, None], direction, normals[nearest_row])
 
     def past(points: Array) -> Array:
         return off(points)[2]
 
-    chosen = np.unique(np.linspace(0, len(samples) - 1, 4000).astype(np.intp))
-    return Planned(name, nearest, surface, past, samples[chosen], frame, free=FACETED)
+    sample = np.unique(np.linspace(0, len(samples) - 1, 4000).astype(np.intp))
+    return Planned(name, nearest, surface, past, samples[sample], frame, free=FACETED)
 
 
-def of_revolution(wall: RevolvedWall) -> Planned:
+def revolution_surface(wall: RevolvedWall) -> Planned:
     """A wall of revolution by its exact meridian; its normals lead to the right of the meridian, away from the axis where
     it rises."""
     meridian = _Meridian(wall)
@@ -144,9 +157,9 @@ def of_revolution(wall: RevolvedWall) -> Planned:
 
     def nearest(points: Array) -> tuple[Array, Array]:
         distance, normal, past, foot = meridian.along_normals(points)
-        whole = np.linalg.norm(points - foot, axis=1) * np.where(distance < 0.0, -1.0, 1.0)
-        return np.where(past > 0.0, whole, distance), np.where(
-            (past > 0.0)[:, None], _away(points, foot, whole, normal), normal
+        signed = np.linalg.norm(points - foot, axis=1) * np.where(distance < 0.0, -1.0, 1.0)
+        return np.where(past > 0.0, signed, distance), np.where(
+            (past > 0.0)[:, None], _directions_away(points, foot, signed, normal), normal
         )
 
     def past(points: Array) -> Array:
@@ -187,31 +200,32 @@ class _Meridian:
     def local(self, points: Array) -> tuple[Array, Array, Array, Array]:
         """Radius, height, azimuth (n,) kept within the wall's turn, and how far (n,) past that in mm."""
         frame = self.wall.frame
-        own = (points - frame[:3, 3]) @ frame[:3, :3]
-        radius, azimuth = np.hypot(own[:, 0], own[:, 1]), np.arctan2(own[:, 1], own[:, 0])
+        local_points = (points - frame[:3, 3]) @ frame[:3, :3]
+        radius, azimuth = (
+            np.hypot(local_points[:, 0], local_points[:, 1]),
+            np.arctan2(local_points[:, 1], local_points[:, 0]),
+        )
         if self.wall.full:
-            return radius, own[:, 2], azimuth, np.zeros(len(points))
+            return radius, local_points[:, 2], azimuth, np.zeros(len(points))
         span = self.wall.end - self.wall.start
         middle = self.wall.start + 0.5 * span
         off = np.remainder(azimuth - middle + np.pi, 2.0 * np.pi) - np.pi
-        kept = np.clip(off, -0.5 * span, 0.5 * span)
-        beyond = np.abs(off - kept)
+        clipped = np.clip(off, -0.5 * span, 0.5 * span)
+        beyond = np.abs(off - clipped)
         over = np.where(beyond < 0.5 * np.pi, radius * np.sin(beyond), radius)
-        return radius, own[:, 2], middle + kept, over
+        return radius, local_points[:, 2], middle + clipped, over
 
     def nearest(self, radius: Array, height: Array) -> Array:
         """Arc lengths (n,) of the nearest places of the meridian."""
-        at = self.tree.query(np.column_stack([radius, height]))[1]
-        start = self.s[at]
+        nearest_row = self.tree.query(np.column_stack([radius, height]))[1]
+        start = self.s[nearest_row]
         low, high = (
             np.maximum(start - self.step, 0.0),
             np.minimum(start + self.step, self.curve.length),
         )
         f_low, f_high = self._slope(low, radius, height), self._slope(high, radius, height)
         s = start
-        for _ in range(
-            3
-        ):  # false position; what the distance falls by is nearly linear so close by
+        for _ in range(3):  # false position; the slope of the distance is nearly linear so close by
             straddled = (f_low > 0.0) & (f_high < 0.0)
             s = np.where(
                 straddled, low + (high - low) * f_low / np.where(straddled, f_low - f_high, 1.0), s
@@ -221,14 +235,16 @@ class _Meridian:
             low, f_low = np.where(f > 0.0, s, low), np.where(f > 0.0, f, f_low)
             high, f_high = np.where(f > 0.0, high, s), np.where(f > 0.0, f_high, f)
         return np.asarray(
-            np.where(self._off(s, radius, height) <= self._off(start, radius, height), s, start)
+            np.where(
+                self._distance(s, radius, height) <= self._distance(start, radius, height), s, start
+            )
         )
 
     def _slope(self, s: Array, radius: Array, height: Array) -> Array:
         r, z, tangent = self.curve.at(s)
         return np.asarray((radius - r) * tangent[:, 0] + (height - z) * tangent[:, 1])
 
-    def _off(self, s: Array, radius: Array, height: Array) -> Array:
+    def _distance(self, s: Array, radius: Array, height: Array) -> Array:
         r, z, _ = self.curve.at(s)
         return np.asarray(np.hypot(radius - r, height - z))
 
@@ -245,16 +261,16 @@ class _Meridian:
             (s >= self.curve.length) & (not self.curve.closed_top)
         )
         past = np.hypot(np.where(at_end, over, 0.0), off_plane)
-        # a corner is nearest to all within its two normals: what leads to it is one of them
+        # a corner is the foot of all points between its two normals: their direction from it is a normal
         inside = ~at_end & (over > 1e-6) & (over > 1e-3 * np.abs(distance))
         off = np.hypot(radius - r, height - z)
         side = np.where(distance < 0.0, -1.0, 1.0)
         distance = np.where(inside, side * off, distance)
-        way = (
+        direction = (
             np.column_stack([radius - r, np.zeros(len(s)), height - z])
             * (side / np.maximum(off, 1e-300))[:, None]
         )
-        normal = np.where(inside[:, None], way, normal)
+        normal = np.where(inside[:, None], direction, normal)
         return (
             distance,
             self.wall.directions(normal, azimuth),
@@ -263,7 +279,7 @@ class _Meridian:
         )
 
 
-def _away(points: Array, foot: Array, distance: Array, normal: Array) -> Array:
+def _directions_away(points: Array, foot: Array, distance: Array, normal: Array) -> Array:
     """Unit vectors (n, 3) along which signed distances from feet grow."""
     off = np.abs(distance)[:, None]
     sense = np.where(distance < 0.0, -1.0, 1.0)[:, None]

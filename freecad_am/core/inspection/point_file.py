@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Measured points from files of measuring machines and scanners; how a file was understood is told."""
+"""Measured points from files of measuring machines and scanners, with notes on their interpretation."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ TABLES, MESHES = (
     {".stl": mesh_file.stl, ".obj": mesh_file.obj, ".ply": mesh_file.ply},
 )
 MAX_POINTS = 200_000  # points that are kept of a larger scan, evenly
-LARGEST = 1000  # MB
-LOOK = 200  # rows by which a table's signs are told
-HEAD = 10_000  # bytes of a mesh that may tell a unit
+MAX_FILE_MB = 1000  # MB
+SAMPLE_ROWS = 200  # rows that decide the signs of a table
+HEAD = 10_000  # bytes of a mesh that may mention a unit
 LONGEST_REMARK = 60  # characters of one that a message shows
 _MARKS = ("#", "//", "%", "!", "'", '"#')
 _SIGNS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","))
@@ -46,24 +46,24 @@ class Measured:
 
 
 def read(path: str | Path, unit: str = AUTO) -> Measured:
-    """The points of a CSV, TXT, XYZ or ASC table, or the vertices of an STL, OBJ or PLY mesh.
+    """Read the points of a CSV, TXT, XYZ or ASC table, or the vertices of an STL, OBJ or PLY mesh.
 
-    unit: of the coordinates; auto takes what the file names, else mm. InputError NO_FILE, EMPTY_FILE, UNSUPPORTED_FILE,
+    unit: of the coordinates; auto takes the unit that the file names, else mm. InputError NO_FILE, EMPTY_FILE, UNSUPPORTED_FILE,
     BAD_FILE, NO_POINTS, AMBIGUOUS.
     """
     file = Path(path)
     suffix = file.suffix.lower()
     if suffix not in (*TABLES, *MESHES):
-        known = ", ".join((*TABLES, *MESHES))
+        suffixes = ", ".join((*TABLES, *MESHES))
         raise InputError(
             "UNSUPPORTED_FILE",
             file.name,
             "{} is not read as points; use {}",
             suffix or "no ending",
-            known,
+            suffixes,
         )
     try:
-        data = read_content(file, LARGEST, "BAD_FILE", file.name)
+        data = read_content(file, MAX_FILE_MB, "BAD_FILE", file.name)
     except (OSError, ValueError) as error:
         why = (getattr(error, "strerror", None) or str(error)).lower()
         raise InputError(
@@ -78,35 +78,35 @@ def parse(data: bytes, label: str, unit: str = AUTO) -> Measured:
         raise InputError("EMPTY_FILE", label, "it is empty; export the points again")
     suffix = Path(label).suffix.lower()
     if suffix in MESHES:
-        found, messages, named = (
+        points, messages, named = (
             MESHES[suffix](data, label),
             ["the vertices of a mesh are taken as points"],
             _unit_of_remarks(_remarks_of_mesh(data, suffix), label) if unit == AUTO else "",
         )
     else:
-        found, messages, named = _table(_text(data), label)
+        points, messages, named = _table(_text(data), label)
     level = NOTE
-    finite = np.isfinite(found).all(axis=1)
+    finite = np.isfinite(points).all(axis=1)
     if not finite.all():
         messages.append(
             Text("{} points without finite coordinates are left out", int((~finite).sum()))
         )
-        found, level = found[finite], WARNING
-    if not len(found):
+        points, level = points[finite], WARNING
+    if not len(points):
         raise InputError("NO_POINTS", label, "there are no points in it; give rows of x y z")
-    chosen = unit if unit != AUTO else named or "mm"
+    unit_name = unit if unit != AUTO else named or "mm"
     messages.append(
         Text(
             "coordinates in {}{}",
-            chosen,
+            unit_name,
             Word("" if unit != AUTO or named else ", as the file names no unit"),
         )
     )
-    if len(found) > MAX_POINTS:
-        messages.append(Text("of {} points {} are kept, evenly", len(found), MAX_POINTS))
-        found = found[np.linspace(0, len(found) - 1, MAX_POINTS).astype(np.intp)]
+    if len(points) > MAX_POINTS:
+        messages.append(Text("of {} points {} are kept, evenly", len(points), MAX_POINTS))
+        points = points[np.linspace(0, len(points) - 1, MAX_POINTS).astype(np.intp)]
     return Measured(
-        found * UNITS[chosen],
+        points * UNITS[unit_name],
         label,
         (Issue(level, "POINTS_READ", Text("{}: {}", label, Text.joined("; ", messages))),),
     )
@@ -122,7 +122,7 @@ def _text(data: bytes) -> str:
 
 
 def _table(text: str, label: str) -> tuple[Array, list[str], str]:
-    """Points (n, 3) of a table in its unit, how it was understood, and the unit that it names, '' for none."""
+    """Points (n, 3) of a table in its unit, notes on its interpretation, and the unit that it names, '' for none."""
     lines = [line.strip() for line in text.splitlines()]
     remarks = [line for line in lines if line.startswith(_MARKS)]
     rows = [
@@ -133,23 +133,23 @@ def _table(text: str, label: str) -> tuple[Array, list[str], str]:
     delimiter, comma = _signs([line for _, line in rows], label)
     cells = [(number, _cells(line, delimiter)) for number, line in rows]
     is_row = [sum(_is_number(cell, comma) for cell in row) >= 3 for _, row in cells]
-    first = is_row.index(True)
-    heads = [row for _, row in cells[:first]]
-    width = len(cells[first][1])
-    columns, named, messages = _columns(heads, cells[first:][:LOOK], width, comma, label)
+    first_row = is_row.index(True)
+    heads = [row for _, row in cells[:first_row]]
+    width = len(cells[first_row][1])
+    columns, named, messages = _columns(heads, cells[first_row:][:SAMPLE_ROWS], width, comma, label)
     messages.insert(
         0, f"columns between {_NAMES[delimiter]}" + (", decimal commas" if comma == "," else "")
     )
-    found, bad = [], []
-    for number, row in cells[first:]:
+    points, bad = [], []
+    for number, row in cells[first_row:]:
         picked = [row[k] for k in columns if k < len(row)]
         if len(picked) == 3 and all(_is_number(cell, comma) for cell in picked):
-            found.append(
+            points.append(
                 [float(cell.replace(",", ".")) if comma == "," else float(cell) for cell in picked]
             )
         else:
             bad.append(number)
-    if len(bad) > len(found):
+    if len(bad) > len(points):
         raise InputError(
             "BAD_FILE",
             f"{label} line {bad[0]}",
@@ -159,19 +159,19 @@ def _table(text: str, label: str) -> tuple[Array, list[str], str]:
         messages.append(
             f"{len(bad)} lines that are not points are left out, the first is line {bad[0]}"
         )
-    _check_widths(cells[first:], width, delimiter, label)
+    _check_widths(cells[first_row:], width, delimiter, label)
     texts = [
         *named,
         *(" ".join(head) for head in heads if "unit" in " ".join(head).lower()),
         *(remark for remark in remarks if "unit" in remark.lower()),
     ]
     unit = _unit_of_remarks(texts, label)
-    return np.array(found).reshape(-1, 3), messages, unit
+    return np.array(points).reshape(-1, 3), messages, unit
 
 
 def _unit_of_remarks(texts: list[str], label: str) -> str:
     """The unit that remarks or headings name, '' for none. InputError BAD_UNIT for one that is not read."""
-    unit = next((one for one in map(_unit_in, texts) if one), "")
+    unit = next((name for name in map(_unit_in, texts) if name), "")
     for text in texts:
         if not unit and _OTHER_UNIT.search(text.lower().replace("_", " ")) is not None:
             raise InputError(
@@ -184,7 +184,7 @@ def _unit_of_remarks(texts: list[str], label: str) -> str:
 
 
 def _remarks_of_mesh(data: bytes, suffix: str) -> list[str]:
-    """Lines of the head of a PLY file, or remarks of an OBJ file, that tell of a unit."""
+    """Lines of the head of a PLY file, or remarks of an OBJ file, that mention a unit."""
     marks: tuple[str, ...]
     if suffix == ".ply":
         head, marks = data[: max(data.find(b"end_header"), 0)], ("comment", "obj_info")
@@ -199,7 +199,7 @@ def _remarks_of_mesh(data: bytes, suffix: str) -> list[str]:
 def _check_widths(
     rows: list[tuple[int, list[str]]], width: int, delimiter: str | None, label: str
 ) -> None:
-    """InputError BAD_FILE for a row with more cells than the first: commas may stand for decimals there."""
+    """InputError BAD_FILE for a row with more cells than the first: its commas may be decimal signs."""
     if delimiter != ",":
         return
     for number, row in rows:
@@ -214,8 +214,8 @@ def _check_widths(
 
 
 def _signs(lines: list[str], label: str) -> tuple[str | None, str]:
-    """What stands between columns, None for blanks, and before decimals: that by which most lines are rows of numbers."""
-    tail = lines[max(0, len(lines) - LOOK) :]
+    """The separator of columns, None for blanks, and the decimal sign: the pair with the most rows of numbers."""
+    tail = lines[max(0, len(lines) - SAMPLE_ROWS) :]
     scores = []
     for delimiter, comma in _SIGNS:
         rows = [_cells(line, delimiter) for line in tail]
@@ -227,8 +227,8 @@ def _signs(lines: list[str], label: str) -> tuple[str | None, str]:
     delimiter, comma = _SIGNS[best]
     if delimiter == ",":
         rows = [_cells(line, delimiter) for line in tail]
-        whole = all(re.fullmatch(r"[-+]?\d+", cell) for row in rows for cell in row)
-        if whole and all(len(row) >= 6 and len(row) % 2 == 0 for row in rows):
+        only_integers = all(re.fullmatch(r"[-+]?\d+", cell) for row in rows for cell in row)
+        if only_integers and all(len(row) >= 6 and len(row) % 2 == 0 for row in rows):
             raise InputError(
                 "AMBIGUOUS",
                 label,
@@ -261,7 +261,7 @@ def _columns(
     comma: str,
     label: str,
 ) -> tuple[list[int], list[str], list[str]]:
-    """The columns of x, y and z, what their headings say, and how they were chosen."""
+    """The columns of x, y and z, their headings, and notes on their choice."""
     for head in reversed(heads):
         plain = [re.sub(r"[^a-z].*", "", cell.strip().lower()) for cell in head]
         if len(head) == width and {"x", "y", "z"} <= set(plain):
@@ -276,9 +276,9 @@ def _columns(
                 )
             columns = [plain.index(axis) for axis in "xyz"]
             _check_units([head[k] for k in columns], label)
-            more = width - 3
+            surplus = width - 3
             messages = ["x, y and z by their headings"] + (
-                [f"{more} more columns not used"] if more else []
+                [f"{surplus} more columns not used"] if surplus else []
             )
             return columns, [head[k] for k in columns], messages
     for head in heads[-1:]:
@@ -290,10 +290,10 @@ def _columns(
                 "its columns are called {}; call those of the coordinates x, y and z",
                 ", ".join(head),
             )
-    whole = [row for _, row in rows if len(row) == width]
-    columns = [k for k in range(width) if all(_is_number(row[k], comma) for row in whole)]
+    full_rows = [row for _, row in rows if len(row) == width]
+    columns = [k for k in range(width) if all(_is_number(row[k], comma) for row in full_rows)]
     messages = []
-    if len(columns) > 3 and _running([row[columns[0]] for row in whole]):
+    if len(columns) > 3 and _running([row[columns[0]] for row in full_rows]):
         columns, messages = columns[1:], ["the first column is a running number"]
     if len(columns) > 3:
         messages.append(
@@ -308,7 +308,7 @@ def _is_name(cell: str) -> bool:
 
 
 def _are_of_points(names: list[str]) -> bool:
-    """Whether headings are those of ParaView, points:0 to points:2, which come in this order."""
+    """Whether headings are from ParaView, points:0 to points:2, which come in this order."""
     numbered = [name[-1] for name in names if re.fullmatch(r"points?[:_ ][012]", name)]
     return numbered == ["0", "1", "2"]
 
@@ -325,8 +325,8 @@ def _check_units(names: list[str], label: str) -> None:
                 "the unit of the column {!r} is not read; use mm, cm, m, um or inch",
                 name,
             )
-    known = {_unit_in(name) for name in names} - {""}
-    if len(known) > 1:
+    units = {_unit_in(name) for name in names} - {""}
+    if len(units) > 1:
         raise InputError(
             "BAD_UNIT",
             label,

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Measured points laid onto a surface: the rigid motion with the least sum of squared distances.
+"""Registration of measured points on a surface: the rigid motion with the least sum of squared distances.
 
 Rounds of Gauss-Newton on the distances along the surface's normals (Chen and Medioni 1992), damped as Levenberg and
-Marquardt do. Of motions that the distances do not feel, as turning something round about its axis, the least is made; they
-are told.
+Marquardt do. Motions without influence on the distances, such as turning a round part about its axis, are not made; they are
+reported.
 """
 
 from __future__ import annotations
@@ -29,7 +29,9 @@ HOPE = 30.0  # starts whose mean square is more than this of the best are tried 
 EQUAL_RATIO = 1.02  # mean squares that differ by no more are alike
 CONVERGED = 1e-9  # mm that the last round moved any point by
 STILL = 1e-6  # mm that the last round may have moved a point by for the fit to count
-FREE = 1e-5  # of the stiffest motion's: a singular value of a motion that distances do not feel
+MIN_INFLUENCE = (
+    1e-5  # of the stiffest motion's: a singular value of a motion that distances do not feel
+)
 LEAST_POINTS = 6
 
 
@@ -37,8 +39,8 @@ LEAST_POINTS = 6
 class Registration:
     """The fit of n measured points.
 
-    motion: (4, 4), from where they were measured to where they lie on the part. points: (n, 3) there. distance: (n,) mm from
-    the surface, outside with a plus. used: (n,) bool, those that counted. free: motions that the distances do not feel.
+    motion: (4, 4), from the measuring coordinates to the part. points: (n, 3) there. distance: (n,) mm from the surface, positive
+    outside. used: (n,) bool, the counted points. free: motions without influence on the distances.
     """
 
     motion: Array
@@ -73,7 +75,7 @@ def register(
     trim: float = 0.0,
     radius: float = 0.0,
     allowed: Array | None = None,
-    free: float = FREE,
+    free: float = MIN_INFLUENCE,
     still: float = STILL,
 ) -> Registration:
     """The best fit of points (n, 3) from any of the starts (4, 4): each is tried with a few points, the best with all.
@@ -102,7 +104,7 @@ def register(
             where,
             "the measured points do not settle on the part; give pairs of points to begin with",
         )
-    aligned = _moved(points, motion)
+    aligned = _transform(points, motion)
     distance, normal = surface(aligned)
     distance = distance - radius
     used = _counting(distance, trim)
@@ -118,30 +120,33 @@ def roughly(
     trim: float = 0.0,
     radius: float = 0.0,
     allowed: Array | None = None,
-    free: float = FREE,
+    free: float = MIN_INFLUENCE,
 ) -> Array:
-    """The motion (4, 4) that a few of the points tell: from the first of the starts that comes to about the least distances,
-    so that what distances do not feel stays as it was measured."""
-    few = points[np.unique(np.linspace(0, len(points) - 1, TRIAL_POINTS).astype(np.intp))]
-    begun = [
-        _converged(few, surface, start, trim, radius, FIRST_ROUNDS, allowed, free)
+    """An approximate motion (4, 4) from a sample of the points: from the first of the starts that comes to about the least
+    distances, so that motions without influence are not made.
+    """
+    sample = points[np.unique(np.linspace(0, len(points) - 1, TRIAL_POINTS).astype(np.intp))]
+    first_fits = [
+        _converged(sample, surface, start, trim, radius, FIRST_ROUNDS, allowed, free)
         for start in starts
     ]
-    hopeful = HOPE * min(square for _, square, _ in begun) + 1e-18
-    tried = [
-        _converged(few, surface, motion, trim, radius, TRIAL_ROUNDS, allowed, free)
-        for motion, square, _ in begun
+    hopeful = HOPE * min(square for _, square, _ in first_fits) + 1e-18
+    fits = [
+        _converged(sample, surface, motion, trim, radius, TRIAL_ROUNDS, allowed, free)
+        for motion, square, _ in first_fits
         if square <= hopeful
     ]
-    least = min(square for _, square, _ in tried)
-    return next(motion for motion, square, _ in tried if square <= EQUAL_RATIO * least + 1e-18)
+    least_square = min(square for _, square, _ in fits)
+    return next(
+        motion for motion, square, _ in fits if square <= EQUAL_RATIO * least_square + 1e-18
+    )
 
 
 def mean_square(
     points: Array, surface: Surface, motion: Array, trim: float = 0.0, radius: float = 0.0
 ) -> float:
-    """Mean square distance, mm2, of what counts of points (n, 3) moved by a motion (4, 4)."""
-    return _square(surface(_moved(points, motion))[0] - radius, trim)
+    """Mean square distance, mm2, of the counted points (n, 3) moved by a motion (4, 4)."""
+    return _square(surface(_transform(points, motion))[0] - radius, trim)
 
 
 def as_measured() -> Array:
@@ -150,25 +155,27 @@ def as_measured() -> Array:
 
 
 def by_extents(points: Array, of_surface: Array) -> Array:
-    """Starts (25, 4, 4): as measured, and middle on middle with the principal axes of points (n, 3) along those of points
-    all over the surface (m, 3), in all 24 ways."""
-    here, there = points.mean(axis=0), of_surface.mean(axis=0)
-    mine = np.linalg.svd(points - here, full_matrices=False)[2]
-    its = np.linalg.svd(of_surface - there, full_matrices=False)[2]
-    mine[2] *= np.linalg.det(mine)
+    """Starts (25, 4, 4): as measured, and centre on centre with the principal axes of points (n, 3) along the axes of points
+    all over the surface (m, 3), in the 24 orientations.
+    """
+    centre, surface_centre = points.mean(axis=0), of_surface.mean(axis=0)
+    axes_of_points = np.linalg.svd(points - centre, full_matrices=False)[2]
+    its = np.linalg.svd(of_surface - surface_centre, full_matrices=False)[2]
+    axes_of_points[2] *= np.linalg.det(axes_of_points)
     its[2] *= np.linalg.det(its)
-    found = [np.eye(4)]
+    starts = [np.eye(4)]
     for order, signs in product(permutations(range(3)), product((1.0, -1.0), repeat=3)):
         axes = np.array(signs)[:, None] * np.eye(3)[list(order)]
         if np.linalg.det(axes) > 0.0:
-            turn = its.T @ axes @ mine
-            found.append(pose(turn, there - turn @ here))
-    return np.array(found)
+            turn = its.T @ axes @ axes_of_points
+            starts.append(pose(turn, surface_centre - turn @ centre))
+    return np.array(starts)
 
 
 def by_pairs(measured: Array, planned: Array, where: str) -> Array:
-    """The start (1, 4, 4) that lays three or more measured points (k, 3) onto the points of the part that they are (k, 3),
-    with the least squares (Kabsch 1976)."""
+    """The start (1, 4, 4) that moves three or more measured points (k, 3) onto the corresponding points of the part (k, 3), with the
+    least squares (Kabsch 1976).
+    """
     if measured.shape != planned.shape or len(measured) < 3:
         raise InputError(
             "TOO_FEW_PAIRS",
@@ -176,16 +183,18 @@ def by_pairs(measured: Array, planned: Array, where: str) -> Array:
             "{} pairs of points; give three or more",
             min(len(measured), len(planned)),
         )
-    here, there = measured.mean(axis=0), planned.mean(axis=0)
-    left, stretch, right = np.linalg.svd((planned - there).T @ (measured - here))
+    measured_centre, planned_centre = measured.mean(axis=0), planned.mean(axis=0)
+    u_matrix, stretch, right = np.linalg.svd(
+        (planned - planned_centre).T @ (measured - measured_centre)
+    )
     if stretch[1] <= 1e-9 * max(stretch[0], 1e-300):
         raise InputError(
             "PAIRS_IN_LINE",
             where,
             "the pairs of points lie in one line, about which the part can turn; choose others",
         )
-    turn = left @ np.diag([1.0, 1.0, np.linalg.det(left @ right)]) @ right
-    return np.asarray(pose(turn, there - turn @ here))[None]
+    turn = u_matrix @ np.diag([1.0, 1.0, np.linalg.det(u_matrix @ right)]) @ right
+    return np.asarray(pose(turn, planned_centre - turn @ measured_centre))[None]
 
 
 def _converged(
@@ -198,16 +207,16 @@ def _converged(
     allowed: Array | None,
     free: float,
 ) -> tuple[Array, float, float]:
-    """Motion, mean square distance of what counts, and how far the last round moved a point, mm."""
+    """Motion, mean square distance of the counted points, and the last round's largest displacement of a point, mm."""
     motion, damping, moved = start, 0.0, np.inf
-    aligned = _moved(points, motion)
+    aligned = _transform(points, motion)
     distance, normal = surface(aligned)
     square = _square(distance - radius, trim)
     for _ in range(rounds):
         used = _counting(distance - radius, trim)
         change = _step(aligned[used], normal[used], distance[used] - radius, damping, allowed, free)
-        tried = change @ motion
-        moving = _moved(points, tried)
+        trial = change @ motion
+        moving = _transform(points, trial)
         next_distance, next_normal = surface(moving)
         next_square = _square(next_distance - radius, trim)
         if next_square > square * (1.0 + 1e-12):
@@ -218,7 +227,7 @@ def _converged(
             continue
         moved = float(np.linalg.norm(moving - aligned, axis=1).max())
         motion, aligned, distance, normal, square = (
-            tried,
+            trial,
             moving,
             next_distance,
             next_normal,
@@ -238,14 +247,14 @@ def _step(
     allowed: Array | None,
     free: float,
 ) -> Array:
-    """The small motion (4, 4) that lessens the distances of points most; the least of those that do."""
+    """The small motion (4, 4) that reduces the distances of points most; the smallest if several do."""
     system, middle, size = _felt(points, normal)
     basis = _basis(allowed, middle, size)
-    left, stretch, right = np.linalg.svd(system @ basis, full_matrices=False)
+    u_matrix, stretch, right = np.linalg.svd(system @ basis, full_matrices=False)
     firm = stretch > free * stretch[0]
     share = np.zeros(len(stretch))
     share[firm] = stretch[firm] / (stretch[firm] ** 2 + damping * stretch[0] ** 2)
-    solved = -(basis @ right.T @ (share * (left.T @ distance)))
+    solved = -(basis @ right.T @ (share * (u_matrix.T @ distance)))
     turn, shift = solved[:3] / size, solved[3:]
     if allowed is not None:  # only a screw motion stays among those allowed
         twist = np.zeros((4, 4))
@@ -274,12 +283,14 @@ def _felt(points: Array, normal: Array) -> tuple[Array, Array, float]:
     return np.hstack([np.cross(arm, normal) / size, normal]), middle, size
 
 
-def _free(points: Array, normal: Array, allowed: Array | None, least: float) -> tuple[str, ...]:
+def _free(
+    points: Array, normal: Array, allowed: Array | None, min_influence: float
+) -> tuple[str, ...]:
     system, middle, size = _felt(points, normal)
     basis = _basis(allowed, middle, size)
     _, stretch, right = np.linalg.svd(system @ basis, full_matrices=False)
-    free = right[stretch <= max(1e-3, least) * stretch[0]] @ basis.T
-    return tuple(motion_text(one[:3] / size, one[3:], middle) for one in free)
+    free = right[stretch <= max(1e-3, min_influence) * stretch[0]] @ basis.T
+    return tuple(motion_text(motion_[:3] / size, motion_[3:], middle) for motion_ in free)
 
 
 def _counting(distance: Array, trim: float) -> Mask:
@@ -294,6 +305,6 @@ def _square(distance: Array, trim: float) -> float:
     return float((distance[_counting(distance, trim)] ** 2).mean())
 
 
-def _moved(points: Array, motion: Array) -> Array:
+def _transform(points: Array, motion: Array) -> Array:
     moved: Array = points @ motion[:3, :3].T + motion[:3, 3]
     return moved

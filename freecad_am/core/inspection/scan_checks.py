@@ -13,23 +13,23 @@ from ..types import Array
 from .inspect import UNLIKE
 
 LOOKED = 10_000  # points
-LEAST_ON_PART = 0.8  # share of the points of a scan that have to lie on what was scanned
+LEAST_ON_PART = 0.8  # share of the points of a scan that have to be on the scanned body
 SCALE_RATIO = (
     1.5  # times that a scan may be larger or smaller than a part for its unit to be guessed
 )
 
 
-def near(points: Array, body: Body, within: float) -> float:
-    """The share of points (n, 3) that lie within so many mm of the body."""
-    return float((_off(points, body) <= within).mean())
+def share_near(points: Array, body: Body, within: float) -> float:
+    """The share of points (n, 3) within a distance, mm, of the body."""
+    return float((_distances(points, body) <= within).mean())
 
 
 def refuse_size(points: Array, label: str, body: Body) -> None:
-    """InputError SCAN_UNIT where points (n, 3) of a file are of quite another size than the body."""
-    size, asked = extent(points), extent(body.vertices)
-    if asked <= size * UNLIKE and size <= UNLIKE * asked:
+    """InputError SCAN_UNIT if points (n, 3) of a file have quite another size than the body."""
+    size, body_size = extent(points), extent(body.vertices)
+    if body_size <= size * UNLIKE and size <= UNLIKE * body_size:
         return
-    ratio = asked / max(size, 1e-12)
+    ratio = body_size / max(size, 1e-12)
     units = (
         name
         for name, scale in UNITS.items()
@@ -47,14 +47,14 @@ def refuse_size(points: Array, label: str, body: Body) -> None:
         "the scan reaches over {:.4g} mm, {} over {:.4g} mm; {}",
         size,
         body.name,
-        asked,
+        body_size,
         Word(remedy),
     )
 
 
 def refuse_other(points: Array, label: str, body: Body, within: float) -> None:
-    """InputError SCAN_OTHER with what was measured where points (n, 3), as they are laid, are none of the body."""
-    off = _off(points, body)
+    """InputError SCAN_OTHER with the measured distances if aligned points (n, 3) do not belong to the body."""
+    off = _distances(points, body)
     share = float((off <= within).mean())
     if share >= LEAST_ON_PART:
         return
@@ -76,17 +76,17 @@ def refuse_other(points: Array, label: str, body: Body, within: float) -> None:
     )
 
 
-def _off(points: Array, body: Body) -> Array:
-    """Distance (k,), mm, of some of points (n, 3) from the body."""
-    some = points[np.unique(np.linspace(0, len(points) - 1, LOOKED).astype(np.intp))]
+def _distances(points: Array, body: Body) -> Array:
+    """Distance (k,), mm, of a sample of points (n, 3) from the body."""
+    sample = points[np.unique(np.linspace(0, len(points) - 1, LOOKED).astype(np.intp))]
     solid = SolidMesh(body.vertices, body.triangles)
     return np.asarray(
-        solid.searched(0.02 * float(np.ptp(body.vertices, axis=0).max())).distance(some)
+        solid.searched(0.02 * float(np.ptp(body.vertices, axis=0).max())).distance(sample)
     )
 
 
 def extent(points: Array) -> float:
-    """How far points (n, 3) reach from corner to corner, mm, but for the outermost percent on each side."""
+    """Diagonal of points (n, 3), mm, without the outermost percent on each side."""
     low, high = (
         np.quantile(points, (0.01, 0.99), axis=0)
         if len(points) > 500

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The body of a substrate as it was scanned, for the nozzle to be kept clear of."""
+"""The body of a substrate as scanned, an obstacle for the nozzle."""
 
 from __future__ import annotations
 
@@ -12,43 +12,45 @@ from ..types import Array, Mask
 from .scan_heights import Scan
 
 PARTS = 40  # along the longest side of the body, of its triangles once they are divided
-FINEST = 4.0  # mm
+MIN_EDGE_MM = 4.0  # mm
 MAX_TRIANGLES = 100_000  # triangles
 FACING = 0.2  # cosine; faces that lean farther away from where layers grow are not scanned along their normals
 
 
-def facing(points: Array, body: Body, ways: Array) -> Mask:
+def facing(points: Array, body: Body, directions: Array) -> Mask:
     """Which of points (n, 3) are nearest to triangles of the body that face one of the directions (m, 3)."""
     solid = SolidMesh(body.vertices, body.triangles)
     extent = float(np.ptp(body.vertices, axis=0).max())
     _, _, nearest = solid.searched(extent / PARTS).signed(points)
-    some = ways[np.unique(np.linspace(0, len(ways) - 1, 50).astype(np.intp))]
-    return np.asarray((solid.units @ some.T).max(axis=1)[nearest] > FACING)
+    sample = directions[np.unique(np.linspace(0, len(directions) - 1, 50).astype(np.intp))]
+    return np.asarray((solid.units @ sample.T).max(axis=1)[nearest] > FACING)
 
 
-def scanned(body: Body, scan: Scan, ways: Array) -> Body:
-    """The body with its vertices where the scan has them, of the faces that look along one of the directions (m, 3); what
-    was not scanned stays."""
-    longest = max(float(np.ptp(body.vertices, axis=0).max()) / PARTS, FINEST)
+def scanned(body: Body, scan: Scan, directions: Array) -> Body:
+    """The body with its vertices moved to the scan, on faces that face one of the directions (m, 3); other faces stay."""
+    longest = max(float(np.ptp(body.vertices, axis=0).max()) / PARTS, MIN_EDGE_MM)
     owner = np.zeros(len(body.triangles), dtype=np.intp)
-    found = refine_mesh(
+    refinement = refine_mesh(
         body.vertices, body.triangles, owner, longest, lambda middle, *_: middle, MAX_TRIANGLES
     )
-    vertices, triangles = (body.vertices, body.triangles) if found is None else found[:2]
+    vertices, triangles = (body.vertices, body.triangles) if refinement is None else refinement[:2]
     units = SolidMesh(vertices, triangles).units
-    some = ways[np.unique(np.linspace(0, len(ways) - 1, 50).astype(np.intp))]
-    level = (units @ some.T).max(axis=1)
+    sample = directions[np.unique(np.linspace(0, len(directions) - 1, 50).astype(np.intp))]
+    level = (units @ sample.T).max(axis=1)
     order = np.argsort(level, kind="stable")  # the triangle that faces them most is written last
-    way, best = np.zeros_like(vertices), np.full(len(vertices), -1.0)
+    normals, best = np.zeros_like(vertices), np.full(len(vertices), -1.0)
     for corner in range(3):
-        here = triangles[order, corner]
-        better = level[order] >= best[here]
-        best[here[better]], way[here[better]] = level[order][better], units[order][better]
+        corner_vertices = triangles[order, corner]
+        better = level[order] >= best[corner_vertices]
+        best[corner_vertices[better]], normals[corner_vertices[better]] = (
+            level[order][better],
+            units[order][better],
+        )
     looking = np.flatnonzero(best > FACING)
     if not len(looking):
         return body
-    heights = scan.heights(vertices[looking], way[looking])
+    heights = scan.heights(vertices[looking], normals[looking])
     good = heights.covered & (np.abs(np.where(heights.covered, heights.off, np.inf)) <= scan.within)
     shifted = vertices.copy()
-    shifted[looking[good]] += heights.off[good, None] * way[looking[good]]
+    shifted[looking[good]] += heights.off[good, None] * normals[looking[good]]
     return Body(body.name, shifted, triangles)

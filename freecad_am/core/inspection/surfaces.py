@@ -15,36 +15,36 @@ from ..geometry.walls.surface_wall import SurfaceWall
 from ..issues import InputError
 from ..toolpath import Bead, Toolpath
 from ..types import Array
-from .planned import Planned, of_beads, of_revolution, of_triangles
+from .planned import Planned, bead_surface, revolution_surface, triangle_surface
 
 ROWS, COLUMNS = (
     80,
     240,
 )  # of the triangles by which points find their place on a wall of one surface
-PLAIN = 0.2  # of normals away from the middle of a loop: with less, which side is outside is told by its neighbour
+PLAIN = 0.2  # of normals away from the middle of a loop: with less, its neighbour decides which side is outside
 FINE = 0.25  # mm between samples of beads
 
 
-def planned(of: object, name: str) -> Planned:
+def planned(source: object, name: str) -> Planned:
     """The surface of a feature's wall or solids, or of a toolpath's beads. InputError NOT_FOR_FAMILY naming it."""
-    if isinstance(of, RevolvedWall):
-        return of_revolution(of)
-    if isinstance(of, PatchWall):
-        return _of_patches(of)
-    if isinstance(of, SurfaceWall):
-        return _of_surface(of)
-    if isinstance(of, SolidsOnHub):
-        bodies = [body for group in of.groups for body in group.bodies]
+    if isinstance(source, RevolvedWall):
+        return revolution_surface(source)
+    if isinstance(source, PatchWall):
+        return _patches_surface(source)
+    if isinstance(source, SurfaceWall):
+        return _wall_surface(source)
+    if isinstance(source, SolidsOnHub):
+        bodies = [body for group in source.groups for body in group.bodies]
         counts = np.cumsum([0, *(len(body.vertices) for body in bodies)])
         triangles = np.concatenate(
             [body.triangles + start for body, start in zip(bodies, counts[:-1], strict=True)]
         )
         vertices = np.concatenate([body.vertices for body in bodies])
-        return of_triangles(
-            of.label, vertices, triangles, of.groups[0].base.frame, chord=of.chord_error
+        return triangle_surface(
+            source.label, vertices, triangles, source.groups[0].base.frame, chord=source.chord_error
         )
-    if isinstance(of, Toolpath):
-        return _of_toolpath(of, name)
+    if isinstance(source, Toolpath):
+        return _toolpath_surface(source, name)
     raise InputError(
         "NOT_FOR_FAMILY",
         name,
@@ -52,18 +52,18 @@ def planned(of: object, name: str) -> Planned:
     )
 
 
-def _of_patches(wall: PatchWall) -> Planned:
+def _patches_surface(wall: PatchWall) -> Planned:
     def exact(points: Array) -> tuple[Array, Array]:
         foot, normal = wall.project(points)
         return dot(points - foot, normal), normal
 
     longest = np.linalg.norm(np.ptp(wall.vertices[wall.triangles], axis=1), axis=1).mean()
-    return of_triangles(
+    return triangle_surface(
         wall.label, wall.vertices, wall.triangles, exact=exact, chord=0.02 * float(longest)
     )
 
 
-def _of_surface(wall: SurfaceWall) -> Planned:
+def _wall_surface(wall: SurfaceWall) -> Planned:
     surface = wall.surface()
     period = surface.period or 2.0 * np.pi
     u, v = surface.inverse(wall.first)
@@ -84,21 +84,21 @@ def _of_surface(wall: SurfaceWall) -> Planned:
     corners = grid.reshape(-1, 3)[triangles]
     turned = doubled_areas(corners)
     where = corners.mean(axis=1)
-    own = _normals(surface.derivatives(*surface.inverse(where)))
-    if float(dot(turned, own).sum()) * sense < 0.0:
+    normals_ = _normals(surface.derivatives(*surface.inverse(where)))
+    if float(dot(turned, normals_).sum()) * sense < 0.0:
         triangles = triangles[:, ::-1]
 
     def exact(points: Array) -> tuple[Array, Array]:
-        found = surface.derivatives(*surface.inverse(points))
-        normal = sense * _normals(found)
-        return dot(points - found[0], normal), normal
+        derivatives = surface.derivatives(*surface.inverse(points))
+        normal = sense * _normals(derivatives)
+        return dot(points - derivatives[0], normal), normal
 
     chord = float(np.linalg.norm(np.diff(grid, axis=1), axis=2).max()) * np.pi / COLUMNS
-    return of_triangles(wall.label, grid.reshape(-1, 3), triangles, wall.frame, exact, chord)
+    return triangle_surface(wall.label, grid.reshape(-1, 3), triangles, wall.frame, exact, chord)
 
 
-def _normals(found: tuple[Array, Array, Array]) -> Array:
-    normal = np.cross(found[1], found[2])
+def _normals(derivatives: tuple[Array, Array, Array]) -> Array:
+    normal = np.cross(derivatives[1], derivatives[2])
     return np.asarray(normal / np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-300))
 
 
@@ -107,8 +107,8 @@ def _outward(loop: Array, normals: Array) -> float:
     return 1.0 if float(dot(loop - loop.mean(axis=0), normals).sum()) >= 0.0 else -1.0
 
 
-def _of_toolpath(toolpath: Toolpath, name: str) -> Planned:
-    """The wall that beads one beside the other make, in the plane of each bead and its build direction."""
+def _toolpath_surface(toolpath: Toolpath, name: str) -> Planned:
+    """The wall formed by adjacent beads, in the plane of each bead and its build direction."""
     if toolpath.filled:
         raise InputError(
             "NOT_FOR_FAMILY",
@@ -121,29 +121,33 @@ def _of_toolpath(toolpath: Toolpath, name: str) -> Planned:
         points, normal = _sampled(bead)
         if toolpath.family == "revolution":
             sense = _turning(points, toolpath.frame)
-        elif samples and not (bead.closed and _around(points, normal)):
-            near = cKDTree(samples[-1]).query(points)[1]
-            sense = 1.0 if float(dot(normals[-1][near], normal).sum()) >= 0.0 else -1.0
+        elif samples and not (bead.closed and _is_radial(points, normal)):
+            nearest = cKDTree(samples[-1]).query(points)[1]
+            sense = 1.0 if float(dot(normals[-1][nearest], normal).sum()) >= 0.0 else -1.0
         else:
             sense = _outward(points, normal)
         samples.append(points)
         normals.append(sense * normal)
     step = max(FINE, 0.75 * toolpath.layer_height)
-    return of_beads(name, np.concatenate(samples), np.concatenate(normals), toolpath.frame, step)
+    return bead_surface(
+        name, np.concatenate(samples), np.concatenate(normals), toolpath.frame, step
+    )
 
 
 def _turning(points: Array, frame: Array) -> float:
-    """1 where a course of points (n, 3) goes round the Z of a frame counter-clockwise: its normals are then those of the
-    meridian; -1 where clockwise."""
+    """1 if a course of points (n, 3) goes round the Z of a frame counter-clockwise, so that its normals are the meridian's; -1 if
+    clockwise.
+    """
     x, y = ((points - frame[:3, 3]) @ frame[:3, :2]).T
     return 1.0 if float((x[:-1] * y[1:] - y[:-1] * x[1:]).sum()) >= 0.0 else -1.0
 
 
-def _around(loop: Array, normals: Array) -> bool:
+def _is_radial(loop: Array, normals: Array) -> bool:
     """Whether normals (n, 3) lead out of a loop of points (n, 3), or into it, rather than along its axis."""
-    away = loop - loop.mean(axis=0)
+    offsets = loop - loop.mean(axis=0)
     return bool(
-        abs(float(dot(away, normals).sum())) > PLAIN * float(np.linalg.norm(away, axis=1).sum())
+        abs(float(dot(offsets, normals).sum()))
+        > PLAIN * float(np.linalg.norm(offsets, axis=1).sum())
     )
 
 
@@ -151,11 +155,13 @@ def _sampled(bead: Bead) -> tuple[Array, Array]:
     """Points along a bead, no farther apart than FINE, with unit normals of the wall there."""
     length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
     count = np.maximum(np.ceil(length / FINE).astype(np.intp), 1)
-    of = np.repeat(np.arange(len(count)), count)
-    share = ((np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)) / count[of])[:, None]
-    points, tangent = bead.outline.at(of, share[:, 0])
-    build = bead.build[of] * (1.0 - share) + bead.build[of + 1] * share
+    segment = np.repeat(np.arange(len(count)), count)
+    share = (
+        (np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count)) / count[segment]
+    )[:, None]
+    points, tangent = bead.outline.at(segment, share[:, 0])
+    build = bead.build[segment] * (1.0 - share) + bead.build[segment + 1] * share
     normal = np.cross(tangent, build)
     size = np.linalg.norm(normal, axis=1, keepdims=True)
-    kept = size[:, 0] > 1e-12
-    return points[kept], normal[kept] / size[kept]
+    is_proper = size[:, 0] > 1e-12
+    return points[is_proper], normal[is_proper] / size[is_proper]

@@ -14,14 +14,15 @@ from .roundness import Round
 
 
 class Row(NamedTuple):
-    """A figure: what it is, its value, its unit ('' for a count), and what a narrow panel calls it, '' where it has no
-    room for it; there figures of one place stand below each other under its name."""
+    """A figure: its name, value, unit ('' for a count), and short name in a narrow panel, '' to leave it out; there figures of a
+    group are listed under its name.
+    """
 
     name: str
     value: float
     unit: str
     short: str = ""
-    place: str = ""
+    group: str = ""
 
     @property
     def text(self) -> str:
@@ -32,9 +33,9 @@ class Row(NamedTuple):
 
 
 def rows(inspected: Inspected) -> tuple[Row, ...]:
-    """All figures. Defects are widths of the narrowest zone (ISO 1101), with those about the least-squares centre beside."""
+    """All figures. Defects are widths of the narrowest zone (ISO 1101), followed by those about the least-squares centre."""
     spread = inspected.spread
-    found = [
+    figures_ = [
         Row("Points", spread.count, "", "Points"),
         Row("Mean deviation", spread.mean, "mm", "Mean"),
         Row("Standard deviation", spread.deviation, "mm", "Std. deviation"),
@@ -46,32 +47,36 @@ def rows(inspected: Inspected) -> tuple[Row, ...]:
     ]
     if inspected.ball is not None:
         ball = inspected.ball
-        found += [
+        figures_ += [
             Row("Spherical defect", ball.zone.zone, "mm", "Sphericity"),
             Row("Spherical defect, least squares", ball.fitted.zone, "mm"),
             Row("Radius of the sphere", ball.fitted.radius, "mm", "Radius"),
         ]
-    for one in inspected.circles:
-        at, height = Text("at {:g} mm", one.height), f"{one.height:g} mm"
-        found += [
+    for circle in inspected.circles:
+        at_height, height = Text("at {:g} mm", circle.height), f"{circle.height:g} mm"
+        figures_ += [
             Row(
-                Text("Circularity defect {}", Word(at)),
-                one.zone.zone,
+                Text("Circularity defect {}", Word(at_height)),
+                circle.zone.zone,
                 "mm",
                 "Circularity",
                 f"At height {height}",
             ),
-            Row(Text("Circularity defect {}, least squares", Word(at)), one.fitted.zone, "mm"),
             Row(
-                Text("Diameter {}", Word(at)),
-                2.0 * one.fitted.radius,
+                Text("Circularity defect {}, least squares", Word(at_height)),
+                circle.fitted.zone,
+                "mm",
+            ),
+            Row(
+                Text("Diameter {}", Word(at_height)),
+                2.0 * circle.fitted.radius,
                 "mm",
                 "Diameter",
                 f"At height {height}",
             ),
             Row(
-                Text("Eccentricity {}", Word(at)),
-                one.eccentricity,
+                Text("Eccentricity {}", Word(at_height)),
+                circle.eccentricity,
                 "mm",
                 "Off axis",
                 f"At height {height}",
@@ -79,19 +84,19 @@ def rows(inspected: Inspected) -> tuple[Row, ...]:
         ]
     if inspected.thickness is not None:
         wall = inspected.thickness
-        found += [
+        figures_ += [
             Row("Mean thickness", wall.mean, "mm", "Thickness"),
             Row("Standard deviation of the thickness", wall.deviation, "mm", "… std. dev."),
             Row("Least thickness", wall.least, "mm", "… least"),
             Row("Largest thickness", wall.most, "mm", "… most"),
         ]
-    return tuple(found)
+    return tuple(figures_)
 
 
 def as_data(inspected: Inspected) -> dict[str, Any]:
     """The figures by key, in mm, for a JSON file."""
     spread = inspected.spread
-    found: dict[str, Any] = {
+    data: dict[str, Any] = {
         "measured": inspected.file,
         "planned": inspected.against,
         "tolerance_mm": inspected.tolerance,
@@ -113,33 +118,33 @@ def as_data(inspected: Inspected) -> dict[str, Any]:
         "thickness_mm": None,
         "circles": [
             {
-                "height_mm": one.height,
-                "points": one.count,
-                **_round(one.fitted, one.zone),
-                "eccentricity": one.eccentricity,
-                "diameter": 2.0 * one.fitted.radius,
+                "height_mm": circle.height,
+                "points": circle.count,
+                **_round(circle.fitted, circle.zone),
+                "eccentricity": circle.eccentricity,
+                "diameter": 2.0 * circle.fitted.radius,
             }
-            for one in inspected.circles
+            for circle in inspected.circles
         ],
         "issues": [issue.as_dict() for issue in inspected.issues],
     }
     if inspected.ball is not None:
         ball = inspected.ball
-        found["sphericity_mm"] = {
+        data["sphericity_mm"] = {
             "points": ball.count,
             "planned_radius": ball.planned,
             **_round(ball.fitted, ball.zone),
         }
     if inspected.thickness is not None:
         wall = inspected.thickness
-        found["thickness_mm"] = {
+        data["thickness_mm"] = {
             "pairs": wall.count,
             "mean": wall.mean,
             "sd": wall.deviation,
             "min": wall.least,
             "max": wall.most,
         }
-    return found
+    return data
 
 
 def deviations(inspected: Inspected) -> Iterable[str]:
@@ -154,28 +159,29 @@ def deviations(inspected: Inspected) -> Iterable[str]:
 
 
 def compared(
-    each: list[Inspected],
+    inspections: list[Inspected],
 ) -> list[tuple[str, str, list[float | None], float | None, float | None]]:
-    """A row per figure of several inspections: name, unit, its value in each (None without), mean and standard deviation
-    (n - 1) over them, None for fewer than two: the paper has those of three spheres."""
-    tables = [{row.name: row for row in rows(one)} for one in each]
-    names = dict.fromkeys(name for one in tables for name in one)
-    found: list[tuple[str, str, list[float | None], float | None, float | None]] = []
+    """A row per figure of several inspections: name, unit, its value in each (None without), mean and standard deviation (n - 1)
+    over the inspections, None for fewer than two: the paper has the latter for three spheres.
+    """
+    tables = [{row.name: row for row in rows(table)} for table in inspections]
+    names = dict.fromkeys(name for table in tables for name in table)
+    compared_rows: list[tuple[str, str, list[float | None], float | None, float | None]] = []
     for name in names:
-        values = [one[name].value if name in one else None for one in tables]
-        known = [value for value in values if value is not None]
-        unit = next(one[name].unit for one in tables if name in one)
-        several = len(known) > 1
-        found.append(
+        values = [table[name].value if name in table else None for table in tables]
+        present = [value for value in values if value is not None]
+        unit = next(table[name].unit for table in tables if name in table)
+        several = len(present) > 1
+        compared_rows.append(
             (
                 name,
                 unit,
                 values,
-                float(np.mean(known)) if several else None,
-                float(np.std(known, ddof=1)) if several else None,
+                float(np.mean(present)) if several else None,
+                float(np.std(present, ddof=1)) if several else None,
             )
         )
-    return found
+    return compared_rows
 
 
 def _round(fitted: Round, zone: Round) -> dict[str, Any]:

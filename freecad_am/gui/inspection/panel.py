@@ -83,10 +83,10 @@ class InspectionPanel(StagePanel):
         self.table.setRowCount(0)
         place = ""
         for row in found:
-            if row.place not in ("", place):
-                self._add_line(translated(row.place))
+            if row.group not in ("", place):
+                self._add_line(translated(row.group))
                 self.table.setSpan(self.table.rowCount() - 1, 0, 1, self.table.columnCount())
-            place = row.place
+            place = row.group
             text = translated(row.short)
             self._add_line(
                 f"{_INDENT}{text}" if place else text, row.text, row.unit, help=translated(row.name)

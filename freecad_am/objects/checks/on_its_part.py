@@ -53,9 +53,9 @@ def check_on_part(toolpath: CoreToolpath, inputs: Given, sources: Sequence[Taken
     if (
         toolpath.fitted is not None
     ):  # these layers follow the scan and are no farther off than they were moved
-        from ...core.inspection.fit_layers import moved_most  # jobs without a scan need none of it
+        from ...core.inspection.fit_layers import max_moves  # jobs without a scan need none of it
 
-        off = np.maximum(off - moved_most(toolpath.fitted, positions.layer), 0.0)
+        off = np.maximum(off - max_moves(toolpath.fitted, positions.layer), 0.0)
     return on_part.check_on_part(toolpath, positions, off, limit)
 
 

@@ -158,7 +158,7 @@ def inspected(
         tolerance,
         PREDICTED,
         label,
-        figures.spread(comparison.deviation, tolerance),
+        figures.summarise(comparison.deviation, tolerance),
         None,
         (),
         None,

@@ -79,7 +79,7 @@ def fitted(
     if body is not None:
         points = points[scanned_body.facing(points, body, directions)]
     scan = Scan(points, inspected.file, parameters.scan_within)
-    fitted_toolpath = fit_layers.fitted(
+    fitted_toolpath = fit_layers.fit_layers(
         toolpath, scan, parameters, len(inspected.points) - len(points), inspected.motion
     )
     notes = [issue for issue in inspected.issues if issue.code in UNDERSTANDING]

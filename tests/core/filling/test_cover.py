@@ -12,7 +12,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from freecad_am.core.filling.centre import bare_parts
-from freecad_am.core.filling.cover import covered
+from freecad_am.core.filling.cover import measure_cover
 from freecad_am.core.filling.curve import Beads
 from freecad_am.core.filling.fill import fill, open_places
 from freecad_am.core.geometry.regions.region import joined, regions
@@ -390,9 +390,9 @@ def test_a_round_island_narrower_than_a_bead_gets_a_dot_of_its_volume(size, side
         assert S * way * share == pytest.approx(region.area, rel=1e-9)
     assert way >= BEADS.shortest - 1e-9 and share >= BEADS.narrowest
     assert np.allclose(dot.points.mean(axis=0), [3.0, -2.0], atol=1e-6)
-    cover = covered(region, [dot], BEADS)
+    cover = measure_cover(region, [dot], BEADS)
     if share > BEADS.narrowest:
-        assert cover.left < 0.1 * region.area and cover.outside < 0.1 * region.area
+        assert cover.missed < 0.1 * region.area and cover.outside < 0.1 * region.area
 
 
 def test_a_round_island_narrower_than_the_narrowest_bead_is_named():

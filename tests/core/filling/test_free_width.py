@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.filling.cover import covered
+from freecad_am.core.filling.cover import measure_cover
 from freecad_am.core.filling.curve import OVER, Beads
 from freecad_am.core.filling.fill import fill
-from freecad_am.core.filling.free_width import fitted, narrowed, shared
+from freecad_am.core.filling.free_width import fit_beads, narrow_beads, share_widths
 from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.filled import DevelopableParameters
@@ -29,8 +29,8 @@ STEP = 0.1
 
 
 def adapted(region, pattern, least, most):
-    beads, share = fitted(region, BEADS, least, most)
-    return [*shared(region, fill(region, beads, pattern), beads, share, least, most)], share
+    beads, share = fit_beads(region, BEADS, least, most)
+    return [*share_widths(region, fill(region, beads, pattern), beads, share, least, most)], share
 
 
 def places(curves):
@@ -196,16 +196,16 @@ def test_beads_cover_as_much_as_they_are_wide(thick):
     curves, share = adapted(region, "contours", 0.7, 1.4)
     grid = shapes.raster(loops, 0.25)[0] + np.array([0.1, 0.07])
     within, swept_over = shapes.inside(loops, grid), swept(curves, grid)
-    found = covered(region, curves, BEADS)
+    found = measure_cover(region, curves, BEADS)
     pixel, near = 0.25**2, 0.06 * 2.0 * (50.0 + thick)  # a quarter of a place along the border
     assert found.area == pytest.approx(region.area) and found.covered == pytest.approx(
         pixel * swept_over.sum(), abs=near
     )
-    assert found.left == pytest.approx(pixel * (within & ~swept_over).sum(), abs=near)
+    assert found.missed == pytest.approx(pixel * (within & ~swept_over).sum(), abs=near)
     assert found.outside == pytest.approx(pixel * (swept_over & ~within).sum(), abs=near)
-    usual = covered(region, [replace(curve, share=None) for curve in curves], BEADS)
+    usual = measure_cover(region, [replace(curve, share=None) for curve in curves], BEADS)
     if abs(share - 1.0) > 0.1:
-        assert abs(usual.left - found.left) + abs(usual.outside - found.outside) > 2.0 * near
+        assert abs(usual.missed - found.missed) + abs(usual.outside - found.outside) > 2.0 * near
 
 
 def ring_loops(thickness, outer=40.0):
@@ -221,7 +221,7 @@ def test_narrow_beads_lie_half_their_own_width_from_the_border(thickness, turn):
     rotation = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
     (region,) = regions([loop @ rotation + [11.0, -7.0] for loop in ring_loops(thickness)])
     beads = Beads(4.0, 0.8, 2.0, chord_error=0.002, width=4.0)
-    curves = narrowed(fill(region, beads), beads, 0.0, 0.3)
+    curves = narrow_beads(fill(region, beads), beads, 0.0, 0.3)
     assert len(curves) == 2
     radii = sorted(float(np.hypot(*(c.points - [11.0, -7.0]).T).mean()) for c in curves)
     assert radii == pytest.approx([40.0 - 0.75 * thickness, 40.0 - 0.25 * thickness], abs=0.02)
@@ -229,14 +229,14 @@ def test_narrow_beads_lie_half_their_own_width_from_the_border(thickness, turn):
         assert curve.share * 4.0 == pytest.approx(
             np.full(len(curve.points), thickness / 2), rel=0.02
         )
-    cover = covered(region, curves, beads)
-    assert cover.left < 0.01 * cover.area and cover.outside < 0.01 * cover.area
+    cover = measure_cover(region, curves, beads)
+    assert cover.missed < 0.01 * cover.area and cover.outside < 0.01 * cover.area
 
 
 def test_narrow_lines_lie_half_their_own_width_from_the_border():
     (region,) = regions([np.array([(0, 0), (60, 0), (60, 6), (0, 6)], dtype=float)])
     beads = Beads(4.0, 0.8, 2.0, chord_error=0.002, width=4.0)
-    curves = narrowed(fill(region, beads, "lines"), beads, 0.0, 0.3)
+    curves = narrow_beads(fill(region, beads, "lines"), beads, 0.0, 0.3)
     heights = sorted(float(curve.points[:, 1].mean()) for curve in curves)
     assert heights == pytest.approx([1.5, 4.5], abs=0.02)
 
@@ -248,7 +248,7 @@ def test_a_round_bead_beside_a_neck_stays_round():
     holes = [circle[::-1] + (x, 0.0) for x in (-14.0, 14.0)]
     plate = np.array([(-40.0, -25.0), (40.0, -25.0), (40.0, 25.0), (-40.0, 25.0)])
     (region,) = regions([plate, *holes])
-    curves = narrowed(fill(region, BEADS, "contours"), BEADS, 0.0, 0.3)
+    curves = narrow_beads(fill(region, BEADS, "contours"), BEADS, 0.0, 0.3)
     rings = [
         curve
         for curve in curves

@@ -9,7 +9,7 @@ import pytest
 
 from freecad_am.core.inspection import bands, figures, point_file, table
 from freecad_am.core.inspection.inspect import inspect
-from freecad_am.core.inspection.planned import of_triangles
+from freecad_am.core.inspection.planned import triangle_surface
 from freecad_am.core.inspection.roundness import narrowest
 from freecad_am.core.inspection.surfaces import planned
 from freecad_am.core.issues import AmError, InputError
@@ -87,7 +87,7 @@ def box():
     triangles = np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
     share = np.random.default_rng(0).dirichlet((1.0, 1.0, 1.0), (12, 150))
     points = np.einsum("tkc,tcx->tkx", share, corners[triangles]).reshape(-1, 3)
-    return of_triangles("box", corners, triangles), points
+    return triangle_surface("box", corners, triangles), points
 
 
 def turned(points, angle):
@@ -256,16 +256,16 @@ def test_many_points_have_the_narrowest_zone_of_all():
 
 def test_figures_of_deviations_are_those_of_their_definitions():
     deviation = np.random.default_rng(26).normal(0.02, 0.1, 5000)
-    found = figures.spread(deviation, 0.1)
+    found = figures.summarise(deviation, 0.1)
     assert (found.mean, found.deviation) == pytest.approx((deviation.mean(), deviation.std()))
     assert found.rms**2 == pytest.approx(found.mean**2 + found.deviation**2)
     amount = np.sort(np.abs(deviation))
     assert amount[4749] <= found.within_95 <= amount[4750]
     assert found.within == (np.abs(deviation) <= 0.1).mean()
     assert found.counts.sum() == 5000 and (np.diff(found.edges) > 0.0).all()
-    assert figures.spread(np.full(7, 0.3), 0.1).counts.sum() == 7
+    assert figures.summarise(np.full(7, 0.3), 0.1).counts.sum() == 7
     for far in (1e6, -1e6, 1e12):  # a scan in another place altogether, as far everywhere
-        alike = figures.spread(np.full(7, far), 0.1)
+        alike = figures.summarise(np.full(7, far), 0.1)
         assert (
             alike.counts.sum() == 7
             and (np.diff(alike.edges) > 0.0).all()

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.inspection.planned import of_triangles, sided
+from freecad_am.core.inspection.planned import sided, triangle_surface
 from freecad_am.core.inspection.surfaces import planned
 from freecad_am.core.issues import InputError
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
@@ -95,7 +95,7 @@ def test_triangles_of_a_box_are_exact_and_never_end():
     corners = np.array([[x, y, z] for x in (0.0, 60.0) for y in (0.0, 40.0) for z in (0.0, 20.0)])
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     triangles = np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
-    of = of_triangles("box", corners, triangles)
+    of = triangle_surface("box", corners, triangles)
     points = np.random.default_rng(5).uniform(-15.0, 75.0, (2000, 3))
     out = np.abs(points - [30.0, 20.0, 10.0]) - [30.0, 20.0, 10.0]
     exact = np.linalg.norm(np.maximum(out, 0.0), axis=1) + np.minimum(out.max(axis=1), 0.0)

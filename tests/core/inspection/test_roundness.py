@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from freecad_am.core.inspection.roundness import least, narrowest
+from freecad_am.core.inspection.roundness import least_squares_round, narrowest
 from freecad_am.core.issues import InputError
 
 
@@ -66,7 +66,7 @@ def test_a_zone_held_by_alternating_points_is_found_exactly(seed, dimension):
 def test_least_squares_is_stationary_and_beats_its_neighbours(make, seed):
     rng = np.random.default_rng(seed)
     points = make(rng, 150) + 400.0
-    found = least(points, "scan")
+    found = least_squares_round(points, "scan")
 
     def square(unknown):
         return float(((np.linalg.norm(points - unknown[:-1], axis=1) - unknown[-1]) ** 2).sum())
@@ -88,7 +88,7 @@ def test_a_point_at_the_centre_itself_is_one_as_others(dimension):
     axes = np.meshgrid(*[np.arange(-3.0, 4.0)] * dimension)
     points = np.stack([axis.ravel() for axis in axes], axis=1)
     with np.errstate(all="raise"):
-        fitted, found = least(points, "scan"), narrowest(points, "scan")
+        fitted, found = least_squares_round(points, "scan"), narrowest(points, "scan")
     for one in (fitted, found):
         distance = np.linalg.norm(points - one.centre, axis=1)
         assert (one.inner, one.outer) == pytest.approx((distance.min(), distance.max()), abs=1e-12)
@@ -98,7 +98,7 @@ def test_a_point_at_the_centre_itself_is_one_as_others(dimension):
 def test_an_arc_of_thirty_degrees_has_the_right_radius():
     angle = np.radians(np.linspace(10.0, 40.0, 50))
     points = np.column_stack([np.cos(angle), np.sin(angle)]) * 250.0 + [3.0, -7.0]
-    found = least(points, "scan")
+    found = least_squares_round(points, "scan")
     assert found.radius == pytest.approx(250.0, abs=1e-8)
     assert found.centre == pytest.approx([3.0, -7.0], abs=1e-8)
 
@@ -118,5 +118,5 @@ def test_an_arc_of_thirty_degrees_has_the_right_radius():
 )
 def test_points_without_a_centre_are_refused(points, code):
     with pytest.raises(InputError) as caught:
-        least(points, "scan.csv")
+        least_squares_round(points, "scan.csv")
     assert (caught.value.code, caught.value.where) == (code, "scan.csv")

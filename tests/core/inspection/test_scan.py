@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.inspection import scan_checks, scan_motion
-from freecad_am.core.inspection.fit_layers import fitted, moved_most
+from freecad_am.core.inspection.fit_layers import fit_layers, max_moves
 from freecad_am.core.inspection.scan_heights import Scan
 from freecad_am.core.inspection.scanned_body import facing, scanned
 from freecad_am.core.issues import InputError
@@ -72,7 +72,7 @@ def laid(block):
 
 def fit(toolpath, points, **parameters):
     of = ScanParameters(**parameters)
-    return fitted(toolpath, Scan(points, "scan.csv", of.scan_within), of, 0, np.eye(4))
+    return fit_layers(toolpath, Scan(points, "scan.csv", of.scan_within), of, 0, np.eye(4))
 
 
 def between(layer):
@@ -203,12 +203,12 @@ def test_a_scan_from_anywhere_is_laid_onto_the_part():
     points += rng.normal(0.0, 0.02, points.shape)
     points[:80] += rng.uniform(-40.0, 40.0, (80, 3))
     turn = Rotation.from_euler("xyz", [70.0, -40.0, 130.0], degrees=True).as_matrix()
-    motion = scan_motion.aligned(points @ turn.T + (500.0, -200.0, 90.0), wedge, "s")
+    motion = scan_motion.align_scan(points @ turn.T + (500.0, -200.0, 90.0), wedge, "s")
     back = (points @ turn.T + (500.0, -200.0, 90.0)) @ motion[:3, :3].T + motion[:3, 3]
     assert np.linalg.norm(back - points, axis=1).max() < 0.1
     top = points_on(bent)
     with pytest.raises(InputError) as error:
-        scan_motion.aligned(top @ turn.T + (500.0, -200.0, 90.0), PLATE, "s")
+        scan_motion.align_scan(top @ turn.T + (500.0, -200.0, 90.0), PLATE, "s")
     assert error.value.code == "SCAN_AMBIGUOUS"
 
 
@@ -238,7 +238,7 @@ def test_the_body_to_keep_clear_of_is_where_it_was_scanned():
 )
 def test_how_far_layers_are_moved_at_most_is_known_of_each(block, surface, parameters):
     made = fit(block, points_on(surface), **parameters)
-    known = moved_most(made.fitted, np.arange(len(made.layers)))
+    known = max_moves(made.fitted, np.arange(len(made.layers)))
     far = np.array(
         [
             max(np.abs(bead.points[:, 2] - number * HEIGHT).max() for bead in layer.beads)

@@ -67,7 +67,7 @@ def bead_of(
         classes.fill_bead_class(curve.kind, layer.number),
     )
     build, process = classes.leaning(build, process, name), process.for_class(name)
-    line, share = curve.whole(surface.period)
+    line, share = curve.closed_points(surface.period)
     error = WRAP_SHARE * strategy.chord_error
     flat = needed(
         line, error, None if share is None else select_significant(arcs(line), share, SHARES)

@@ -12,10 +12,10 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from ...filling.centre import bare_parts
-from ...filling.cover import Cover, covered, total
+from ...filling.cover import Cover, measure_cover, total
 from ...filling.curve import OVER, Beads, PlaneCurve
 from ...filling.fill import Gaps, fill, open_places
-from ...filling.free_width import fitted, narrowed, shared
+from ...filling.free_width import fit_beads, narrow_beads, share_widths
 from ...filling.sparse import Infill
 from ...geometry.curves.plane_curve import nearest_among
 from ...geometry.regions.region import Region, joined
@@ -244,7 +244,7 @@ class Pictures:
         sparse, (min_share, max_share) = infill.density < 1.0, strategy.spacing_range
         share = 1.0
         if isinstance(region, Region) and not sparse and strategy.rounds_alone:
-            beads, share = fitted(region, beads, min_share, max_share)
+            beads, share = fit_beads(region, beads, min_share, max_share)
         curves: Sequence[PlaneCurve] = fill(
             region,
             beads,
@@ -256,8 +256,8 @@ class Pictures:
         )
         gaps = [] if sparse else open_places(region, curves, beads)
         if isinstance(region, Region) and not sparse:
-            curves = [*shared(region, curves, beads, share, min_share, max_share)]
-        cover = covered(region, curves, filling.beads, infill.density)
+            curves = [*share_widths(region, curves, beads, share, min_share, max_share)]
+        cover = measure_cover(region, curves, filling.beads, infill.density)
         narrowing = (
             not sparse
             and flat
@@ -269,10 +269,10 @@ class Pictures:
             and cover.over(filling.beads.spacing * math.fsum(map(_weighed, curves)))
             > OVERLAP_SHARE * cover.area
         ):
-            curves = narrowed(
+            curves = narrow_beads(
                 curves, filling.beads, angle, strategy.narrowest
             )  # no wider than their room, and centred in it
-            cover = covered(region, curves, filling.beads)
+            cover = measure_cover(region, curves, filling.beads)
         bare = [] if sparse or not isinstance(region, Region) else bare_parts(region, curves, beads)
         bare_places = [
             Bare(bare_part.area, bare_part.width, bare_part.inside()) for bare_part, _ in bare
@@ -301,7 +301,7 @@ def _no_bead(layer: Slice, bare: Sequence[Bare]) -> Issue:
 
 def _weighed(curve: PlaneCurve) -> float:
     """mm of usual bead that deposits as much as a curve."""
-    points, share = curve.whole()
+    points, share = curve.closed_points()
     segment_lengths = np.hypot(*np.diff(points, axis=0).T)
     return float(
         segment_lengths.sum() if share is None else 0.5 * (share[1:] + share[:-1]) @ segment_lengths
