@@ -93,8 +93,8 @@ def _curve(
     )
     normal = wall.project(points)[1]
     into, out = (
-        unit(np.cross(normal, ground.on(pieces, points)[1]))
-        for pieces in (piece_before, piece_after)
+        unit(np.cross(normal, ground.on(piece_numbers, points)[1]))
+        for piece_numbers in (piece_before, piece_after)
     )
     chord = np.roll(points, -1, axis=0) - points
     if dot(out, chord)[: len(points) if line.closed else -1].sum() < 0.0:

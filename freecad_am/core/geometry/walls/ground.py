@@ -26,10 +26,10 @@ class Ground(Protocol):
         of each.
         """
 
-    def on(self, pieces: Index, points: Array) -> tuple[Array, Array]:
+    def on(self, piece_numbers: Index, points: Array) -> tuple[Array, Array]:
         """Nearest points and normals, each (k, 3), on the pieces (k,) wherever these end."""
 
-    def sagitta(self, pieces: Index) -> Array:
+    def sagitta(self, piece_numbers: Index) -> Array:
         """Maximum distance (k,) of the pieces from the surface that they approximate, mm."""
 
 
@@ -63,20 +63,20 @@ class ExactGround:
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
         """On the exact faces."""
-        pieces = self.face[self.search.signed(points)[2]]
-        return *self.on(pieces, points), pieces
+        piece_numbers = self.face[self.search.signed(points)[2]]
+        return *self.on(piece_numbers, points), piece_numbers
 
-    def on(self, pieces: Index, points: Array) -> tuple[Array, Array]:
+    def on(self, piece_numbers: Index, points: Array) -> tuple[Array, Array]:
         """On the faces' surfaces."""
         feet, normals = np.empty_like(points), np.empty_like(points)
-        for k in np.unique(pieces):
-            patch, on_patch = self.patches[k], pieces == k
+        for k in np.unique(piece_numbers):
+            patch, on_patch = self.patches[k], piece_numbers == k
             feet[on_patch], normals[on_patch] = patch.at(patch.inverse(points[on_patch]))
         return feet, normals
 
-    def sagitta(self, pieces: Index) -> Array:
+    def sagitta(self, piece_numbers: Index) -> Array:
         """Zero."""
-        return np.zeros(len(pieces))
+        return np.zeros(len(piece_numbers))
 
 
 class FacetGround:
@@ -93,18 +93,18 @@ class FacetGround:
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
         """On the planes of the nearest triangles."""
-        pieces = self.search.signed(points)[2]
-        return *self.on(pieces, points), pieces
+        piece_numbers = self.search.signed(points)[2]
+        return *self.on(piece_numbers, points), piece_numbers
 
-    def on(self, pieces: Index, points: Array) -> tuple[Array, Array]:
+    def on(self, piece_numbers: Index, points: Array) -> tuple[Array, Array]:
         """On the planes of triangles."""
-        normal = self.solid.units[pieces]
-        corner = self.solid.vertices[self.solid.triangles[pieces, 0]]
+        normal = self.solid.units[piece_numbers]
+        corner = self.solid.vertices[self.solid.triangles[piece_numbers, 0]]
         return points - dot(points - corner, normal)[:, None] * normal, normal
 
-    def sagitta(self, pieces: Index) -> Array:
+    def sagitta(self, piece_numbers: Index) -> Array:
         """From the turns between triangles."""
-        return self.solid.sagitta[pieces]
+        return self.solid.sagitta[piece_numbers]
 
 
 class PlaneGround:
@@ -122,18 +122,18 @@ class PlaneGround:
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
         """Vertically under or over the points."""
-        pieces = np.zeros(len(points), dtype=np.intp)
-        return *self.on(pieces, points), pieces
+        piece_numbers = np.zeros(len(points), dtype=np.intp)
+        return *self.on(piece_numbers, points), piece_numbers
 
-    def on(self, pieces: Index, points: Array) -> tuple[Array, Array]:
+    def on(self, piece_numbers: Index, points: Array) -> tuple[Array, Array]:
         """Vertically under or over the points."""
         foot = points.copy()
         foot[:, 2] = self.height
         return foot, np.broadcast_to(np.array([0.0, 0.0, 1.0]), points.shape)
 
-    def sagitta(self, pieces: Index) -> Array:
+    def sagitta(self, piece_numbers: Index) -> Array:
         """Zero."""
-        return np.zeros(len(pieces))
+        return np.zeros(len(piece_numbers))
 
 
 def distances(points: Array, ground: Ground, near_distance: float) -> Array:
