@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from typing import Any
 
 from ...core.issues import NOTE, WARNING, Issue, Text
+from ...core.kinematics.arrangement import arrangement_of
 from ...core.parameters.external import NONE
 from .job import Job
 
 NO_EFFECT = "NO_EFFECT"
-PART_ON_ROBOT, TOOL_ON_ROBOT = "part-on-robot", "tool-on-robot"
 
 
 def unused_key_issues(job: Job) -> list[Issue]:
@@ -36,6 +36,7 @@ def _issues_without_cell(job: Job) -> Iterator[Issue]:
 
 def _issues_of_cell(job: Job) -> Iterator[Issue]:
     assert job.cell is not None
+    arrangement = arrangement_of(job.cell.setup)
     joints, cell = (job.tree.values.get(section) for section in ("joints", "cell"))
     if _gives(joints, "rz") and "constant" not in (job.joints.method, *job.joints.compare):
         message = Text(
@@ -43,14 +44,15 @@ def _issues_of_cell(job: Job) -> Iterator[Issue]:
             job.joints.method,
         )
         yield Issue(WARNING, NO_EFFECT, message)
-    if job.cell.setup == TOOL_ON_ROBOT and job.cell.external == NONE and _gives(cell, "platform"):
+    fixed_part = not arrangement.carries_part and job.cell.external == NONE
+    if fixed_part and _gives(cell, "platform"):
         message = Text(
             "cell.platform has no effect with cell.setup: {}: cell.deposition_point is the platform's pose; leave it out",
             job.cell.setup,
         )
         yield Issue(WARNING, NO_EFFECT, message)
     nozzle = cell.get("nozzle") if isinstance(cell, dict) else None
-    if job.cell.setup == PART_ON_ROBOT and _gives(nozzle, "tool"):
+    if arrangement.holds_part and _gives(nozzle, "tool"):
         message = Text(
             "cell.nozzle.tool has no effect with cell.setup: {}: cell.deposition_point is where the nozzle stands; leave it out",
             job.cell.setup,
