@@ -109,7 +109,7 @@ def _compared(name: str, own: Obstacles, peer: Any, tip: Array, axis: Array, wha
         assert np.abs(found - other).max() < off + 1e-3, "they say other distances"
     else:
         away = own.distance(NOZZLE, tip, axis)
-        smaller = own.touched(
+        smaller = own.find_touching(
             replace(NOZZLE, radius=NOZZLE.radius - off * np.hypot(1.0, NOZZLE.slope)), tip, axis
         )
         assert 0.1 < found.mean() < 0.9, f"looks that say nothing: {found.mean()}"

@@ -99,7 +99,7 @@ def _write_results(job: Job, stages: Any, files: outputs.Outputs, session: Any) 
                 serve,
             )
         return Result("", [*stages.issues, Issue(ERROR, "NO_PLACE", text)], 3)
-    best = placement.of_pose(placement.best)
+    best = placement.result_of(placement.best)
     note = Issue(
         NOTE,
         "PLACED",

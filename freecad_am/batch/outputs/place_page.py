@@ -61,7 +61,7 @@ def _table(placement: Placed) -> str:
     proven = list(placement.proven)
     best_number = [placement.best] if placement.best is not None else []
     for number in dict.fromkeys([*best_number, *proven, *ranked(placement, "margin")[:_BEST]]):
-        pose_result = placement.of_pose(number)
+        pose_result = placement.result_of(number)
         figures = [f"{value:.6g}" for value in outer(placement.pose(number))]
         figures += [
             _format(100.0 * pose_result.margin, ".3g"),
@@ -102,7 +102,7 @@ def _map(placement: Placed, height: float, low: float, high: float) -> str:
             number  # the best of them stays
         )
     for (place_x, place_y), number in best_at.items():
-        pose_result = placement.of_pose(number)
+        pose_result = placement.result_of(number)
         x_left, right = plot.to_x(np.array([place_x - 0.48 * across, place_x + 0.48 * across]))
         top, bottom = plot.to_y(np.array([place_y + 0.48 * up, place_y - 0.48 * up]))
         share = (pose_result.margin - low) / (high - low) if high > low else 1.0
@@ -118,7 +118,7 @@ def _map(placement: Placed, height: float, low: float, high: float) -> str:
 
 
 def _rank_key(placement: Placed, number: int) -> tuple[float, float, float]:
-    pose_result = placement.of_pose(number)
+    pose_result = placement.result_of(number)
     return (
         float(pose_result.feasible),
         pose_result.share,
@@ -127,7 +127,7 @@ def _rank_key(placement: Placed, number: int) -> tuple[float, float, float]:
 
 
 def _pose_text(placement: Placed, number: int) -> str:
-    pose_result = placement.of_pose(number)
+    pose_result = placement.result_of(number)
     values = [float(f"{value:.6g}") for value in outer(placement.pose(number))]
     return (
         f"{values}: {pose_result.code or 'feasible'}; margin {_format(100.0 * pose_result.margin, '.3g')} %, {_format(pose_result.time, '.0f')} s, "

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads among which rapids are driven, and what of the nozzle is left out near the ends that they leave and come to.
+"""Beads that rapids pass, and the part of the nozzle that is exempt near the ends where a rapid
+starts or ends.
 
-Where the nozzle retracts from the end of a bead or comes to the start of one, it touches what it has laid and what that
-stands on, as while depositing: there its part below a height is left out, less the distance of the tip from that point.
-Withdrawn along its axis, a cone stays within the room that it had above that height: so nothing more need be left out,
-wherever the move leads.
+Where the nozzle retracts from the end of a bead or approaches the start of one, it touches the
+deposit and its support, as while depositing: there its part below a height is exempt, less the
+distance of the tip from that point. A cone withdrawn along its axis stays within the volume that
+it had above that height, so nothing more needs an exemption, wherever the move leads.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from .nozzle import Nozzle, exempt_height, travelling
 from .obstacles import Obstacles
 from .tolerances import ABOVE_FACES, CHORD
 
-# length of the pieces the deposit is looked at as, mm, near nozzles and near links
+# length of the pieces into which the deposit is divided, mm, near nozzles and near links
 GRAIN, LINK_GRAIN = 1.5, 5.0
 HALVINGS = 6  # of a nozzle's length: to a hundredth of it
 REMEMBERED = (
@@ -132,16 +133,19 @@ class BeadEnds:
 
     @classmethod
     def of(cls, beads: Beads, size: Size) -> BeadEnds:
-        """Those of the beads, made once for the rapids that are planned and for the look at what came of it."""
+        """Return the ends of the beads, computed once for planning the rapids and for checking them."""
         build = (
             _build_bead_ends if len(beads.points) <= REMEMBERED else _build_bead_ends.__wrapped__
         )
         return build(_Asked(beads, size))
 
     def nozzle(self, tip: Array, deposited: Index) -> Nozzle:
-        """The nozzle with tips (k, 3), where so many points (k,) are there: the last of these is left, the one after it come
-        to. Against deposit it is without what stands in it there, against bodies without what is below the height at which
-        its side is one diameter of the tip from the point."""
+        """Return the nozzle with tips (k, 3) when `deposited` points (k,) are printed: it leaves the last
+        of these and comes to the one after.
+
+        Against deposit the part that stays in it is exempt there; against bodies the part below the
+        height at which the nozzle's side is one tip diameter from the point.
+        """
         radius, slope, _ = self._size
         about = side_height(radius, slope) + ABOVE_FACES
         bodies, deposit = np.zeros(len(tip)), np.zeros(len(tip))
@@ -172,21 +176,25 @@ def _build_bead_ends(question: _Asked) -> BeadEnds:
 def standing_heights(
     deposit: Obstacles, size: Size, tip: Array, axis: Array, height: Array, moment: Index
 ) -> Array:
-    """(k,) mm over the tips (k, 3) on points of beads, below which nozzles along unit axes (k, 3) are not looked at there.
+    """Return the heights (k,) mm over the tips (k, 3), on points of beads, below which nozzles along
+    unit axes (k, 3) are exempt there.
 
-    The tip stands in the bead of the height (k,) mm whose end it is: up to that height deposit is about it rightly. Where
-    more of the nozzle is in the deposit that is there before the moment (k,) - a nozzle that leans over its own bead, or a
-    job that asks for no clearance - it is as much as that: no way off the point avoids it, and what it touches while
-    depositing is looked at elsewhere. CHORD more is left out, as of all of a nozzle on rapids.
+    The tip is in the bead of height (k,) mm whose end it is: up to that height the nozzle may have
+    deposit around. Where more of the nozzle is in the deposit of before the moment (k,) - a nozzle
+    that leans over its own bead, or a job that asks for no clearance - the height is as much: no
+    move off the point avoids that, and the check of the depositing nozzle covers it. CHORD is added,
+    as for any nozzle on rapids.
     """
     distinct, distinct_rows = np.unique(height, return_inverse=True)
     exempt = np.array([exempt_height(size.radius, size.slope, float(value)) for value in distinct])
     heights = np.minimum(exempt[distinct_rows.ravel()], size.length)
-    rows = np.flatnonzero(deposit.touched(travelling(*size, heights).deposit, tip, axis, moment))
+    rows = np.flatnonzero(
+        deposit.find_touching(travelling(*size, heights).deposit, tip, axis, moment)
+    )
     low, high = heights[rows], np.full(len(rows), size.length)
     for _ in range(HALVINGS if len(rows) else 0):
         middle = 0.5 * (low + high)
-        touched = deposit.touched(
+        touched = deposit.find_touching(
             travelling(*size, middle).deposit, tip[rows], axis[rows], moment[rows]
         )
         low, high = np.where(touched, middle, low), np.where(touched, high, middle)

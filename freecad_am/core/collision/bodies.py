@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Bodies as obstacles: their triangles, cut up where they are large, and the inside of those that are closed."""
+"""Bodies as obstacles: their triangles, large ones divided, and the inside of closed bodies."""
 
 from __future__ import annotations
 
@@ -23,17 +23,19 @@ MOST_PIECES = 60_000  # of all bodies; where there would be more, the pieces are
 
 @dataclass(frozen=True)
 class Bodies:
-    """Triangles, and closed bodies as far as solids reach that are looked at; always there."""
+    """Triangles, and closed bodies within the reach of the solids to check; present at any moment."""
 
     triangles: Obstacles
     solids: tuple[Inside, ...]
 
-    def touched(self, solid: Frustum, tip: Array, axis: Array) -> Mask:
-        """(k,) whether solids with the tip (k, 3) and the unit axis (k, 3) meet a triangle or are inside a closed body.
+    def find_touching(self, solid: Frustum, tip: Array, axis: Array) -> Mask:
+        """Return whether (k,) solids with the tip (k, 3) and the unit axis (k, 3) meet a triangle or are
+        inside a closed body.
 
-        One that meets no triangle of a closed body is inside it as a whole or not at all: a point of its axis says.
+        A solid that meets no triangle of a closed body is entirely inside or outside: one point of its
+        axis decides.
         """
-        hits = self.triangles.touched(solid, tip, axis)
+        hits = self.triangles.find_touching(solid, tip, axis)
         rows = np.flatnonzero(~hits)
         hits[rows] = self._inside(solid.rows(rows), tip[rows], axis[rows])
         return hits

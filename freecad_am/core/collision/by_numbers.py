@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Questions that are the same where all numbers in them are: keys of what is worked out once for several who ask."""
+"""Queries that are equal if all their numbers are: keys of results shared by several callers."""
 
 from __future__ import annotations
 

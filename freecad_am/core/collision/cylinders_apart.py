@@ -108,13 +108,14 @@ def axes_apart(cylinders: PlacedCylinders, others_at: PlacedCylinders) -> Array:
 
 
 def nearest(cylinders: PlacedCylinders, others_at: PlacedCylinders) -> tuple[Array, Array]:
-    """The places (k, 3) where the second cylinders are nearest to the first ones, and the ways (k, 3) from there to these;
-    none where the two meet."""
+    """Return the points (k, 3) of the second cylinders nearest to the first ones, and the vectors
+    (k, 3) from these points to the first cylinders; zero for pairs that meet.
+    """
     adjacent = _Pairs(
         PlacedCylinders(
             others_at.start - cylinders.start, others_at.axis, others_at.length, others_at.radius
         )
     )
     middle = adjacent.cylinders.start + 0.5 * others_at.length * others_at.axis
-    points, offsets = separation.ways(cylinders.solid, cylinders.axis, adjacent, middle)
+    points, offsets = separation.shortest_vectors(cylinders.solid, cylinders.axis, adjacent, middle)
     return cylinders.start + points, offsets

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The deposit as a solid: beads with their width and height, from the moment at which each piece of them is laid.
+"""The deposit as a solid: beads with width and height, each piece from the moment it is printed.
 
-A bead stands on its points along the build direction: its section is a stadium, as wide as the bead and as high, round by
-half of the smaller of the two. Between two points it is the hull of both sections; at corners the outer side is filled.
+A bead extends from its points along the build direction. Its section is a stadium of the bead's
+width and height, rounded by half of the smaller value. Between two points the solid is the hull
+of both sections; at corners the outer side is filled.
 """
 
 from __future__ import annotations
@@ -95,7 +96,7 @@ def build_deposit(
     wedge = np.concatenate([hull[turned][:, 2:], hull[turned + 1][:, :2]], axis=1)
     hulls = np.concatenate([hull, wedge])
     if like is not None:
-        return like.moved(hulls)
+        return like.replace_corners(hulls)
     return Obstacles(
         hulls,
         np.concatenate([since, since[turned + 1]]),
@@ -113,7 +114,7 @@ def _join_points(points: Array, is_first: Mask, grain: float) -> Index:
     size = lengths(directions)
     step = np.where(is_first, 0.0, size)
     directions /= np.maximum(size, 1e-12)[:, None]
-    # what is turned at a point is the difference to the way on from it
+    # the rotation at a point is the difference to the direction after it
     turn = np.where(
         is_first | is_last, 0.0, lengths(np.diff(directions, axis=0, append=directions[-1:]))
     )
@@ -134,8 +135,10 @@ def in_parts(
 
 @dataclass(frozen=True, eq=False)
 class InParts:
-    """The deposit that `build_deposit` makes, made part by part whenever it is asked: for few looks at a long one, whose pieces
-    take more memory than its points. what: further arguments of `build_deposit`."""
+    """The deposit of `build_deposit`, built part by part on each query: for few queries of a long
+    deposit, whose pieces take more memory than its points. what: further arguments of
+    `build_deposit`.
+    """
 
     points: Array
     build: Array
@@ -144,21 +147,21 @@ class InParts:
     starts: Index
     what: dict[str, Any]
 
-    def touched(
+    def find_touching(
         self,
         solid: Frustum,
         tip: Array,
         axis: Array,
         moment: Index | None = None,
-        own: Index | None = None,
+        layer_start: Index | None = None,
     ) -> Mask:
-        """As `Obstacles.touched`."""
+        """Return the mask of `Obstacles.find_touching`."""
         hits, count = np.zeros(len(tip), dtype=bool), len(self.points)
         begins = np.zeros(count, dtype=bool)
         begins[self.starts] = True
         for begin in range(0, count, PART):
             rows = np.flatnonzero(~hits if moment is None else ~hits & (moment > begin))
-            # with the two pieces before, for what is filled at the corner between two
+            # with the two pieces before, for the fill at the corner between two
             rows_of_part = slice(max(begin - 2, 0), min(begin + PART, count))
             rows = rows[self._near(rows_of_part, solid.rows(rows), tip[rows], axis[rows])]
             if not len(rows):
@@ -173,12 +176,12 @@ class InParts:
                 short=True,
                 **self.what,
             )
-            hits[rows] = deposited.touched(
+            hits[rows] = deposited.find_touching(
                 solid.rows(rows),
                 tip[rows],
                 axis[rows],
                 None if moment is None else moment[rows],
-                None if own is None else own[rows],
+                None if layer_start is None else layer_start[rows],
             )
         return hits
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How deep a part lies under the surface that its beads run on, and how far it reaches there, at places spread evenly."""
+"""Depth of a part under the surface that carries its beads, and its thickness there, at evenly
+spread points.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,7 @@ EVENLY = 1.0 / 1.22074408460575947536 ** np.arange(1, 4)
 
 
 def measured(
-    part: Body,
+    part_mesh: Body,
     owner: Index,
     faces: Sequence[str],
     surface: Surface,
@@ -39,19 +41,21 @@ def measured(
 ) -> tuple[Array, Array, Array, float]:
     """Depths, thickness and depths of faces as `PartDepths` has them, and the share of the part that is not in `excluded`.
 
-    part: its closed triangles, owner (m,) the number in `faces` of each. slack: mm that the surface may be off them.
+    part_mesh: its closed triangles, owner (m,) the number in `faces` of each. slack: mm that the surface may be off them.
     """
-    inside = inside_of(part)
+    inside = inside_of(part_mesh)
     ground = None if excluded is None else inside_of(excluded)
     spacing = float(np.sqrt(surface.areas.mean()))
     probes = _probes(surface)
     sense, half = _inward(probes, inside, slack)
     inward = sense * surface.normals
-    middles, triangle_of = divide_triangles(part.corners(), grain(part.corners(), 2.0 * spacing))
+    middles, triangle_of = divide_triangles(
+        part_mesh.corners(), grain(part_mesh.corners(), 2.0 * spacing)
+    )
     deep = _depths(middles, surface, inward, half, spacing)
     weight = (
-        _areas(part)[triangle_of]
-        / np.bincount(triangle_of, minlength=len(part.triangles))[triangle_of]
+        _areas(part_mesh)[triangle_of]
+        / np.bincount(triangle_of, minlength=len(part_mesh.triangles))[triangle_of]
     )
     if ground is not None:
         weight = np.where(ground.holds(middles), 0.0, weight)
@@ -78,8 +82,9 @@ def measured(
 
 
 def grain(corners: Array, smallest: float) -> float:
-    """The longest side, mm, no less than `smallest`, that divides triangles (m, 3, 3) into no more than some MOST parts beside
-    themselves: a face may be a million times as large as the wall that is looked at."""
+    """Return the longest side, mm, at least `smallest`, that divides triangles (m, 3, 3) into at most
+    about MOST parts more: a face may be a million times as large as the wall to measure.
+    """
     sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1, initial=0.0)
     across = np.linalg.norm(doubled_areas(corners), axis=1)
     heights = across / np.maximum(sides, 1e-300)
@@ -90,7 +95,7 @@ def grain(corners: Array, smallest: float) -> float:
 
 
 def _probes(surface: Surface) -> Surface:
-    """Places of a surface that stand for equal areas."""
+    """Return points of a surface that represent equal areas."""
     ends = np.cumsum(surface.areas)
     point_rows = np.minimum(
         np.searchsorted(ends, (np.arange(PROBES) + 0.5) / PROBES * ends[-1]), len(ends) - 1
@@ -112,7 +117,9 @@ def _inward(probes: Surface, inside: Inside | None, slack: float) -> tuple[float
 
 
 def _depths(points: Array, surface: Surface, inward: Array, half: bool, spacing: float) -> Array:
-    """How wide (k,) a bead on the nearest place of the surface must be to hold each point (k, 3), inf beside it."""
+    """Return the width (k,) mm that a bead on the nearest point of the surface needs to hold each point
+    (k, 3), inf next to the surface.
+    """
     _, nearest = cKDTree(surface.points).query(
         points, eps=0.02
     )  # in the middle of a ball all are alike
@@ -178,21 +185,21 @@ def _reach(start: Array, directions: Array, inside: Inside, slack: float) -> Arr
 
 
 def _shares(values: Array) -> Array:
-    """The values (n,) at the middles of SHARES equal shares of them, sorted."""
+    """Return the values (n,) at the middles of SHARES equal shares, sorted."""
     sorted_values: Array = np.sort(values)[
         ((np.arange(SHARES) + 0.5) / SHARES * len(values)).astype(int)
     ]
     return sorted_values
 
 
-def _areas(part: Body) -> Array:
-    a, b, c = (part.corners()[:, k] for k in range(3))
+def _areas(part_mesh: Body) -> Array:
+    a, b, c = (part_mesh.corners()[:, k] for k in range(3))
     areas: Array = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
     return areas
 
 
 def _median(values: Array, weights: Array) -> float:
-    """The value that half of the weight is below; 0 where there is no weight."""
+    """Return the weighted median of the values; 0 without weight."""
     order = np.argsort(values)
     total = np.cumsum(weights[order])
     if not len(values) or total[-1] <= 0.0:

@@ -19,8 +19,9 @@ from .tolerances import ALONG, ROUNDING
 
 
 def side_height(radius: float, slope: float) -> float:
-    """Height (mm) over the tip plane at which the side of a nozzle is one diameter of its tip from the deposit point: below,
-    it touches what it stands on and the bead being laid."""
+    """Height (mm) over the tip plane at which the side of a nozzle is one tip diameter from the deposit
+    point: below, it touches its support and the bead that it prints.
+    """
     return float(
         radius
         * (np.sqrt(slope * slope + 3.0 * (1.0 + slope * slope)) - slope)
@@ -107,7 +108,7 @@ class Frustum:
         return gap
 
     def farthest(self, direction: Array, axis: Array) -> Array:
-        """The points (k, 3) of the solid that lie farthest along directions (k, 3)."""
+        """Return the points (k, 3) of the solid farthest along directions (k, 3)."""
         rise = dots(direction, axis)
         across = direction - rise[:, None] * axis
         size = np.sqrt(dots(across, across))
@@ -189,24 +190,26 @@ class Frustum:
         a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
         meets = self.meets_segments(a, b, axis)
         for start, end in ((b, c), (c, a)):
-            rest = np.flatnonzero(~meets)
-            meets[rest] = self.rows(rest).meets_segments(start[rest], end[rest], axis[rest])
-        rest = np.flatnonzero(~meets)
-        meets[rest] = self.rows(rest)._section_inside(corners[rest], axis[rest])
+            remaining = np.flatnonzero(~meets)
+            meets[remaining] = self.rows(remaining).meets_segments(
+                start[remaining], end[remaining], axis[remaining]
+            )
+        remaining = np.flatnonzero(~meets)
+        meets[remaining] = self.rows(remaining)._section_inside(corners[remaining], axis[remaining])
         return meets
 
     def _section_inside(self, corners: Array, axis: Array) -> Mask:
         """Whether a point of the section of the solid by each triangle's plane is in the triangle.
 
-        Where the plane misses the axis between the end discs, it cuts a diameter of one of them: the one that goes
-        farthest towards the plane.
+        Where the plane misses the axis between the end discs, it cuts a diameter of one disc: the
+        diameter that goes farthest towards the plane.
         """
-        base, one, other = (
+        base, side_a, side_b = (
             corners[:, 0],
             corners[:, 1] - corners[:, 0],
             corners[:, 2] - corners[:, 0],
         )
-        normal = np.cross(one, other)
+        normal = np.cross(side_a, side_b)
         square = dots(normal, normal)
         level = dots(normal, base)
         lean = normal - dots(normal, axis)[:, None] * axis
@@ -221,14 +224,14 @@ class Frustum:
         for start, step in lines:
             climb = dots(normal, step)
             crossing = climb != 0.0
-            place = (level - dots(normal, start)) / np.where(crossing, climb, 1.0)
-            point = start + place[:, None] * step - base
-            u = dots(np.cross(point, other), normal)
-            v = dots(np.cross(one, point), normal)
+            share = (level - dots(normal, start)) / np.where(crossing, climb, 1.0)
+            point = start + share[:, None] * step - base
+            u = dots(np.cross(point, side_b), normal)
+            v = dots(np.cross(side_a, point), normal)
             inside |= (
                 crossing
-                & (place > 1e-12)
-                & (place < 1.0 - 1e-12)
+                & (share > 1e-12)
+                & (share < 1.0 - 1e-12)
                 & (u >= 0.0)
                 & (v >= 0.0)
                 & (u + v <= square)

@@ -30,14 +30,14 @@ class Inside:
         self._faces_one_way = faces_one_way
         # as seen along the ray: across it (m, 3, 2), and along it (m, 3)
         ray = RAY / np.linalg.norm(RAY)
-        one = np.cross(ray, [1.0, 0.0, 0.0])
-        one /= np.linalg.norm(one)
-        self._frame = np.stack([one, np.cross(ray, one), ray])
+        across = np.cross(ray, [1.0, 0.0, 0.0])
+        across /= np.linalg.norm(across)
+        self._frame = np.stack([across, np.cross(ray, across), ray])
         self._seen = corners @ self._frame.T
         self._levels = [self._boxes(size) for size in tree.sizes(len(corners))]
 
     def _boxes(self, size: int) -> tuple[Array, Array]:
-        """Lowest and highest places (3, k), as seen along the ray, of so many triangles each."""
+        """Lowest and highest coordinates (3, k) in the frame of the ray, of groups of `size` triangles."""
         starts = np.arange(0, len(self._seen), size)
         low, high = (
             np.minimum.reduceat(self._seen.min(axis=1), starts),
@@ -47,35 +47,42 @@ class Inside:
 
     def holds(self, points: Array) -> Mask:
         """Whether points (n, 3) are inside; on the surface itself it may be either."""
-        found = np.zeros(len(points), dtype=bool)
-        some = np.flatnonzero(self.may_hold(points))
-        for part in np.split(some, np.arange(QUERIES, len(some), QUERIES)):
-            found[part] = self._held(points[part] @ self._frame.T)
-        return found
+        inside = np.zeros(len(points), dtype=bool)
+        candidates = np.flatnonzero(self.may_hold(points))
+        for rows in np.split(candidates, np.arange(QUERIES, len(candidates), QUERIES)):
+            inside[rows] = self._test_inside(points[rows] @ self._frame.T)
+        return inside
 
     def may_hold(self, points: Array) -> Mask:
         """Whether points (n, 3) are in the box about it; axis by axis, in a fraction of the time of a reduction."""
-        found: Mask = np.ones(len(points), dtype=bool)
-        for at, low, high in zip(points.T, self.low, self.high):
-            found &= (at > low) & (at < high)
-        return found
+        in_box: Mask = np.ones(len(points), dtype=bool)
+        for coordinate, low, high in zip(points.T, self.low, self.high):
+            in_box &= (coordinate > low) & (coordinate < high)
+        return in_box
 
-    def _held(self, seen: Array) -> Mask:
-        x, y, z = np.ascontiguousarray(seen.T)
+    def _test_inside(self, ray_points: Array) -> Mask:
+        x, y, z = np.ascontiguousarray(ray_points.T)
         top = self._levels[-1][0].shape[1]
-        query, node = np.repeat(np.arange(len(seen)), top), np.tile(np.arange(top), len(seen))
+        query, node = (
+            np.repeat(np.arange(len(ray_points)), top),
+            np.tile(np.arange(top), len(ray_points)),
+        )
         for depth in range(len(self._levels) - 1, -1, -1):
             low, high = self._levels[depth]
-            # one side of the boxes after the other: each leaves fewer to be looked at
-            for at, bounds, before in (
+            # one side of the boxes after the other: each leaves fewer pairs to test
+            for coordinate, bounds, below_high in (
                 (x, high[0], True),
                 (x, low[0], False),
                 (y, high[1], True),
                 (y, low[1], False),
                 (z, high[2], True),
             ):
-                near = at[query] <= bounds[node] if before else at[query] >= bounds[node]
-                query, node = query[near], node[near]
+                in_bounds = (
+                    coordinate[query] <= bounds[node]
+                    if below_high
+                    else coordinate[query] >= bounds[node]
+                )
+                query, node = query[in_bounds], node[in_bounds]
             if depth:
                 query, node = tree.below(query, node, self._levels[depth - 1][0].shape[1])
         corners = self._seen[node]
@@ -85,26 +92,26 @@ class Inside:
         )
         # twice the areas of the ray's end with each edge: the shares of the corners opposite
         of_a, of_b, of_c = (u[0] * v[1] - u[1] * v[0] for u, v in ((b, c), (c, a), (a, b)))
-        way = np.where((of_a >= 0.0) & (of_b >= 0.0) & (of_c >= 0.0), 1, 0) - np.where(
+        sense = np.where((of_a >= 0.0) & (of_b >= 0.0) & (of_c >= 0.0), 1, 0) - np.where(
             (of_a < 0.0) & (of_b < 0.0) & (of_c < 0.0), 1, 0
         )
-        crossed = (way != 0) & ((of_a * a[2] + of_b * b[2] + of_c * c[2]) * way > 0.0)
-        query, way = query[crossed], way[crossed]
+        crossed = (sense != 0) & ((of_a * a[2] + of_b * b[2] + of_c * c[2]) * sense > 0.0)
+        query, sense = query[crossed], sense[crossed]
         if self._faces_one_way:
-            out: Mask = np.bincount(query, weights=way, minlength=len(seen)) != 0.0
+            out: Mask = np.bincount(query, weights=sense, minlength=len(ray_points)) != 0.0
             return out
-        odd: Mask = np.bincount(query, minlength=len(seen)) % 2 == 1
+        odd: Mask = np.bincount(query, minlength=len(ray_points)) % 2 == 1
         return odd
 
 
 def inside_of(body: Body) -> Inside | None:
-    """The inside of a body; None where its triangles leave an opening, or are none."""
+    """The inside of a body; None if its triangles leave an opening or are missing."""
     if not len(body.triangles):
         return None
-    _, first = np.unique(
+    _, merged_ids = np.unique(
         np.round(body.vertices / MERGED).astype(np.int64), axis=0, return_inverse=True
     )
-    corners = first.ravel()[body.triangles]
+    corners = merged_ids.ravel()[body.triangles]
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
     edges = edges[edges[:, 0] != edges[:, 1]]
     forward = np.where(edges[:, 0] < edges[:, 1], 1, -1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The nozzle as it is looked at against bodies and against deposit: while it deposits, and on rapids."""
+"""The nozzle shape to check against bodies and deposit: while it deposits, and on rapids."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ class Nozzle:
 
     @property
     def reach(self) -> float:
-        """Largest distance of a point of it from the tip, mm."""
+        """Largest distance of a point of the nozzle from the tip, mm."""
         return max(self.bodies.reach, self.deposit.reach)
 
     @property
     def foot(self) -> float:
-        """Diameter of the lower end that is looked at against deposit, mm: about it is the bead being laid."""
+        """Diameter of the lower end to check against deposit, mm: around it is the current bead."""
         return float(np.max(2.0 * (self.deposit.radius + self.deposit.slope * self.deposit.low)))
 
     def rows(self, index: Index) -> Nozzle:
@@ -36,7 +36,7 @@ class Nozzle:
         return Nozzle(self.bodies.rows(index), self.deposit.rows(index))
 
     def halfway(self) -> Nozzle:
-        """The nozzle as it is looked at halfway between points at which it is clear."""
+        """The nozzle to check halfway between points where it is clear."""
         return self.larger(-HALFWAY)
 
     def larger(self, by: float) -> Nozzle:
@@ -54,11 +54,12 @@ class Nozzle:
 
 
 def exempt_height(radius: float, slope: float, bead_height: float, lean: float = 0.0) -> float:
-    """Height (mm) over the tip plane below which deposit is not looked at. lean: rad between tool axis and build direction.
+    """Height (mm) over the tip plane below which contact with deposit is exempt. lean: rad between tool
+    axis and build direction.
 
-    The tip stands on the deposit in the bead that is being laid, and beads beside it overlap it by intention: up to the
-    height of the bead they are about the nozzle rightly, also below the lower side of one that leans. At the least it is the
-    height at which the nozzle's side is one of its diameters from the tip.
+    The tip is in the bead that it prints, and adjacent beads overlap that bead by intention: up to
+    the bead's height they may be around the nozzle, also below the lower side of a leaning one. The
+    minimum is the height at which the nozzle's side is one tip diameter from the tip.
     """
     upright = max(float(np.cos(lean) - slope * np.sin(lean)), LEAST_UPRIGHT)
     return max(side_height(radius, slope), (bead_height + radius * float(np.sin(lean))) / upright)
@@ -67,9 +68,10 @@ def exempt_height(radius: float, slope: float, bead_height: float, lean: float =
 def depositing(
     radius: float, slope: float, length: float, bead_height: float, lean: float = 0.0
 ) -> Nozzle:
-    """The nozzle while it deposits: radius of its tip and length mm, slope: tangent of its half angle, the height mm of
-    the highest bead, and how far it leans by intention, rad. Bodies are left out only as far as the nozzle touches what it
-    stands on."""
+    """The nozzle while it deposits: radius of its tip and length mm, slope: tangent of its half angle,
+    the height mm of the highest bead, and its intended lean, rad. Bodies are exempt only as far as
+    the nozzle touches its support.
+    """
     return Nozzle(
         Frustum(radius, slope, side_height(radius, slope) + ABOVE_FACES, length),
         Frustum(radius, slope, exempt_height(radius, slope, bead_height, lean), length),
@@ -77,8 +79,10 @@ def depositing(
 
 
 def travelling(radius: float, slope: float, length: float, exempt: float | Array = 0.0) -> Nozzle:
-    """The nozzle on a rapid. exempt: mm over the tip that are not looked at, of all looks or (k,) of each: on retract and
-    approach what is left of `exempt_height` at the deposit point less the distance of the tip from it."""
+    """The nozzle on a rapid. exempt: mm over the tip that are exempt, one value or (k,), one for each
+    position: on retract and approach `exempt_height` at the deposit point less the distance of the
+    tip from it, at least 0.
+    """
     return Nozzle(
         Frustum(max(radius - FACES, 0.0), slope, np.maximum(exempt, FACES), length),
         Frustum(max(radius - CHORD, 0.0), slope, np.maximum(exempt, CHORD), length),

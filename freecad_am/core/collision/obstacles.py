@@ -17,7 +17,7 @@ from .frustum import Frustum
 from .tolerances import CONVERGED
 
 QUERIES = 16384  # worked on at once
-SLABS = 40  # pieces for each of as many queries as make it worth to find boxes that lie as these do
+SLABS = 40  # pieces for each of as many queries as make oriented boxes worth their time
 ALWAYS, NEVER = -1, np.iinfo(np.intp).max
 NONE = -1  # no obstacle
 
@@ -55,17 +55,18 @@ class Obstacles:
         self.line = None if line is None else line[order]
         self.foot = None if foot is None else foot[order]
         self._sizes = tree.sizes(len(corners))
-        self._levels = self._of_nodes()
+        self._levels = self._build_levels()
         self._lay(corners)
 
-    def moved(self, corners: Array) -> Obstacles:
-        """The same with other corners (m, c, 3) that lie nearly where theirs do: to find an order of these takes most of the
-        time."""
-        other = copy.copy(self)
+    def replace_corners(self, corners: Array) -> Obstacles:
+        """Return a copy with other corners (m, c, 3) close to the present ones: sorting takes most of the
+        time, and the order stays.
+        """
+        copied = copy.copy(self)
         for name in ("_rows", "_radii", "_slabs"):
-            other.__dict__.pop(name, None)
-        other._lay(corners)
-        return other
+            copied.__dict__.pop(name, None)
+        copied._lay(corners)
+        return copied
 
     def _lay(self, corners: Array) -> None:
         """Have the corners in order, and the boxes about them: of each level centres and half sizes by columns (3, n)."""
@@ -86,7 +87,7 @@ class Obstacles:
             size = lengths(normal)
             self._normal = normal / np.where(size > 0.0, size, 1.0)[:, None]
 
-    def _of_nodes(self) -> list[_Level]:
+    def _build_levels(self) -> list[_Level]:
         """The levels of the tree, each from the one below it."""
         rounding, since = (
             np.zeros(len(self.since)) if self.radius is None else self.radius,
@@ -95,18 +96,18 @@ class Obstacles:
         lines = (
             None
             if self.line is None or self.foot is None
-            else own_layer.of_lines(self.line, self.foot)
+            else own_layer.build_lines(self.line, self.foot)
         )
-        found = [_Level(rounding, since, lines)]
+        levels = [_Level(rounding, since, lines)]
         for _ in self._sizes[1:]:
             starts = np.arange(0, len(since), tree.BRANCH)
-            lines = None if lines is None else lines.joined(starts)
+            lines = None if lines is None else lines.merge(starts)
             rounding, since = (
                 np.maximum.reduceat(rounding, starts),
                 np.minimum.reduceat(since, starts),
             )
-            found.append(_Level(rounding, since, lines))
-        return found
+            levels.append(_Level(rounding, since, lines))
+        return levels
 
     @cached_property
     def _rows(self) -> list[tuple[Array, Array]]:
@@ -118,60 +119,63 @@ class Obstacles:
 
     @cached_property
     def _radii(self) -> list[Array]:
-        """Of balls about the same centres as the boxes of each level, which distances alone are looked for by."""
-        found = []
+        """Radii of balls about the centres of the boxes of each level, for distance queries."""
+        level_radii = []
         for size, (centre, _) in zip(self._sizes, self._rows):
-            apart = self.corners - centre[np.arange(len(self.corners)) // size][:, None]
-            away = np.sqrt(separation.largest(np.einsum("ijk,ijk->ij", apart, apart)))
+            offsets = self.corners - centre[np.arange(len(self.corners)) // size][:, None]
+            radii = np.sqrt(separation.largest(np.einsum("ijk,ijk->ij", offsets, offsets)))
             if self.radius is not None:
-                away += self.radius
-            found.append(np.maximum.reduceat(away, np.arange(0, len(away), size)))
-        return found
+                radii += self.radius
+            level_radii.append(np.maximum.reduceat(radii, np.arange(0, len(radii), size)))
+        return level_radii
 
     @cached_property
     def _slabs(self) -> slabs.Slabs:
         """About the pieces of beads of the lowest nodes, as these lie."""
         assert self.radius is not None
-        return slabs.of_pieces(self.corners, self.radius, tree.BRANCH)
+        return slabs.build_slabs(self.corners, self.radius, tree.BRANCH)
 
-    def touched(
+    def find_touching(
         self,
         solid: Frustum,
         tip: Array,
         axis: Array,
         moment: Index | None = None,
-        own: Index | None = None,
+        layer_start: Index | None = None,
     ) -> Mask:
-        """(k,) whether solids with the tip (k, 3) and the unit axis (k, 3) meet an obstacle there before the moment (k,).
+        """Return whether (k,) solids with the tip (k, 3) and the unit axis (k, 3) meet an obstacle that
+        exists before the moment (k,).
 
-        own: (k,) the moment at which the layer being laid began.
+        layer_start: (k,) the moment at which the current layer began.
         """
-        found = np.zeros(len(tip), dtype=bool)
+        hits = np.zeros(len(tip), dtype=bool)
         if not len(self.corners) or not np.any(solid.high > solid.low):
-            return found
-        for first in range(0, len(tip), QUERIES):
-            rows = np.arange(first, min(first + QUERIES, len(tip)))
+            return hits
+        for begin in range(0, len(tip), QUERIES):
+            rows = np.arange(begin, min(begin + QUERIES, len(tip)))
             when = np.zeros(len(rows), dtype=np.intp) if moment is None else moment[rows]
-            layer = np.full(len(rows), NEVER) if own is None else own[rows]
-            found[rows] = self._touched(solid.rows(rows), tip[rows], axis[rows], when, layer)
-        return found
+            layer = np.full(len(rows), NEVER) if layer_start is None else layer_start[rows]
+            hits[rows] = self._find_touching(solid.rows(rows), tip[rows], axis[rows], when, layer)
+        return hits
 
-    def _touched(self, solid: Frustum, tip: Array, axis: Array, moment: Index, own: Index) -> Mask:
-        found = np.zeros(len(tip), dtype=bool)
+    def _find_touching(
+        self, solid: Frustum, tip: Array, axis: Array, moment: Index, layer_start: Index
+    ) -> Mask:
+        hits = np.zeros(len(tip), dtype=bool)
         waiting = [
             (len(self._levels) - 1, *tree.each_with_each(len(tip), len(self._levels[-1].since)))
         ]
         ready: list[tuple[Index, Index]] = []
         tips, axes = columns(tip), columns(axis)
-        layered = bool((own < NEVER).any())
+        layered = bool((layer_start < NEVER).any())
         lying = self.line is not None and len(tip) * SLABS > len(self.corners)
         while waiting:
             depth, query, node = waiting.pop()
             level = self._levels[depth]
-            left = np.flatnonzero(
-                (level.since.take(node) < moment.take(query)) & ~found.take(query)
+            remaining = np.flatnonzero(
+                (level.since.take(node) < moment.take(query)) & ~hits.take(query)
             )
-            query, node = query.take(left), node.take(left)
+            query, node = query.take(remaining), node.take(remaining)
             centre, half = (column.take(node, axis=1) for column in self._boxes[depth])
             centre -= tips.take(query, axis=1)
             round_ = level.rounding.take(node)
@@ -182,34 +186,38 @@ class Obstacles:
                 continue
             query, node = query.take(close), node.take(close)
             if level.lines is not None and layered:
-                left = own_layer.matter(
-                    level.lines, level.since, solid, query, node, tips, axes, own
+                remaining = own_layer.select_pairs(
+                    level.lines, level.since, solid, query, node, tips, axes, layer_start
                 )
-                query, node = query.take(left), node.take(left)
+                query, node = query.take(remaining), node.take(remaining)
             if depth == 1:
-                # before all single ones are looked at: most that meet any hold the first corner of one
-                found[
-                    query[self._sampled(solid, query, node * tree.BRANCH, tip, axis, moment, own)]
+                # before the tests of single obstacles: most solids that meet any hold a first corner
+                hits[
+                    query[
+                        self._sampled(
+                            solid, query, node * tree.BRANCH, tip, axis, moment, layer_start
+                        )
+                    ]
                 ] = True
-                left = np.flatnonzero(~found.take(query))
+                remaining = np.flatnonzero(~hits.take(query))
                 if lying:
-                    q, n = query.take(left), node.take(left)
-                    left = left[
-                        slabs.near(
+                    q, n = query.take(remaining), node.take(remaining)
+                    remaining = remaining[
+                        slabs.select_close(
                             self._slabs, solid.rows(q), n, tip.take(q, axis=0), axis.take(q, axis=0)
                         )
                     ]
-                query, node = query.take(left), node.take(left)
+                query, node = query.take(remaining), node.take(remaining)
             if depth:
                 query, node = tree.below(query, node, len(self._levels[depth - 1].since))
-                waiting += [(depth - 1, *some) for some in tree.parts(query, node)]
+                waiting += [(depth - 1, *pairs) for pairs in tree.parts(query, node)]
                 continue
             ready.append((query, node))
             if sum(len(query) for query, _ in ready) > tree.PAIRS:  # many: that costs less each
-                self._look(solid, tip, axis, own, ready, found)
+                self._look(solid, tip, axis, layer_start, ready, hits)
                 ready = []
-        self._look(solid, tip, axis, own, ready, found)
-        return found
+        self._look(solid, tip, axis, layer_start, ready, hits)
+        return hits
 
     def _sampled(
         self,
@@ -219,13 +227,15 @@ class Obstacles:
         tip: Array,
         axis: Array,
         moment: Index,
-        own: Index,
+        layer_start: Index,
     ) -> Mask:
-        """(k,) whether the first corner of an obstacle is inside, which settles the matter without all the rest."""
+        """Return whether (k,) the first corner of an obstacle is inside, which makes further tests
+        unnecessary.
+        """
         offset = self._sample.take(sample, axis=0) - tip.take(query, axis=0)
         inside: Mask = solid.rows(query).holds(offset, axis.take(query, axis=0))
         since = self.since.take(sample)
-        inside &= (since < moment.take(query)) & (since < own.take(query))
+        inside &= (since < moment.take(query)) & (since < layer_start.take(query))
         return inside
 
     def _look(
@@ -233,21 +243,23 @@ class Obstacles:
         solid: Frustum,
         tip: Array,
         axis: Array,
-        own: Index,
+        layer_start: Index,
         ready: list[tuple[Index, Index]],
-        found: Mask,
+        hits: Mask,
     ) -> None:
         """Mark the queries that meet one of their single obstacles."""
         if ready:
             for query, node in tree.parts(*(np.concatenate(column) for column in zip(*ready))):
-                left = np.flatnonzero(~found.take(query))
-                q, n = query.take(left), node.take(left)
-                found[q[self._meets(q, solid.rows(q), tip[q], axis[q], n, own[q])]] = True
+                remaining = np.flatnonzero(~hits.take(query))
+                q, n = query.take(remaining), node.take(remaining)
+                hits[q[self._meets(q, solid.rows(q), tip[q], axis[q], n, layer_start[q])]] = True
 
     def _meets(
-        self, query: Index, solid: Frustum, tip: Array, axis: Array, node: Index, own: Index
+        self, query: Index, solid: Frustum, tip: Array, axis: Array, node: Index, layer_start: Index
     ) -> Mask:
-        """Whether obstacles (k,) reach into solids, those of queries (k,); of pieces of beads, whether any of a query do."""
+        """Whether obstacles (k,) reach into the solids of queries (k,); for pieces of beads, whether any
+        piece of a query does.
+        """
         kind = self.corners.shape[1]
         offset = self.corners.take(node, axis=0) - tip[:, None]
         if kind == 1:
@@ -261,19 +273,19 @@ class Obstacles:
             meets[cut] = solid.rows(cut).meets_triangles(offset[cut], axis[cut])
             return meets
         assert self.radius is not None and self.line is not None and self.foot is not None
-        # most are below the solid's lower end, and so are the lines that they are laid along: a box about a piece that lies
-        # across the axes tells it less well
+        # most are below the solid's lower end, and so are the lines of their beads: a box about a piece that is
+        # oblique to the axes is a weaker test
         high = separation.largest(np.einsum("kcj,kj->kc", offset, axis)) + self.radius.take(node)
         rows = np.flatnonzero(high > solid.low)
         node = node.take(rows)
-        laying = np.flatnonzero(self.since.take(node) >= own.take(rows))
+        laying = np.flatnonzero(self.since.take(node) >= layer_start.take(rows))
         line = self.line.take(node[laying], axis=0) - tip.take(rows[laying], axis=0)[:, None]
-        near = separation.from_origin(line) < self.foot.take(node[laying])
-        as_line, line = laying[near], line[near]
+        close = separation.from_origin(line) < self.foot.take(node[laying])
+        as_line, line = laying[close], line[close]
         lines = rows[as_line]
         meets[lines] = solid.rows(lines).meets_segments(line[:, 0], line[:, 1], axis[lines])
         rows, node = np.delete(rows, as_line), np.delete(node, as_line)
-        meets[rows] = separation.any_within(
+        meets[rows] = separation.find_any_overlap(
             query[rows], solid.rows(rows), axis[rows], offset[rows], self.radius[node]
         )
         return meets
@@ -298,64 +310,73 @@ class Obstacles:
         moment: Index | None = None,
         reach: float = np.inf,
     ) -> tuple[Array, Index]:
-        """(k,) the same, and (k,) which obstacle that is, of those in their own order; NONE where none is within reach."""
-        found, which = np.full(len(tip), reach), np.full(len(tip), NONE, dtype=np.intp)
-        for first in range(0, len(tip) if len(self.corners) else 0, QUERIES // 8):
-            rows = np.arange(first, min(first + QUERIES // 8, len(tip)))
+        """Return the distances (k,) mm as `distance` does, and the numbers (k,) of the nearest obstacles in
+        their sorted order; NONE if no obstacle is within reach.
+        """
+        gaps, nearest_ids = np.full(len(tip), reach), np.full(len(tip), NONE, dtype=np.intp)
+        for begin in range(0, len(tip) if len(self.corners) else 0, QUERIES // 8):
+            rows = np.arange(begin, min(begin + QUERIES // 8, len(tip)))
             when = np.zeros(len(rows), dtype=np.intp) if moment is None else moment[rows]
-            found[rows], which[rows] = self._nearest(
+            gaps[rows], nearest_ids[rows] = self._nearest(
                 solid.rows(rows), tip[rows], axis[rows], when, reach
             )
-        return found, which
+        return gaps, nearest_ids
 
     def _nearest(
         self, solid: Frustum, tip: Array, axis: Array, moment: Index, reach: float
     ) -> tuple[Array, Index]:
         low, best = np.full((2, len(tip)), reach)  # bounds of the least distance yet
-        which = np.full(len(tip), NONE, dtype=np.intp)
+        nearest_ids = np.full(len(tip), NONE, dtype=np.intp)
         top = len(self._levels[-1].since)
         query, node = tree.each_with_each(len(tip), top)
         for depth in range(len(self._levels) - 1, -1, -1):
             level, (centre, half) = self._levels[depth], self._rows[depth]
-            kept: list[tuple[Index, Index, Array]] = [(query[:0], node[:0], np.zeros(0))]
+            candidates: list[tuple[Index, Index, Array]] = [(query[:0], node[:0], np.zeros(0))]
             for q, n in tree.parts(query, node):
-                there = level.since[n] < moment[q]
-                q, n = q[there], n[there]
+                present = level.since[n] < moment[q]
+                q, n = q[present], n[present]
                 offset = centre[n] - tip[q]
-                apart = offset - solid.rows(q).nearest(offset, axis[q])
-                gap = np.sqrt(dots(apart, apart))
-                wide = dots(np.abs(apart), half[n]) / np.where(gap > 0.0, gap, 1.0)
-                least = gap - np.minimum(wide + level.rounding[n], self._radii[depth][n])
-                near = least < best[q]
-                q, n, least = q[near], n[near], least[near]
+                separations = offset - solid.rows(q).nearest(offset, axis[q])
+                gap = np.sqrt(dots(separations, separations))
+                wide = dots(np.abs(separations), half[n]) / np.where(gap > 0.0, gap, 1.0)
+                lower_bound = gap - np.minimum(wide + level.rounding[n], self._radii[depth][n])
+                close = lower_bound < best[q]
+                q, n, lower_bound = q[close], n[close], lower_bound[close]
                 sample = n * self._sizes[depth]
-                known = self.since[sample] < moment[q]
-                a, b = q[known], sample[known]
-                most = solid.rows(a).gap(self.corners[b, 0] - tip[a], axis[a])
-                _lower(
+                is_present = self.since[sample] < moment[q]
+                a, b = q[is_present], sample[is_present]
+                upper_bound = solid.rows(a).gap(self.corners[b, 0] - tip[a], axis[a])
+                _lower_bounds(
                     best,
-                    which,
+                    nearest_ids,
                     a,
                     b,
-                    most if self.radius is None else np.maximum(most - self.radius[b], 0.0),
+                    upper_bound
+                    if self.radius is None
+                    else np.maximum(upper_bound - self.radius[b], 0.0),
                 )
-                kept.append((q, n, least))
-            query, node = (np.concatenate([some[i] for some in kept]) for i in range(2))
-            away = np.concatenate([some[2] for some in kept])
-            near = away < np.maximum(best[query], CONVERGED)
-            query, node, away = query[near], node[near], away[near]
+                candidates.append((q, n, lower_bound))
+            query, node = (np.concatenate([block[i] for block in candidates]) for i in range(2))
+            bounds_below = np.concatenate([block[2] for block in candidates])
+            close = bounds_below < np.maximum(best[query], CONVERGED)
+            query, node, bounds_below = query[close], node[close], bounds_below[close]
             if depth:
                 query, node = tree.below(query, node, len(self._levels[depth - 1].since))
         # the nearest by their balls first: most of the others are then known to be farther
-        order = np.lexsort((away, query))
-        query, node, away = query[order], node[order], away[order]
+        order = np.lexsort((bounds_below, query))
+        query, node, bounds_below = query[order], node[order], bounds_below[order]
         share = 1
         while len(query):
             now = np.arange(len(query)) - np.searchsorted(query, query) < share
-            self._bring_nearer(solid, tip, axis, query[now], node[now], low, best, which)
-            left = ~now & (away < best[query])
-            query, node, away, share = query[left], node[left], away[left], 4 * share
-        return np.where(best <= CONVERGED, 0.0, np.minimum(low, best)), which
+            self._bring_nearer(solid, tip, axis, query[now], node[now], low, best, nearest_ids)
+            remaining = ~now & (bounds_below < best[query])
+            query, node, bounds_below, share = (
+                query[remaining],
+                node[remaining],
+                bounds_below[remaining],
+                4 * share,
+            )
+        return np.where(best <= CONVERGED, 0.0, np.minimum(low, best)), nearest_ids
 
     def _bring_nearer(
         self,
@@ -366,7 +387,7 @@ class Obstacles:
         node: Index,
         low: Array,
         best: Array,
-        which: Index,
+        nearest_ids: Index,
     ) -> None:
         """Lower the bounds of queries (n,) by their obstacles."""
         for q, n in tree.parts(query, node):
@@ -377,11 +398,13 @@ class Obstacles:
             )
             bottom, top = np.maximum(bottom - round_, 0.0), np.maximum(top - round_, 0.0)
             np.minimum.at(low, q, np.where(top > CONVERGED, bottom, 0.0))
-            _lower(best, which, q, n, top)
+            _lower_bounds(best, nearest_ids, q, n, top)
 
 
-def _lower(best: Array, which: Index, query: Index, node: Index, most: Array) -> None:
-    """Lower what is best of queries (n,) to what nodes (n,) have at most, and note which has it."""
-    np.minimum.at(best, query, most)
-    has = most <= best[query]
-    which[query[has]] = node[has]
+def _lower_bounds(
+    best: Array, nearest_ids: Index, query: Index, node: Index, upper_bound: Array
+) -> None:
+    """Lower the `best` of queries (n,) to the upper bounds of nodes (n,), and note the nodes."""
+    np.minimum.at(best, query, upper_bound)
+    has = upper_bound <= best[query]
+    nearest_ids[query[has]] = node[has]

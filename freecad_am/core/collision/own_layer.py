@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads of the layer being laid, next to the tip: there they count as the lines that they are laid along.
+"""Beads of the current layer, next to the tip: there they count as the lines of their points.
 
-Of a long bead with points close together those are nearly all the pieces that a nozzle comes near to. Where the lines of a
-node of the tree are below the nozzle's lower end, none of its pieces need be looked at.
+For a long bead with points close together these are nearly all the pieces that a nozzle comes
+near to. Where the lines of a node of the tree are below the nozzle's lower end, its pieces need
+no test.
 """
 
 from __future__ import annotations
@@ -24,8 +25,8 @@ class Lines(NamedTuple):
     high: Array
     foot: Array
 
-    def joined(self, starts: Index) -> Lines:
-        """Of the nodes from each start to the next."""
+    def merge(self, starts: Index) -> Lines:
+        """Merge the nodes from each start to the next."""
         low, high = (
             np.minimum.reduceat(self.low, starts, axis=1),
             np.maximum.reduceat(self.high, starts, axis=1),
@@ -33,13 +34,13 @@ class Lines(NamedTuple):
         return Lines(low, high, np.minimum.reduceat(self.foot, starts))
 
 
-def of_lines(line: Array, foot: Array) -> Lines:
+def build_lines(line: Array, foot: Array) -> Lines:
     """Lines (m, 2, 3) that count as such within `foot` (m,) mm of the tip, each for itself."""
     begin, end = columns(line[:, 0]), columns(line[:, 1])
     return Lines(np.minimum(begin, end), np.maximum(begin, end), foot)
 
 
-def matter(
+def select_pairs(
     lines: Lines,
     since: Index,
     solid: Frustum,
@@ -47,21 +48,24 @@ def matter(
     node: Index,
     tips: Array,
     axes: Array,
-    own: Index,
+    layer_start: Index,
 ) -> Index:
-    """Which pairs (k,) of a query and a node are left without the nodes that hold nothing but lines below the solid's lower
-    end. since: of each node the earliest moment. tips, axes: (3, queries); own: of each query the moment at which its layer
-    began."""
-    here = np.flatnonzero(since.take(node) >= own.take(query))
-    if not len(here):
+    """Return which pairs (k,) of a query and a node remain without the nodes that hold only lines below
+    the solid's lower end.
+
+    since: the earliest moment of each node. tips, axes: (3, queries). layer_start: the moment at
+    which the layer of each query began.
+    """
+    in_layer = np.flatnonzero(since.take(node) >= layer_start.take(query))
+    if not len(in_layer):
         return np.arange(len(node))
-    q, n = query.take(here), node.take(here)
+    q, n = query.take(in_layer), node.take(in_layer)
     tip, axis = tips.take(q, axis=1), axes.take(q, axis=1)
     low, high = lines.low.take(n, axis=1) - tip, lines.high.take(n, axis=1) - tip
     top = np.maximum(low * axis, high * axis).sum(axis=0)
-    away = np.maximum(np.square(low), np.square(high)).sum(
+    square_distance = np.maximum(np.square(low), np.square(high)).sum(
         axis=0
     )  # squared, of the corner that is farthest from the tip
-    left = np.ones(len(node), dtype=bool)
-    left[here] = (top > solid.rows(q).low) | (away >= np.square(lines.foot.take(n)))
-    return np.flatnonzero(left)
+    keep = np.ones(len(node), dtype=bool)
+    keep[in_layer] = (top > solid.rows(q).low) | (square_distance >= np.square(lines.foot.take(n)))
+    return np.flatnonzero(keep)

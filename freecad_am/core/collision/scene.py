@@ -27,41 +27,45 @@ from .deposit import InParts
 from .frustum import Frustum
 from .nozzle import Nozzle
 from .obstacles import Obstacles
-from .separation import middles, ways
+from .separation import middles, shortest_vectors
 
 
 @dataclass(frozen=True)
 class Scene:
-    """bodies: always there; deposit: from its moments on, None without any; in parts it tells no
-    distances."""
+    """bodies: present at any moment; deposit: from its moments on, None without any; as `InParts` it
+    gives no distances.
+    """
 
     bodies: Bodies
     deposit: Obstacles | InParts | None = None
 
-    def touched(
+    def find_touching(
         self,
         solid: Nozzle | Frustum,
         tip: Array,
         axis: Array,
         moment: Index | None = None,
-        own: Index | None = None,
+        layer_start: Index | None = None,
     ) -> Mask:
-        """(k,) whether solids with the tip (k, 3) and the axis (k, 3), in part coordinates, meet a body, or deposit that
-        is there before the moment (k,); without moments, any deposit.
+        """Return whether (k,) solids with the tip (k, 3) and the axis (k, 3), in part coordinates, meet a
+        body, or deposit that exists before the moment (k,); without moments, any deposit.
 
-        own: (k,) the moment at which the layer being laid began. Its beads next to the tip, within their width, count as the
-        lines they are laid along: they touch the nozzle rightly.
+        layer_start: (k,) the moment at which the current layer began. Its beads next to the tip, within
+        their width, count as the lines of their points: they may touch the nozzle.
         """
         nozzle = solid if isinstance(solid, Nozzle) else Nozzle(solid, solid)
-        found = self.bodies.touched(nozzle.bodies, tip, axis)
+        hits = self.bodies.find_touching(nozzle.bodies, tip, axis)
         if self.deposit is None:
-            return found
-        rows = np.flatnonzero(~found)
-        when, layer = _all(moment, len(tip))[rows], None if own is None else own[rows]
-        found[rows] = self.deposit.touched(
+            return hits
+        rows = np.flatnonzero(~hits)
+        when, layer = (
+            _all(moment, len(tip))[rows],
+            None if layer_start is None else layer_start[rows],
+        )
+        hits[rows] = self.deposit.find_touching(
             nozzle.deposit.rows(rows), tip[rows], axis[rows], when, layer
         )
-        return found
+        return hits
 
     def distance(
         self,
@@ -71,24 +75,32 @@ class Scene:
         moment: Index | None = None,
         reach: float = 100.0,
     ) -> Array:
-        """(k,) mm between solids and what is nearest to them, as `touched` sees them; 0 where they meet, at most `reach`.
-        Never more than it is; less by no more than tolerances.CONVERGED, but where the two graze."""
+        """Return the distances (k,) mm between solids and the nearest body or deposit, as `find_touching`
+        has them; 0 if they meet, at most `reach`.
+
+        The value is never too large; it is too small by at most tolerances.CONVERGED, except where both
+        graze.
+        """
         nozzle = solid if isinstance(solid, Nozzle) else Nozzle(solid, solid)
-        found = self.bodies.distance(nozzle.bodies, tip, axis, reach)
+        distances = self.bodies.distance(nozzle.bodies, tip, axis, reach)
         if self.deposit is None:
-            return found
+            return distances
         assert not isinstance(self.deposit, InParts), "made for looks, not for distances"
         return np.minimum(
-            found, self.deposit.distance(nozzle.deposit, tip, axis, _all(moment, len(tip)), reach)
+            distances,
+            self.deposit.distance(nozzle.deposit, tip, axis, _all(moment, len(tip)), reach),
         )
 
     def nearest(
         self, solid: Frustum, tip: Array, axis: Array, moment: Index, reach: float
     ) -> tuple[Array, Array, Array]:
-        """Where solids are nearest to what is there before the moment (k,): by how many mm (k,), 0 where they meet, at most
-        `reach`; unit vectors (k, 3) from there towards the solids, and the places (k, 3) of these; none where nothing is
-        within reach or they meet. A solid within a body counts by the body's triangles."""
-        gap, normal, place = (
+        """Find the nearest obstacle present before the moment (k,) for each solid.
+
+        Returns the distances (k,) mm, 0 for contact and at most `reach`; unit vectors (k, 3) from the
+        obstacle towards the solid; and the points (k, 3) of the solids. Vectors are zero if nothing is
+        within reach or they meet. A solid within a body counts by the body's triangles.
+        """
+        gap, normal, position = (
             np.full(len(tip), reach),
             np.zeros((len(tip), 3)),
             np.zeros((len(tip), 3)),
@@ -98,16 +110,18 @@ class Scene:
             self.bodies.triangles,
             *(() if self.deposit is None else (self.deposit,)),
         ):
-            away, which = obstacles.nearest(solid, tip, axis, moment, reach)
-            rows = np.flatnonzero(away < gap)
-            gap[rows] = away[rows]
-            corners = obstacles.corners[which[rows]] - tip[rows, None]
-            there, way = ways(solid.rows(rows), axis[rows], corners, middles(corners))
-            size = lengths(way)
-            normal[rows] = way / np.where(size > 0.0, size, 1.0)[:, None]
-            place[rows] = tip[rows] + there + way
+            distances, nearest_ids = obstacles.nearest(solid, tip, axis, moment, reach)
+            rows = np.flatnonzero(distances < gap)
+            gap[rows] = distances[rows]
+            corners = obstacles.corners[nearest_ids[rows]] - tip[rows, None]
+            nearest_points, vectors = shortest_vectors(
+                solid.rows(rows), axis[rows], corners, middles(corners)
+            )
+            size = lengths(vectors)
+            normal[rows] = vectors / np.where(size > 0.0, size, 1.0)[:, None]
+            position[rows] = tip[rows] + nearest_points + vectors
         normal[gap == 0.0] = 0.0
-        return gap, normal, place
+        return gap, normal, position
 
 
 def scene(

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How near is a touch: every tolerance of collision, mm, each with its reason. No other file has one of its own.
+"""Every tolerance of collision checks, mm, each with its reason. No other file defines one.
 
-What is modelled is off what is there: faces by their triangles, beads by their chords, links by what is drawn of them. A
-solid that must not touch is made smaller by as much where it is known to pass (nozzles), larger where nothing may be
-overlooked (links).
+The model differs from reality: faces by their triangles, beads by their chords, links by their
+drawn shapes. A solid that must not touch is made smaller by that much where it is known to pass
+(nozzles), larger where no contact may be missed (links).
 """
 
 ROUNDING = 1e-9  # of depth in closed forms, which is rounding

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A job with its part at one pose: what planning some of its points makes of it.
+"""A job with its part at one pose: the result of planning some of its points.
 
-Nothing is estimated that can be planned: the beads that are looked at are planned as the whole job is, rapids between those
-that follow each other too. What they tell of the whole is coarse: beads that are left out may be worse.
+Anything that can be planned is planned, not estimated: the sampled beads are planned like the
+whole job, including rapids between consecutive ones. The result is a coarse picture of the
+whole job: beads that are left out may be worse.
 """
 
 from __future__ import annotations
@@ -30,11 +31,11 @@ from ..planning.motion import assemble
 from ..planning.plan import Progress, plan_joints
 from ..planning.sampled import Sampled, sampled
 from ..toolpath import Bead, Toolpath
-from .screen import alone, screened
+from .screen import screen_points, single_points
 
 Cylinders = tuple[tuple[Cylinder, ...], ...]
 
-TOGETHER = 2  # beads that follow each other, so that rapids are among what is planned
+BEADS_IN_SEQUENCE = 2  # consecutive beads, so that the plan includes rapids
 REACH = 200.0  # mm, beyond which it is not told how far the arm is from everything
 UNREACHED = "NO_ROTATION"
 
@@ -68,7 +69,7 @@ class Judged:
 
     @property
     def feasible(self) -> bool:
-        """Whether what was looked at can be carried out."""
+        """Whether the sampled points can be carried out."""
         return not self.code
 
 
@@ -82,26 +83,28 @@ class Judge:
     _deposit: Beads = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        whole = self.job.toolpath
+        toolpath = self.job.toolpath
         joints = dataclasses.replace(self.job.joints, compare=(), certificate=False)
         object.__setattr__(self, "job", dataclasses.replace(self.job, joints=joints))
-        most = whole.point_count if self.most is None else self.most
-        object.__setattr__(self, "_some", sampled(whole, most, TOGETHER))
-        width = whole.bead_width or whole.layer_height
+        max_points = toolpath.point_count if self.most is None else self.most
+        object.__setattr__(self, "_some", sampled(toolpath, max_points, BEADS_IN_SEQUENCE))
+        width = toolpath.bead_width or toolpath.layer_height
         object.__setattr__(
-            self, "_deposit", Beads.of([bead for _, _, bead in whole], width, whole.layer_height)
+            self,
+            "_deposit",
+            Beads.of([bead for _, _, bead in toolpath], width, toolpath.layer_height),
         )
 
     @property
     def points(self) -> int:
-        """How many points are looked at."""
+        """Number of sampled points."""
         return self._some.toolpath.point_count
 
-    def judged(
+    def evaluate(
         self, settings: CellParameters, progress: Progress = lambda share, text: None
     ) -> Judged:
-        """The job in a cell. progress may raise to cancel."""
-        job, some = self.job, self._some.toolpath
+        """Plan the job in a cell and return the result. progress may raise to cancel."""
+        job, sampled_toolpath = self.job, self._some.toolpath
         try:
             cell = job.cell(settings)
             share = self._share(cell) if cell.machine.free else 1.0
@@ -111,7 +114,7 @@ class Judge:
                 )
             cylinders = job.cylinders(cell)
             path = plan_joints(
-                some,
+                sampled_toolpath,
                 cell,
                 dataclasses.replace(job.joints, given=self._some.given(job.joints.given)),
                 progress,
@@ -121,9 +124,9 @@ class Judge:
                 path,
                 cell,
                 job.process,
-                some.surroundings,
+                sampled_toolpath.surroundings,
                 job.joints,
-                some.layer_height,
+                sampled_toolpath.layer_height,
                 () if cell.arm_clearance is None else cylinders,
             )
         except AmError as error:
@@ -131,22 +134,26 @@ class Judge:
         return self._figures(cell, path, motion, [*path.issues, *rapids], cylinders)
 
     def _share(self, cell: Cell) -> float | None:
-        """The share of points that are served; None where a track decides where the robot stands."""
-        some, job = self._some.toolpath, self.job
+        """The share of points that the robot serves; None if a track decides the position of the robot."""
+        sampled_toolpath, job = self._some.toolpath, self.job
         if cell.external is not None and cell.external.slides is not None:
             return None
-        beads = levelled(cell, some)[0] if cell.external else [bead for _, _, bead in some]
-        own = job.joints.own_branch
-        wanted = cell.branch if own == OF_CELL else opw.branch_index(own.split("-"))
-        return screened(cell, alone(beads, cell), job.joints, wanted).share
+        beads = (
+            levelled(cell, sampled_toolpath)[0]
+            if cell.external
+            else [bead for _, _, bead in sampled_toolpath]
+        )
+        branch_name = job.joints.own_branch
+        branch = cell.branch if branch_name == OF_CELL else opw.branch_index(branch_name.split("-"))
+        return screen_points(cell, single_points(beads, cell), job.joints, branch).share
 
     def _figures(
         self, cell: Cell, path: JointPath, motion: Motion, issues: list[Issue], cylinders: Cylinders
     ) -> Judged:
         wrong = next((issue for issue in issues if issue.level == ERROR), None)
         joints = path.joints
-        left = cell.limits.smallest_share(joints)
-        served = float(np.mean(np.nan_to_num(left, nan=-1.0) >= 0.0))
+        limit_shares = cell.limits.smallest_share(joints)
+        served = float(np.mean(np.nan_to_num(limit_shares, nan=-1.0) >= 0.0))
         if (
             wrong is not None
             and wrong.code in ("UNREACHABLE", "LIMIT")
@@ -156,7 +163,7 @@ class Judge:
         return Judged(
             served,
             "" if wrong is None else wrong.code,
-            float(np.nanmin(left)),
+            float(np.nanmin(limit_shares)),
             self._time(path, motion),
             self._clearance(cell, path, cylinders),
             path.branch,
@@ -164,41 +171,51 @@ class Judge:
         )
 
     def _clearance(self, cell: Cell, path: JointPath, cylinders: Cylinders) -> float:
-        """mm between the arm and everything at the points of the beads, all of what is deposited by then among it."""
+        """mm between the arm and everything else at the points of the beads, including the deposit of each
+        moment.
+        """
         if not cylinders:
             return np.nan
-        whole = self.job.toolpath
-        contact = ArmContact(cell, cylinders, whole.surroundings, self._deposit.solid(LINK_GRAIN))
-        counts = np.cumsum([0, *(len(bead) for _, _, bead in whole)])
-        before = {
-            (layer, index): int(n) for (layer, index, _), n in zip(whole, counts, strict=False)
+        toolpath = self.job.toolpath
+        contact = ArmContact(
+            cell, cylinders, toolpath.surroundings, self._deposit.solid(LINK_GRAIN)
+        )
+        counts = np.cumsum([0, *(len(bead) for _, _, bead in toolpath)])
+        deposited_by_bead = {
+            (layer, index): int(n) for (layer, index, _), n in zip(toolpath, counts, strict=False)
         }
-        here = {
-            (layer, index): place
-            for (layer, index, _), place in zip(self._some.toolpath, self._some.places, strict=True)
+        original_ids = {
+            (layer, index): original
+            for (layer, index, _), original in zip(
+                self._some.toolpath, self._some.places, strict=True
+            )
         }
         moment = [
-            before.get(here.get((one.layer, one.index), (one.layer, 0)), before[one.layer, 0])
-            for one in path.beads
+            deposited_by_bead.get(
+                original_ids.get((path_of_bead.layer, path_of_bead.index), (path_of_bead.layer, 0)),
+                deposited_by_bead[path_of_bead.layer, 0],
+            )
+            for path_of_bead in path.beads
         ]
-        when = np.repeat(moment, [len(one.joints) for one in path.beads])
+        when = np.repeat(moment, [len(path_of_bead.joints) for path_of_bead in path.beads])
         return min_distance(contact, path.joints, when, REACH)
 
     def _time(self, path: JointPath, motion: Motion) -> float:
-        """s of the whole job: its deposit as it was slowed here, its rapids as those between beads that follow each other
-        here, lead times and waits."""
-        whole, process = [bead for _, _, bead in self.job.toolpath], self.job.process
-        asked = sum(_lasts(bead) for _, _, bead in self._some.toolpath)
-        run = sum(_lasts(one.bead) for one in path.beads)
-        deposit = sum(_lasts(bead) for bead in whole) * run / max(asked, 1e-9)
-        waits = len(whole) * (process.lead_on + process.lead_off)
+        """s of the whole job: its deposit at the reduced speeds of this plan, its rapids as between the
+        consecutive beads of this plan, lead times and waits.
+        """
+        all_beads, process = [bead for _, _, bead in self.job.toolpath], self.job.process
+        requested = sum(_lasts(bead) for _, _, bead in self._some.toolpath)
+        run = sum(_lasts(bead_path.bead) for bead_path in path.beads)
+        deposit = sum(_lasts(bead) for bead in all_beads) * run / max(requested, 1e-9)
+        waits = len(all_beads) * (process.lead_on + process.lead_off)
         waits += sum(
             max(layer.wait, process.between_layers.wait) for layer in self.job.toolpath.layers[1:]
         )
-        return float(deposit + waits + self._rapids(motion, len(whole)))
+        return float(deposit + waits + self._rapids(motion, len(all_beads)))
 
     def _rapids(self, motion: Motion, beads: int) -> float:
-        """s of all rapids between so many beads, and of the way onto the first and off the last."""
+        """s of all rapids between `beads` beads, and of the moves onto the first and off the last."""
         steps, starts = np.nan_to_num(motion.duration), motion.deposit & (motion.point == 0)
         number = np.cumsum(
             np.append(False, starts[:-1])
@@ -206,25 +223,25 @@ class Judge:
         of_bead = np.bincount(
             number[~motion.deposit], steps[~motion.deposit], int(starts.sum()) + 1
         )
-        first, last, between = (
+        arrival, departure, between = (
             of_bead[0],
             of_bead[int(starts.sum())],
             of_bead[1 : int(starts.sum())],
         )
         if not len(between):
-            return float(first + last)
-        place = {
-            place: k
-            for k, place in enumerate((layer, index) for layer, index, _ in self.job.toolpath)
+            return float(arrival + departure)
+        number_of = {
+            number_of: k
+            for k, number_of in enumerate((layer, index) for layer, index, _ in self.job.toolpath)
         }
-        at = np.array([place[one] for one in self._some.places])
-        follows = np.diff(at) == 1
-        some = between[follows] if len(follows) == len(between) and follows.any() else between
-        return float(first + last + (beads - 1) * some.mean())
+        numbers = np.array([number_of[bead_id] for bead_id in self._some.places])
+        follows = np.diff(numbers) == 1
+        samples = between[follows] if len(follows) == len(between) and follows.any() else between
+        return float(arrival + departure + (beads - 1) * samples.mean())
 
 
 def _several_alike(cell: Cell) -> bool:
-    """Whether several solutions bear the same words, of which the screen knows one."""
+    """Whether several solutions have the same configuration name; the screen knows only one."""
     arm = cell.machine.arm if cell.external is None else cell.robot.arm
     return arm is not None and arm.followed
 

@@ -15,40 +15,44 @@ from ..parameters.place import AUTO, PLATFORM, POINT, POSITIONER
 
 
 def movable(settings: CellParameters) -> tuple[str, ...]:
-    """What there is to move in a cell: of POINT, PLATFORM, POSITIONER those it has, the usual one first."""
+    """The movable poses of a cell: those of POINT, PLATFORM, POSITIONER that it has, the usual one first."""
     arrangement = arrangement_of(settings.setup)
     if arrangement.holds_part:
         return (POINT, PLATFORM)
     if arrangement.carries_part:
         return (PLATFORM,)
-    if any(one.carries == PART for one in externals(settings.external)):
+    if any(mechanism.carries == PART for mechanism in externals(settings.external)):
         return (POSITIONER, PLATFORM)
     return (POINT,) if arrangement.planned else ()
 
 
-def chosen(settings: CellParameters, moves: str) -> str:
-    """What is moved. Raises InputError NOT_FOR_SETUP for what the cell does not have."""
-    there = movable(settings)
-    if moves == AUTO and there:
-        return there[0]
-    if moves not in there:
+def select_movable(settings: CellParameters, moves: str) -> str:
+    """Return the pose to move. Raises InputError NOT_FOR_SETUP if the cell does not have it."""
+    available = movable(settings)
+    if moves == AUTO and available:
+        return available[0]
+    if moves not in available:
         raise InputError(
             "NOT_FOR_SETUP",
             "place.moves",
             "a cell with {} has no {} that places the part; use {}",
             settings.setup,
             moves,
-            Text.joined(" or ", there) or "another set-up",
+            Text.joined(" or ", available) or "another set-up",
         )
     return moves
 
 
 def pose_of(settings: CellParameters, moves: str) -> Pose:
-    """The pose that is moved, as the cell has it, mm and rad."""
+    """The current pose of the movable, mm and rad."""
     if moves == POINT:
         return settings.deposition_point
     if moves == POSITIONER:
-        return next(one.pose for one in externals(settings.external) if one.carries == PART)
+        return next(
+            mechanism.pose
+            for mechanism in externals(settings.external)
+            if mechanism.carries == PART
+        )
     platform = settings.platform
     return (
         (0.0, 0.0, float(platform), 0.0, 0.0, 0.0)
@@ -57,19 +61,21 @@ def pose_of(settings: CellParameters, moves: str) -> Pose:
     )
 
 
-def moved(settings: CellParameters, moves: str, pose: Sequence[float]) -> CellParameters:
-    """The cell with another pose of what is moved."""
+def replace_pose(settings: CellParameters, moves: str, pose: Sequence[float]) -> CellParameters:
+    """Return the cell with another pose of the movable."""
     x, y, z, rx, ry, rz = (float(number) for number in pose)
-    there = (x, y, z, rx, ry, rz)
+    new_pose = (x, y, z, rx, ry, rz)
     if moves == POINT:
-        return dataclasses.replace(settings, deposition_point=there)
+        return dataclasses.replace(settings, deposition_point=new_pose)
     if moves == PLATFORM:
-        return dataclasses.replace(settings, platform=there)
-    mechanisms, done = [], False
-    for one in externals(settings.external):
-        turns = one.carries == PART and not done
-        done |= turns
-        mechanisms.append(str(dataclasses.replace(one, pose=there) if turns else one))
+        return dataclasses.replace(settings, platform=new_pose)
+    mechanisms, is_replaced = [], False
+    for mechanism in externals(settings.external):
+        turns = mechanism.carries == PART and not is_replaced
+        is_replaced |= turns
+        mechanisms.append(
+            str(dataclasses.replace(mechanism, pose=new_pose) if turns else mechanism)
+        )
     return dataclasses.replace(settings, external=f"{MORE} ".join(mechanisms))
 
 

@@ -43,23 +43,29 @@ class Placed:
 
     @property
     def best(self) -> int | None:
-        """The number of the best pose, None where none was found."""
-        last = next(reversed(self.proven), None)
-        return last if last is not None and self.proven[last].feasible else None
+        """The number of the best pose, None without one."""
+        last_proven = next(reversed(self.proven), None)
+        return (
+            last_proven if last_proven is not None and self.proven[last_proven].feasible else None
+        )
 
     def pose(self, number: int) -> Pose:
-        """One of the poses, rounded to what a text of it has."""
+        """Return one of the poses, rounded as its text."""
         x, y, z, a, b, c = np.round(self.poses[number], 9).tolist()
         return (x, y, z, a, b, c)
 
-    def of_pose(self, number: int) -> Judged:
-        """What a pose came to, with all points where it was planned so."""
+    def result_of(self, number: int) -> Judged:
+        """Return the result of a pose, with all points if it was planned so."""
         return self.proven.get(number, self.judged[number])
 
     def entries(self, number: int) -> dict[str, object]:
         """What gives the cell a pose, by parameter, in the units of macros: mm and deg."""
         if self.moves == POSITIONER:
-            return {"external": moved.moved(self.settings, self.moves, self.pose(number)).external}
+            return {
+                "external": moved.replace_pose(
+                    self.settings, self.moves, self.pose(number)
+                ).external
+            }
         return {
             "deposition_point" if self.moves == POINT else "platform": tuple(
                 moved.outer(self.pose(number))
@@ -67,23 +73,23 @@ class Placed:
         }
 
 
-def placed(
+def place_part(
     job: Job, settings: CellParameters, parameters: PlaceParameters, progress: Progress
 ) -> Placed:
-    """What the poses of a box come to, and which is best. progress may raise to cancel.
+    """Judge the poses of a box and find the best. progress may raise to cancel.
 
-    Raises InputError NOT_FOR_SETUP for what the cell has not to be moved.
+    Raises InputError NOT_FOR_SETUP if the cell does not have the movable.
     """
-    moves = moved.chosen(settings, parameters.moves)
+    moves = moved.select_movable(settings, parameters.moves)
     about = moved.pose_of(settings, moves)
     poses = parameters.poses(about)
-    some = Judge(job, parameters.points)
-    found = []
+    judge = Judge(job, parameters.points)
+    results = []
     for number, pose in enumerate(poses):
         progress(JUDGING * number / len(poses), Text("pose {} of {}", number + 1, len(poses)))
-        found.append(some.judged(moved.moved(settings, moves, np.round(pose, 9))))
+        results.append(judge.evaluate(moved.replace_pose(settings, moves, np.round(pose, 9))))
     result = Placed(
-        settings, moves, about, poses, tuple(found), some.points, job.toolpath.point_count
+        settings, moves, about, poses, tuple(results), judge.points, job.toolpath.point_count
     )
     return dataclasses.replace(result, proven=_proven(job, settings, parameters, result, progress))
 
@@ -92,43 +98,50 @@ def _proven(
     job: Job,
     settings: CellParameters,
     parameters: PlaceParameters,
-    found: Placed,
+    placed: Placed,
     progress: Progress,
 ) -> dict[int, Judged]:
-    """The best poses planned with all points, until one is feasible."""
-    whole, done = Judge(job, None), dict[int, Judged]()
-    for number in ranked(found, parameters.best)[: parameters.proven]:
-        share = JUDGING + (1.0 - JUDGING) * len(done) / parameters.proven
+    """Plan the best poses with all points, until one is feasible."""
+    judge, proofs = Judge(job, None), dict[int, Judged]()
+    for number in ranked(placed, parameters.best)[: parameters.proven]:
+        share = JUDGING + (1.0 - JUDGING) * len(proofs) / parameters.proven
         progress(
-            share, Text("planning the whole job at one of the best poses, the {}.", len(done) + 1)
+            share, Text("planning the whole job at one of the best poses, the {}.", len(proofs) + 1)
         )
-        done[number] = whole.judged(moved.moved(settings, found.moves, found.pose(number)))
-        if done[number].feasible:
+        proofs[number] = judge.evaluate(
+            moved.replace_pose(settings, placed.moves, placed.pose(number))
+        )
+        if proofs[number].feasible:
             break
-    return done
+    return proofs
 
 
-def ranked(found: Placed, best: str) -> list[int]:
-    """The feasible poses, the best first; of those alike the ones that are better by the other figures, then those nearest
-    to where it stands. Where the arm touches something, which only `cell.arm_clearance` forbids, come last."""
-    change = np.abs(found.poses - np.array(found.about))
-    away = np.linalg.norm(change[:, :3], axis=1) + 1000.0 * change[:, 3:].sum(
+def ranked(placed: Placed, best: str) -> list[int]:
+    """Return the feasible poses, the best first; ties are resolved by the other figures, then by the
+    distance to the current pose.
+
+    Poses where the arm touches an obstacle, which only `cell.arm_clearance` forbids, come last.
+    """
+    change = np.abs(placed.poses - np.array(placed.about))
+    distances = np.linalg.norm(change[:, :3], axis=1) + 1000.0 * change[:, 3:].sum(
         axis=1
     )  # mm; a rad counts as a metre
 
     def order(number: int) -> tuple[float, ...]:
-        one = found.judged[number]
+        result = placed.judged[number]
         figures = {
-            MARGIN: -round(one.margin, 4),
-            CLEARANCE: -round(float(np.nan_to_num(one.clearance)), 1),
-            TIME: round(one.time, 1),
+            MARGIN: -round(result.margin, 4),
+            CLEARANCE: -round(float(np.nan_to_num(result.clearance)), 1),
+            TIME: round(result.time, 1),
         }
         return (
-            float(one.clearance == 0.0),
+            float(result.clearance == 0.0),
             figures.pop(best),
             *figures.values(),
-            round(float(away[number]), 6),
+            round(float(distances[number]), 6),
             number,
         )
 
-    return sorted((number for number, one in enumerate(found.judged) if one.feasible), key=order)
+    return sorted(
+        (number for number, result in enumerate(placed.judged) if result.feasible), key=order
+    )

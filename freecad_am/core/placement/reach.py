@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The reach of a robot as a volume: at each place of a grid, in how many directions it can hold there what it carries."""
+"""The reach of a robot as a volume: at each point of a grid, the directions in which it can hold its
+load.
+"""
 
 from __future__ import annotations
 
@@ -39,23 +41,23 @@ def reach(cell: Cell, step: float, progress: Progress = lambda share, text: None
     if arm is None:
         return Reach(np.zeros((0, 3)), np.zeros(0), step)
     ahead, height = arm.shoulder
-    held = float(np.linalg.norm(cell.robot.chain.flange[:3, 3])) + float(
+    tool_length = float(np.linalg.norm(cell.robot.chain.flange[:3, 3])) + float(
         np.linalg.norm(cell.carried[:3, 3])
     )
-    size = ahead + arm.reach + held
+    size = ahead + arm.reach + tool_length
     step = max(step, 2.0 * size / MOST_PLACES ** (1.0 / 3.0))
     count = step_count(size, step, 0)
     ticks = step * np.arange(-count, count + 1)
     grid = np.stack(np.meshgrid(ticks, ticks, ticks, indexing="ij"), axis=-1).reshape(-1, 3)
     grid = grid[np.linalg.norm(grid, axis=1) <= size]
     rows, hold = limit_rows(cell.limits), _poses(cell)
-    places = grid + [0.0, 0.0, height]
-    share = np.zeros(len(places))
-    for k, some in enumerate(_pieces(len(places))):
-        progress(k * PIECE / len(places), "reach")
-        share[some] = _share(cell, rows, places[some], hold)
-    found = share > 0.0
-    return Reach(places[found], share[found], step)
+    grid_points = grid + [0.0, 0.0, height]
+    share = np.zeros(len(grid_points))
+    for k, batch in enumerate(_pieces(len(grid_points))):
+        progress(k * PIECE / len(grid_points), "reach")
+        share[batch] = _share(cell, rows, grid_points[batch], hold)
+    is_reached = share > 0.0
+    return Reach(grid_points[is_reached], share[is_reached], step)
 
 
 def _pieces(count: int) -> Iterator[slice]:
@@ -63,7 +65,7 @@ def _pieces(count: int) -> Iterator[slice]:
 
 
 def _poses(cell: Cell) -> Array:
-    """(DIRECTIONS, TURNS, 4, 4) poses of the flange with what it carries at the origin, in all directions."""
+    """(DIRECTIONS, TURNS, 4, 4) poses of the flange with its load at the origin, in all directions."""
     number = np.arange(DIRECTIONS) + 0.5
     up = 1.0 - 2.0 * number / DIRECTIONS
     around = np.pi * (1.0 + np.sqrt(5.0)) * number  # evenly on a ball, along a spiral
@@ -71,27 +73,29 @@ def _poses(cell: Cell) -> Array:
     axes = np.stack([across * np.cos(around), across * np.sin(around), up], axis=1)
     lean = np.swapaxes(frames.smallest_rotation(axes, (0.0, 0.0, 1.0)), 1, 2)
     turn = frames.about_z(np.linspace(0.0, TURN, TURNS, endpoint=False))
-    held: Array = frames.pose(lean[:, None] @ turn, np.zeros(3)) @ frames.inverse(cell.carried)
-    return held
+    poses: Array = frames.pose(lean[:, None] @ turn, np.zeros(3)) @ frames.inverse(cell.carried)
+    return poses
 
 
-def _share(cell: Cell, rows: LimitRows, places: Array, hold: Array) -> Array:
-    """(n,) of places (n, 3)."""
+def _share(cell: Cell, rows: LimitRows, points: Array, hold: Array) -> Array:
+    """Shares (n,) of the directions at points (n, 3)."""
     arm = cell.robot.arm
     assert arm is not None
-    poses = np.broadcast_to(hold, (len(places), *hold.shape)).copy()
-    poses[..., :3, 3] += places[:, None, None]
-    own, count = cell.robot.chain.axes, cell.machine.chain.axes
+    poses = np.broadcast_to(hold, (len(points), *hold.shape)).copy()
+    poses[..., :3, 3] += points[:, None, None]
+    robot_axes, count = cell.robot.chain.axes, cell.machine.chain.axes
     served = np.zeros(poses.shape[:3], dtype=bool)
     with np.errstate(invalid="ignore"):  # axes without end
-        middle = 0.5 * (cell.limits.lower + cell.limits.upper)[:own]
+        middle = 0.5 * (cell.limits.lower + cell.limits.upper)[:robot_axes]
     for branch in range(8) if cell.branch is None else (cell.branch,):
-        left = np.nonzero(~served.any(axis=2))
-        joints = arm.inverse_branch(poses[left].reshape(-1, 4, 4), branch)
-        joints = np.pad(joints, ((0, 0), (0, count - own)))  # external axes stand at zero
+        remaining = np.nonzero(~served.any(axis=2))
+        joints = arm.inverse_branch(poses[remaining].reshape(-1, 4, 4), branch)
+        joints = np.pad(joints, ((0, 0), (0, count - robot_axes)))  # external axes stand at zero
         turns = np.where(
-            np.isfinite(middle), np.round((np.nan_to_num(middle) - joints[:, :own]) / TURN), 0.0
+            np.isfinite(middle),
+            np.round((np.nan_to_num(middle) - joints[:, :robot_axes]) / TURN),
+            0.0,
         )
-        joints[:, :own] += TURN * turns
-        served[left] = (rows.margin(joints) >= 0.0).reshape(-1, TURNS)
+        joints[:, :robot_axes] += TURN * turns
+        served[remaining] = (rows.margin(joints) >= 0.0).reshape(-1, TURNS)
     return np.asarray(served.any(axis=2).mean(axis=1))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""At how many points of a toolpath a robot serves at all where the part stands: what no rotation about the tool serves at
-one point cannot be planned, and need not be tried."""
+"""Number of points of a toolpath that a robot serves at a pose of the part: if no rotation about the
+tool serves a point, the pose needs no plan.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +18,7 @@ from ..planning.task import FITS, Task
 from ..toolpath import Bead
 from ..types import Array, Mask
 
-TURNS = 72  # rotations about the tool that are looked at
+TURNS = 72  # rotations about the tool to try
 FINER = 9  # between two of these, about the best one of a point that none of them serves
 BRANCHES = 8
 
@@ -30,8 +31,8 @@ class Screened(NamedTuple):
     branch: int
 
 
-def alone(beads: Sequence[Bead], cell: Cell) -> Points:
-    """The points of beads, each standing for itself."""
+def single_points(beads: Sequence[Bead], cell: Cell) -> Points:
+    """The points of beads, each as a bead of one point."""
     position, tool, parameter = (
         np.concatenate([getattr(bead, name) for bead in beads])
         for name in ("points", "tool", "parameter")
@@ -39,47 +40,49 @@ def alone(beads: Sequence[Bead], cell: Cell) -> Points:
     external = None
     if cell.external is not None:
         external = np.concatenate([bead.external for bead in beads if bead.external is not None])
-    each, sliding = np.arange(len(position)), cell.machine.chain.sliding
+    numbers, sliding = np.arange(len(position)), cell.machine.chain.sliding
     return Points(
         position,
         tool,
         parameter,
-        each,
-        each,
-        np.zeros(len(each), dtype=bool),
+        numbers,
+        numbers,
+        np.zeros(len(numbers), dtype=bool),
         cell.pose_frames(position, tool, external),
         external,
         sliding if sliding.any() else None,
     )
 
 
-def screened(
-    cell: Cell, points: Points, parameters: JointParameters, wanted: int | None
+def screen_points(
+    cell: Cell, points: Points, parameters: JointParameters, only_branch: int | None
 ) -> Screened:
-    """How many of the points (each for itself) a robot serves, in a configuration or in the best of all."""
-    found = [
-        Screened(float(_served(Task(cell, branch, parameters), points).mean()), branch)
-        for branch in (range(BRANCHES) if wanted is None else (wanted,))
+    """Return the share of the points (each independent) that a robot serves, in a configuration or in
+    the best one.
+    """
+    results = [
+        Screened(float(_find_served(Task(cell, branch, parameters), points).mean()), branch)
+        for branch in (range(BRANCHES) if only_branch is None else (only_branch,))
     ]
-    return max(found, key=lambda one: one.share)
+    return max(results, key=lambda result: result.share)
 
 
-def _served(task: Task, points: Points) -> Mask:
+def _find_served(task: Task, points: Points) -> Mask:
     """(C,) which points some rotation serves."""
     low, high = task.parameters.rotation_range
-    whole = high - low >= TURN - 1e-9
-    values = np.linspace(low, high, TURNS, endpoint=not whole)
+    is_full_turn = high - low >= TURN - 1e-9
+    values = np.linspace(low, high, TURNS, endpoint=not is_full_turn)
     phi = np.broadcast_to(values[:, None], (TURNS, len(points)))
     served, margin = _serves(task, points, phi)
-    left = np.flatnonzero(~served & np.isfinite(margin).any(axis=0))
-    if len(left):
+    remaining = np.flatnonzero(~served & np.isfinite(margin).any(axis=0))
+    if len(remaining):
         step = values[1] - values[0]
         best = (
-            values[margin[:, left].argmax(axis=0)]
+            values[margin[:, remaining].argmax(axis=0)]
             + step * np.linspace(-1.0, 1.0, 2 * FINER + 1)[:, None]
         )
-        served[left] = _serves(
-            task, points.each(left), best if whole else np.clip(best, low, high)
+        served[remaining] = _serves(
+            task, points.each(remaining), best if is_full_turn else np.clip(best, low, high)
         )[0]
     return served
 
@@ -91,12 +94,12 @@ def _serves(task: Task, points: Points, phi: Array) -> tuple[Mask, Array]:
     threshold = task.thresholds(points)
     served = np.zeros(len(points), dtype=bool)
     # most points are served by the rotation with the largest margin: the condition takes the longest
-    first = np.zeros(phi.shape, dtype=bool)
-    first[margin.argmax(axis=0), np.arange(len(points))] = True
-    for some in (first, ~first):
-        row, column = np.nonzero(some & (margin >= FITS) & ~served)
+    is_best = np.zeros(phi.shape, dtype=bool)
+    is_best[margin.argmax(axis=0), np.arange(len(points))] = True
+    for selected in (is_best, ~is_best):
+        row, column = np.nonzero(selected & (margin >= FITS) & ~served)
         if len(row):
             flange = points.frames.of(column).flange_poses(phi[row, column])
-            kept = task.condition_at(flange, joints[row, column]) >= threshold[column]
-            served[column[kept]] = True
+            sufficient = task.condition_at(flange, joints[row, column]) >= threshold[column]
+            served[column[sufficient]] = True
     return served, margin

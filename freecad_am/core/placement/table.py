@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Poses and what they came to as a table, and the best one as a line of a job file."""
+"""Poses and their results as a table, and the best one as a line of a job file."""
 
 from __future__ import annotations
 
@@ -31,43 +31,45 @@ HEAD = (
 )
 
 
-def rows(found: Placed) -> Iterator[str]:
-    """The lines of place.csv, the head first. Figures of poses that were planned with all points are those of that plan."""
+def rows(placed: Placed) -> Iterator[str]:
+    """The lines of place.csv, the head first. A pose that was planned with all points shows the figures
+    of that plan.
+    """
     yield ",".join(HEAD) + "\n"
-    for number in range(len(found.poses)):
-        one, pose = found.of_pose(number), outer(found.pose(number))
+    for number in range(len(placed.poses)):
+        result, pose = placed.result_of(number), outer(placed.pose(number))
         yield (
             ",".join(
                 [
                     *(f"{value:.6f}" for value in pose),
-                    "yes" if one.feasible else "no",
-                    f"{one.share:.6f}",
+                    "yes" if result.feasible else "no",
+                    f"{result.share:.6f}",
                     *(
                         f"{value:.6f}" if np.isfinite(value) else ""
-                        for value in (one.margin, one.time, one.clearance)
+                        for value in (result.margin, result.time, result.clearance)
                     ),
-                    "-".join(one.branch),
-                    one.code,
-                    "yes" if number in found.proven else "no",
+                    "-".join(result.branch),
+                    result.code,
+                    "yes" if number in placed.proven else "no",
                 ]
             )
             + "\n"
         )
 
 
-def key(found: Placed, number: int) -> str:
+def key(placed: Placed, number: int) -> str:
     """The line of the section `cell` of a job file that gives the cell a pose."""
-    if found.moves == POINT:
-        return f"deposition_point: {_list(found.pose(number))}"
-    if found.moves == PLATFORM:
-        return f"platform: {_list(found.pose(number))}"
-    mechanisms, done = [], False
-    for one in externals(found.settings.external):
-        turns = one.carries == PART and not done
-        done |= turns
-        pose = found.pose(number) if turns else one.pose
+    if placed.moves == POINT:
+        return f"deposition_point: {_list(placed.pose(number))}"
+    if placed.moves == PLATFORM:
+        return f"platform: {_list(placed.pose(number))}"
+    mechanisms, is_replaced = [], False
+    for mechanism in externals(placed.settings.external):
+        turns = mechanism.carries == PART and not is_replaced
+        is_replaced |= turns
+        pose = placed.pose(number) if turns else mechanism.pose
         mechanisms.append(
-            f"{{machine: {one.machine}, pose: {_list(pose)}, carries: {one.carries}}}"
+            f"{{machine: {mechanism.machine}, pose: {_list(pose)}, carries: {mechanism.carries}}}"
         )
     return f"external: [{', '.join(mechanisms)}]"
 

@@ -86,11 +86,11 @@ def _find_batch_contacts(cell: Cell, start: Array, end: Array) -> Mask:
         joints = start[move[batch]] + share[batch, None] * turned[move[batch]]
         tip, axis = _in_world(cell, joints)
         for number, body in enumerate(cell.obstacles):
-            hit = scene((body,), tip, cone.reach).touched(cone, tip, axis)
+            hit = scene((body,), tip, cone.reach).find_touching(cone, tip, axis)
             hits[number, move[batch][hit]] = True
         to_world = frames.inverse(cell.world(joints))[:, None] @ cell.external_link_frames(joints)
         for number, link in enumerate(cell.external_links):
-            hit = link.solid.touched(
+            hit = link.solid.find_touching(
                 cone.bodies, *_transform(frames.inverse(to_world[:, number]), tip, axis)
             )
             hits[obstacles + number, move[batch][hit]] = True

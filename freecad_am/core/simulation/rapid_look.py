@@ -86,7 +86,7 @@ def looked_at(
         tip, axis = cell.tip_in_part(
             chain.forward(start[moves_now] + share[rows_now, None] * turned[moves_now])
         )
-        hit = around.touched(
+        hit = around.find_touching(
             ends.nozzle(tip, deposited[moves_now]), tip, axis, deposited[moves_now]
         )
         met[moves_now[hit]] = True

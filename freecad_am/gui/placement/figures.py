@@ -52,7 +52,7 @@ def _length_unit() -> tuple[float, str]:
 
 def figure(found: Placed, number: int, name: str) -> float:
     """One of the figures of a pose as it is shown."""
-    one = found.of_pose(number)
+    one = found.result_of(number)
     return {
         SHARE: 100.0 * one.share,
         MARGIN: 100.0 * one.margin,
@@ -73,7 +73,7 @@ def coloured(found: Placed, name: str) -> Coloured:
     shown = np.array(order)[np.sort(first)]
     values = np.array([figure(found, int(number), name) for number in shown])
     known = np.isfinite(values) & (
-        np.array([found.of_pose(int(k)).feasible for k in shown]) | (name == SHARE)
+        np.array([found.result_of(int(k)).feasible for k in shown]) | (name == SHARE)
     )
     colours = np.tile(GREY, (len(shown), 1))
     least, most = (
@@ -106,7 +106,7 @@ def texts(found: Placed, number: int) -> list[str]:
         format(value, form) if np.isfinite(value) else "–"
         for value, form in zip(values, (".3g", ".0f", ".3g"))
     ]
-    one = found.of_pose(number)
+    one = found.result_of(number)
     points = tr("all") if number in found.proven else f"{found.points}"
     return [*pose, *cells, points if one.feasible else f"{points}: {one.code}"]
 

@@ -15,7 +15,7 @@ from ...core.parameters.joints import JointParameters
 from ...core.parameters.place import PlaceParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.placement.judge import Cylinders, Job
-from ...core.placement.place import Placed, placed
+from ...core.placement.place import Placed, place_part
 from ...core.toolpath import Toolpath
 from .. import user_machines
 from ..fields import rows
@@ -38,7 +38,7 @@ class Placing(NamedTuple):
 
     def search_poses(self, parameters: PlaceParameters) -> Placed:
         """The results for the poses of a box; reports to `progress`. Errors as `place.placed`."""
-        return placed(self.job(), self.settings, parameters, progress.report)
+        return place_part(self.job(), self.settings, parameters, progress.report)
 
 
 def placing_of(path: Any, cell: Any = None, joints: JointParameters | None = None) -> Placing:

@@ -138,7 +138,7 @@ def _refuse_at_start(cell: Cell, toolpath: Toolpath) -> None:
         0.5 * cell.nozzle.diameter, float(np.tan(cell.nozzle.half_angle)), cell.nozzle.length, 0.0
     )
     for obstacle in bodies:
-        if scene((obstacle,), point, nozzle.reach).touched(nozzle, point, axis).any():
+        if scene((obstacle,), point, nozzle.reach).find_touching(nozzle, point, axis).any():
             raise InputError(
                 CODE,
                 f"{WHERE} {obstacle.name}",

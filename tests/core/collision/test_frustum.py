@@ -103,7 +103,7 @@ def test_the_tree_finds_what_a_look_at_every_one_finds(seed):
     for kind in (1, 2, 3):
         corners = centre + rng.normal(size=(900, kind, 3)) * 1.5
         since, moment = rng.integers(0, 900, 900), rng.integers(0, 1000, 300)
-        found = Obstacles(corners, since).touched(frustum, tip, axis, moment)
+        found = Obstacles(corners, since).find_touching(frustum, tip, axis, moment)
         wanted = np.zeros(300, dtype=bool)
         for k in range(300):
             offset, axes = (
@@ -124,7 +124,7 @@ def test_cutting_up_large_faces_changes_nothing():
     tip, axis = rng.uniform(-30, 30, (2000, 3)), unit(rng.normal(size=(2000, 3)))
     vertices = rng.uniform(-200, 200, (30, 3))
     body = Body("slabs", vertices, np.arange(30).reshape(-1, 3))
-    found = build_bodies([body], tip, frustum.reach).touched(frustum, tip, axis)
+    found = build_bodies([body], tip, frustum.reach).find_touching(frustum, tip, axis)
     wanted = np.zeros(2000, dtype=bool)
     for corners in body.corners():
         wanted |= frustum.meets_triangles(corners - tip[:, None], axis)
@@ -133,4 +133,8 @@ def test_cutting_up_large_faces_changes_nothing():
 
 def test_nothing_there_touches_nothing():
     tip, axis = np.zeros((3, 3)), np.tile([0.0, 0.0, 1.0], (3, 1))
-    assert not build_bodies([], tip, 10.0).touched(Frustum(0.5, 0.36, 0.7, 60.0), tip, axis).any()
+    assert (
+        not build_bodies([], tip, 10.0)
+        .find_touching(Frustum(0.5, 0.36, 0.7, 60.0), tip, axis)
+        .any()
+    )

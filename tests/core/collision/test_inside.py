@@ -57,7 +57,7 @@ def pipe(inner, outer, half):
 
 def touched(body, tip, axis=UP, nozzle=NOZZLE):
     tip = np.atleast_2d(np.asarray(tip, dtype=float))
-    return build_bodies([body], tip, nozzle.reach).touched(
+    return build_bodies([body], tip, nozzle.reach).find_touching(
         nozzle, tip, np.broadcast_to(axis, tip.shape)
     )
 

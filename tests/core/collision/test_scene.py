@@ -121,7 +121,7 @@ def test_what_touches_is_what_points_of_beads_inside_of_the_nozzle_say():
     laid = deposit.build_deposit(points, np.tile(up, (13, 1)), width, height, [0])
     there = scene([], points, 100.0, laid)
     axis, tip = units(rng, 400), rng.uniform(-45, 45, (400, 3))
-    found, away = there.touched(NOZZLE, tip, axis), there.distance(NOZZLE, tip, axis)
+    found, away = there.find_touching(NOZZLE, tip, axis), there.distance(NOZZLE, tip, axis)
     solid = stadium(points, up, width, height)
     tree = cKDTree(solid)
     assert 60 < found.sum() < 340 and ((away == 0.0) == found).all()
@@ -147,7 +147,7 @@ def test_distances_from_bodies_are_those_of_their_sampled_faces_and_none_inside(
     tip, axis = rng.uniform(-70, 70, (500, 3)), units(rng, 500)
     tip[0], axis[0] = 0.0, [0.0, 0.0, 1.0]
     there = scene([box], tip, short.reach)
-    away, found = there.distance(short, tip, axis), there.touched(short, tip, axis)
+    away, found = there.distance(short, tip, axis), there.find_touching(short, tip, axis)
     assert found[0] and away[0] == 0.0 and found.sum() > 30 and ((away == 0.0) == found).all()
     for k in np.flatnonzero(~found):
         places = skin(short, tip[k], axis[k])
@@ -165,7 +165,7 @@ def test_a_piece_is_there_from_its_moment_on_and_a_corner_has_its_outer_side():
     tip = np.array([[10.0, 3, 0.5], [20, 30, 0.5], [22.2, -2.2, 0.8]])
     up = np.tile([0.0, 0.0, 1.0], (3, 1))
     for moment, wanted in ((11, [0, 0, 0]), (12, [1, 0, 0]), (13, [1, 0, 1]), (14, [1, 1, 1])):
-        assert there.touched(probe, tip, up, np.full(3, moment)).tolist() == [
+        assert there.find_touching(probe, tip, up, np.full(3, moment)).tolist() == [
             bool(each) for each in wanted
         ], moment
 
@@ -179,8 +179,8 @@ def test_the_bead_being_laid_and_its_neighbours_are_not_touched_but_a_finished_o
     nozzle = depositing(0.5, SLOPE, 60.0, 2.0)
     lean = np.array([[np.sin(0.6), 0.0, np.cos(0.6)], [0.0, -np.sin(0.6), np.cos(0.6)]])
     tip, moment = points[[60, 60]], np.array([61, 61])
-    assert there.touched(nozzle, tip, lean, moment).tolist() == [False, True]
-    assert not there.touched(nozzle, tip, lean, moment, own=np.array([0, 0])).any()
+    assert there.find_touching(nozzle, tip, lean, moment).tolist() == [False, True]
+    assert not there.find_touching(nozzle, tip, lean, moment, layer_start=np.array([0, 0])).any()
     assert exempt_height(0.5, SLOPE, 2.0) == 2.0 and exempt_height(2.0, SLOPE, 0.5) > 0.5
 
 
@@ -195,7 +195,7 @@ def test_what_is_exempt_may_differ_from_look_to_look():
     tip, up = np.zeros((3, 3)), np.tile([0.0, 0.0, 1.0], (3, 1))
     tip[:, 2] = [0.0, 1.0, 1.0]
     solid = travelling(0.5, SLOPE, 60.0, np.array([2.0, 1.0, 0.0]))
-    assert there.touched(solid, tip, up).tolist() == [False, False, True]
+    assert there.find_touching(solid, tip, up).tolist() == [False, False, True]
     assert there.distance(solid, tip, up)[2] == 0.0
 
 
@@ -211,7 +211,7 @@ def test_memory_is_linear():
         )
         tip = points + [0.0, 9.0, 0.0]
         tracemalloc.start()
-        there.touched(NOZZLE, tip, np.tile([0.0, 0, 1.0], (count, 1)))
+        there.find_touching(NOZZLE, tip, np.tile([0.0, 0, 1.0], (count, 1)))
         most = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
         return most
@@ -236,15 +236,17 @@ def test_deposit_made_part_by_part_is_touched_as_all_of_it(monkeypatch):
     moment, own = rng.integers(0, 720, 4000), rng.integers(0, 700, 4000)
     late = np.full(4000, 700)
     expected = [
-        whole.touched(NOZZLE, tip, axis, late),
-        whole.touched(NOZZLE, tip, axis, moment, own),
+        whole.find_touching(NOZZLE, tip, axis, late),
+        whole.find_touching(NOZZLE, tip, axis, moment, own),
     ]
     assert 0.2 < expected[1].mean() < expected[0].mean() < 0.95
     for part in (7, 64, 1000):
         monkeypatch.setattr(deposit, "PART", part)
         made = deposit.in_parts(points, build, width, height, starts, foot=3.0)
-        np.testing.assert_array_equal(made.touched(NOZZLE, tip, axis, late), expected[0])
-        np.testing.assert_array_equal(made.touched(NOZZLE, tip, axis, moment, own), expected[1])
+        np.testing.assert_array_equal(made.find_touching(NOZZLE, tip, axis, late), expected[0])
+        np.testing.assert_array_equal(
+            made.find_touching(NOZZLE, tip, axis, moment, own), expected[1]
+        )
 
 
 def meander(count, turns=6.0):
@@ -268,12 +270,12 @@ def test_the_layer_being_laid_is_told_the_same_with_and_without_looking_at_each_
     axis[:, 2] = np.abs(axis[:, 2]) + 0.4
     axis /= np.linalg.norm(axis, axis=1, keepdims=True)
     asked = NOZZLE, tip, axis, at + 1, np.full(6000, len(below))
-    found = laid.touched(*asked)
+    found = laid.find_touching(*asked)
     assert 0.2 < found.mean() < 0.8
     monkeypatch.setattr(
-        own_layer, "matter", lambda lines, since, solid, query, *rest: np.arange(len(query))
+        own_layer, "select_pairs", lambda lines, since, solid, query, *rest: np.arange(len(query))
     )
-    assert (laid.touched(*asked) == found).all()
+    assert (laid.find_touching(*asked) == found).all()
 
 
 def test_pieces_next_to_the_tip_are_not_looked_at_one_by_one(monkeypatch):
@@ -294,7 +296,7 @@ def test_pieces_next_to_the_tip_are_not_looked_at_one_by_one(monkeypatch):
         at = np.linspace(count // 2, count - 1, 200).astype(int)
         looked[0] = 0
         axis = np.tile([np.sin(0.3), 0.0, np.cos(0.3)], (200, 1))
-        laid.touched(NOZZLE, points[at], axis, at + 1, np.zeros(200, dtype=int))
+        laid.find_touching(NOZZLE, points[at], axis, at + 1, np.zeros(200, dtype=int))
         work.append(looked[0])
     # of sixteen times the pieces within reach of the nozzle; one by one those were 400 a look
     assert work[2] < 200 * 20, work

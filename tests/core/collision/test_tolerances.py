@@ -49,7 +49,7 @@ def bead():
 
 def meets(nozzle, x, bodies=(), deposit=None):
     tip = np.array([[x, 0.0, 0.0]])
-    return bool(scene(bodies, tip, 100.0, deposit).touched(nozzle, tip, UP)[0])
+    return bool(scene(bodies, tip, 100.0, deposit).find_touching(nozzle, tip, UP)[0])
 
 
 # mm that two solids are in one another

@@ -21,7 +21,7 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.core.placement import moved, table
 from freecad_am.core.placement.judge import UNREACHED, Job, Judge
-from freecad_am.core.placement.place import Placed, placed, ranked
+from freecad_am.core.placement.place import Placed, place_part, ranked
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.simulation.timeline import timeline
@@ -95,14 +95,14 @@ def whole(toolpath, settings):
 def test_what_is_said_of_a_pose_is_what_its_whole_plan_says(dome, case):
     settings, box = MOVED[case]
     parameters = PlaceParameters(points=200, **box)
-    moves = moved.chosen(settings, parameters.moves)
+    moves = moved.select_movable(settings, parameters.moves)
     poses = parameters.poses(moved.pose_of(settings, moves))
     some, every = (Judge(job_of(dome), most) for most in (parameters.points, None))
     assert some.points < 0.6 * every.points == 0.6 * dome.point_count
     said, hidden = [], 0
     for pose in poses[np.unique(np.linspace(0, len(poses) - 1, 5).astype(int))]:
-        there = moved.moved(settings, moves, pose)
-        one = some.judged(there)
+        there = moved.replace_pose(settings, moves, pose)
+        one = some.evaluate(there)
         cell, path, motion, feasible = whole(dome, there)
         assert one.feasible or not feasible, (pose, one)
         said.append(feasible)
@@ -110,7 +110,7 @@ def test_what_is_said_of_a_pose_is_what_its_whole_plan_says(dome, case):
             one.feasible and not feasible
         ):  # between the points looked at; told before it is proposed
             hidden += 1
-            assert not every.judged(there).feasible
+            assert not every.evaluate(there).feasible
         if feasible:
             left = cell.limits.smallest_share(motion.joints[motion.role == DEPOSIT]).min()
             assert one.share == 1.0 and one.branch == path.branch
@@ -125,7 +125,7 @@ def test_points_that_no_rotation_serves_are_counted_right(dome):
         limits="paper", deposition_point=(645.747, -830.155, 453.167, 0.0, 0.0, 0.0)
     )
     judge = Judge(job_of(dome), 40)
-    said = judge.judged(settings)
+    said = judge.evaluate(settings)
     cell = cells.resolve(settings, dome.frame)
     parts = [bead for _, _, bead in judge._some.toolpath]
     position, tool = (
@@ -161,7 +161,7 @@ def test_points_that_no_rotation_serves_are_counted_right(dome):
 def test_the_best_is_planned_with_all_points_and_nearest_to_where_the_part_stands(dome):
     settings = CellParameters(limits="paper")
     steps = []
-    found = placed(
+    found = place_part(
         job_of(dome),
         settings,
         PlaceParameters(points=60, x=300.0, y=0.0, z=300.0, step=300.0),
@@ -202,12 +202,14 @@ def test_cancelling_ends_it(dome):
             raise Enough
 
     with pytest.raises(Enough):
-        placed(job_of(dome), CellParameters(limits="paper"), PlaceParameters(points=20), progress)
+        place_part(
+            job_of(dome), CellParameters(limits="paper"), PlaceParameters(points=20), progress
+        )
 
 
 def test_no_pose_serves(dome):
     far = CellParameters(limits="paper", deposition_point=(5000.0, 0.0, 0.0, 0.0, 0.0, 0.0))
-    found = placed(
+    found = place_part(
         job_of(dome),
         far,
         PlaceParameters(x=100.0, y=0.0, z=0.0, step=100.0),
@@ -224,7 +226,7 @@ def test_no_pose_serves(dome):
 ])  # fmt: skip
 def test_what_a_cell_has_not_is_not_moved(settings, moves):
     with pytest.raises(InputError, match="has no") as error:
-        moved.chosen(settings, moves)
+        moved.select_movable(settings, moves)
     assert (error.value.code, error.value.where) == ("NOT_FOR_SETUP", "place.moves")
 
 

@@ -371,7 +371,7 @@ def test_few_looks_find_what_all_of_them_do(on_table, monkeypatch):
     nozzle = obstacles._nozzle(moves, every)
     hit = [
         obstacles._deposit_touched(nozzle, every, moves).any(),
-        obstacles._around(every.tip).touched(nozzle.bodies, every.tip, every.axis).any(),
+        obstacles._around(every.tip).find_touching(nozzle.bodies, every.tip, every.axis).any(),
     ]
     assert obstacles.names(moves) == [
         name for name, one in zip(["the deposit", "the platform"], hit, strict=True) if one

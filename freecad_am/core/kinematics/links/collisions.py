@@ -138,7 +138,9 @@ def platform_collisions(cell: Cell, bodies: Sequence[Body]) -> list[Collision]:
         Collision(PLATFORM, body.name, np.zeros(0, dtype=np.intp), True, True)
         for body in bodies
         if len(body.triangles)
-        and Scene(build_bodies([body], body.vertices, 0.0)).touched(plate.solid, tip, axis).any()
+        and Scene(build_bodies([body], body.vertices, 0.0))
+        .find_touching(plate.solid, tip, axis)
+        .any()
     ]
 
 

@@ -387,7 +387,9 @@ def _meets(group: Group, solids: Sequence[Solid], link_frame: Array, moment: Ind
         off += along[:, None] * axis
         within = group.radius + solid.solid.radius + solid.solid.slope * high + ABOUT_FACES
         nearby = np.flatnonzero(~met & (dots(off, off) < within**2))
-        met[nearby] = group.scene.touched(solid.solid, tip[nearby], axis[nearby], moment[nearby])
+        met[nearby] = group.scene.find_touching(
+            solid.solid, tip[nearby], axis[nearby], moment[nearby]
+        )
     return met
 
 

@@ -149,13 +149,13 @@ class RapidObstacles:
         rows = np.flatnonzero(~touched)
         if len(rows):
             tip = looks.tip[rows]
-            touched[rows] = self._around(tip).touched(
+            touched[rows] = self._around(tip).find_touching(
                 nozzle.bodies.rows(rows), tip, looks.axis[rows]
             )
         return touched
 
     def _deposit_touched(self, nozzle: Nozzle, looks: Looks, moves: Moves) -> Mask:
-        touched: Mask = self.deposited.touched(
+        touched: Mask = self.deposited.find_touching(
             nozzle.deposit, looks.tip, looks.axis, moves.deposited[looks.move]
         )
         return touched
@@ -224,7 +224,7 @@ def _looks(cell: Cell, moves: Moves, move: Index, share: Array) -> Looks:
 
 
 def _body_touched(bodies: Bodies, nozzle: Nozzle, looks: Looks) -> Mask:
-    return bodies.touched(nozzle.bodies, looks.tip, looks.axis)
+    return bodies.find_touching(nozzle.bodies, looks.tip, looks.axis)
 
 
 def _thicker(nozzle: Nozzle, thickness: float) -> Nozzle:

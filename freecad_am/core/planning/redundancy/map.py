@@ -338,6 +338,6 @@ def _touching(cell: Cell, points: Points, bodies: Sequence[Body]) -> Mask:
         return np.zeros(len(points), dtype=bool)
     slope = float(np.tan(cell.nozzle.half_angle))
     nozzle = nozzles.depositing(0.5 * cell.nozzle.diameter, slope, cell.nozzle.length, 0.0)
-    return scene(around, points.position, nozzle.reach).touched(
+    return scene(around, points.position, nozzle.reach).find_touching(
         nozzle, points.position, points.tool
     )

@@ -83,7 +83,9 @@ def nozzle_issues(
     )
     around = nozzle_of(nozzle).bodies
     scene_ = build_bodies(bodies, points, around.reach)
-    hit = scene_.touched(around, points, tool) | scene_.touched(around, *halfway(beads, tool))
+    hit = scene_.find_touching(around, points, tool) | scene_.find_touching(
+        around, *halfway(beads, tool)
+    )
     if not hit.any():
         return []
     begin = np.r_[0, np.cumsum([len(bead) for bead in beads])]

@@ -45,7 +45,7 @@ class Space:
         clear: Mask = np.arctan2(np.hypot(x, y), z) <= self.max_tilt + CAP
         rows = np.flatnonzero(clear)
         clear_rows = rows_[rows]
-        clear[rows] = ~self.scene.touched(
+        clear[rows] = ~self.scene.find_touching(
             self.nozzle,
             self.points[clear_rows],
             axis[rows],

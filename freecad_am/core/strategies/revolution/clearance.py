@@ -117,7 +117,7 @@ class Clearance:
     def _clear(self, among: Scene, tips: Tips, rows: Index, tool: Array) -> Mask:
         azimuth = tips.azimuth[rows]
         tip = _place(tips.radius[rows], azimuth, tips.height[rows])
-        return ~among.touched(
+        return ~among.find_touching(
             self.nozzle, tip, _in_space(tool, azimuth), tips.moment[rows], tips.own_moment[rows]
         )
 
