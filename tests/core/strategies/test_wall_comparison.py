@@ -34,9 +34,9 @@ def compared():
 def test_iso_parameter_and_constant_distance_are_those_of_the_errata(compared):
     before, after = compared["iso-parameter"], compared["constant-distance"]
     assert (before.layers, after.layers) == (19, 16)
-    assert before.least == pytest.approx(2.49, abs=0.005)
-    assert before.most == pytest.approx(5.0, abs=1e-4)
-    assert (after.least, after.most) == pytest.approx((5.0, 5.0), abs=1e-3)
+    assert before.smallest == pytest.approx(2.49, abs=0.005)
+    assert before.largest == pytest.approx(5.0, abs=1e-4)
+    assert (after.smallest, after.largest) == pytest.approx((5.0, 5.0), abs=1e-3)
     # figure 9: the step up the lines v = const is the layer height before, and up to 1.52 times as much after
     assert all(np.allclose(step, 5.0, atol=1e-4) for step in before.step)
     assert max(step.max() for step in after.step) == pytest.approx(5.0 * 1.52, abs=0.03)
@@ -49,8 +49,8 @@ def test_iso_parameter_and_constant_distance_are_those_of_the_errata(compared):
 def test_layers_normal_to_the_centreline_fan_out(compared):
     normal = compared[NORMAL]
     angle = 5.0 / 60.0
-    assert normal.most == pytest.approx(2.0 * 75.0 * np.sin(0.5 * angle), abs=1e-4)
-    assert normal.least == pytest.approx(2.0 * 45.0 * np.sin(0.5 * angle), abs=1e-4)
+    assert normal.largest == pytest.approx(2.0 * 75.0 * np.sin(0.5 * angle), abs=1e-4)
+    assert normal.smallest == pytest.approx(2.0 * 45.0 * np.sin(0.5 * angle), abs=1e-4)
     assert normal.turn == pytest.approx(0.0, abs=1e-6)  # meridians are geodesics
     starts = [np.isfinite(distance).any() for distance in normal.distance]
     assert all(starts)
@@ -63,7 +63,7 @@ def test_layers_normal_to_the_centreline_fan_out(compared):
 
 def test_smooth_keeps_band_and_turn(compared):
     smooth, exact = compared["smooth"], compared["constant-distance"]
-    assert smooth.least >= 4.0 and smooth.most <= 6.0 and smooth.corners == 0
+    assert smooth.smallest >= 4.0 and smooth.largest <= 6.0 and smooth.corners == 0
     assert smooth.turn <= np.radians(6.0)
     assert (
         np.radians(6.0) < exact.turn < np.radians(60.0)
@@ -79,7 +79,7 @@ def test_the_figures_hang_together(compared):
             == one.layers - 1
             == len(one.curves) - 1
         )
-        assert one.least <= one.mean <= one.most
+        assert one.smallest <= one.mean <= one.largest
         for around, distance, step in zip(one.around, one.distance, one.step, strict=True):
             assert len(around) == len(distance) == len(step)
             assert -0.5 <= around[0] < around[-2] <= 0.5 and (np.diff(around) > 0.0).all()
