@@ -82,7 +82,7 @@ def _queries() -> list[Row]:
     wall, pipe = _always(there), _pipe()
     return [
         _compared(
-            "touched",
+            "find_touching",
             pipe,
             FclObstacles(pipe),
             tip,

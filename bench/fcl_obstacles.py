@@ -2,7 +2,7 @@
 """The Flexible Collision Library in place of our tree of obstacles: the peer of `bench collision`.
 
 It stands here and not in the workbench: a job has the same bytes on every machine, so that a library which is there on some
-and answers a little otherwise has no place in planning. A scene takes what answers `touched` and `distance` as `Obstacles`
+and answers a little otherwise has no place in planning. A scene takes what answers `find_touching` and `distance` as `Obstacles`
 does, such as this. The library knows no frusta: a nozzle is a pyramid of SIDES sides within the round one, up to `off`
 smaller than it.
 """
@@ -24,7 +24,7 @@ SIDES = 64
 
 
 class FclObstacles:
-    """Answers `touched` and `distance` as `Obstacles` does of which it is made, but for beads of the layer being laid, which
+    """Answers `find_touching` and `distance` as `Obstacles` does of which it is made, but for beads of the layer being laid, which
     count in full."""
 
     def __init__(self, obstacles: Obstacles) -> None:
@@ -51,13 +51,13 @@ class FclObstacles:
         """How much smaller than the round solid the one that is looked at is at most, mm."""
         return float((solid.radius + solid.slope * solid.high) * (1.0 - np.cos(np.pi / SIDES)))
 
-    def touched(
+    def find_touching(
         self,
         solid: Frustum,
         tip: Array,
         axis: Array,
         moment: Index | None = None,
-        own: Index | None = None,
+        layer_start: Index | None = None,
     ) -> Mask:
         """(k,) whether solids with the tip (k, 3) and the unit axis (k, 3) meet an obstacle there before the moment (k,)."""
         if not self._plain or self._all_round > 0.0:
