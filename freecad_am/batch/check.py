@@ -23,7 +23,7 @@ from freecad_am.core.motion import Motion
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.planning.program.build import without_moves
+from freecad_am.core.planning.program.build import build_header
 from freecad_am.core.planning.task import CONDITION_FLOOR
 from freecad_am.core.preflight import clearance, joints
 from freecad_am.core.preflight.promise import Promise, row_place
@@ -90,7 +90,7 @@ def check(
     name, moves = _read(files, _posts(cell, context, post))
     settings = context.program or ProgramParameters(post=name)
     motion = driven.driven(
-        cell, without_moves(cell, settings, catalogue.controller(name), "check"), moves
+        cell, build_header(cell, settings, catalogue.controller(name), "check"), moves
     )
     promises = _promises(motion, cell, context)
     findings = [

@@ -148,7 +148,7 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
         parameters.motion,
         cell.setup,
         programs.external_kinds(cell),
-        programs.carried(cell, parameters),
+        programs.carried_pose(cell, parameters),
     )
     if process.wire.feed_mode != "constant" and post.NO_WIRE and not parameters.dry_run:
         raise refusals.wire_refused(post.NO_WIRE)

@@ -50,7 +50,7 @@ class Made:
         planned, process = self.results.planned, self.job.process
         source = Source(self.toolpath, self.motion, process)
         if planned is not None:
-            judged = planned.joint_path.judged(self.motion)
+            judged = planned.joint_path.conditions(self.motion)
             condition, threshold = (
                 spread_to_deposit_rows(self.motion.deposit, column) for column in judged
             )

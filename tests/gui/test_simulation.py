@@ -87,7 +87,7 @@ def test_it_plays_and_everything_is_where_pykdl_puts_it(person, hemisphere, setu
     for share in (0.05, 0.2, 0.37, 0.71, 0.93):
         person.field(panel, "time").setValue(round(share * fields.STEPS))
         person.idle(0.05)
-        state = times.at(simulation.player.time)
+        state = times.state_at(simulation.player.time)
         assert simulation.player.time == pytest.approx(share * times.total, rel=1e-3)
         flange = arm.forward([state.joints])[0]
         tip, axis = cell.tip_in_part(flange[None])
@@ -502,7 +502,7 @@ def test_positioner_and_its_bodies_are_drawn_where_its_axes_are(person, hemisphe
     for share in (0.1, 0.3, 0.45, 0.7, 0.9):
         person.field(panel, "time").setValue(round(share * fields.STEPS))
         person.idle(0.05)
-        angles = times.at(simulation.player.time).joints[6:]
+        angles = times.state_at(simulation.player.time).joints[6:]
         drawn = [np.array(value.getValue().getValue()).T for value in links.matrices]
         base, table = drawn[numbers.index(0)], drawn[numbers.index(2)]
         turned.append(angles)

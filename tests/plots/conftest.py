@@ -22,7 +22,7 @@ def dome():
     )
     toolpath, cell, path, motion = planned_dome(9.0, process)
     condition, threshold = (
-        spread_to_deposit_rows(motion.deposit, column) for column in path.judged(motion)
+        spread_to_deposit_rows(motion.deposit, column) for column in path.conditions(motion)
     )
     source = Source(path.toolpath(toolpath), motion, process, cell, condition, threshold, 0.1)
     return source, comparison.path_figures(path, cell, JointParameters())

@@ -11,7 +11,7 @@ import pytest
 from freecad_am.batch.check import _add_statement
 from freecad_am.core.issues import ERROR, WARNING, InputError
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.planning.program.build import without_moves
+from freecad_am.core.planning.program.build import build_header
 from freecad_am.posts import catalogue
 from freecad_am.read_back import driven
 from freecad_am.read_back.selected import selection_findings
@@ -310,9 +310,7 @@ FRAMES = [
 def findings(way, files, expected):
     cell, _, _, _ = written(way)
     read = catalogue.load(way[0]).read(files)
-    kept = without_moves(
-        cell, ProgramParameters(post=way[0]), catalogue.controller(way[0]), "check"
-    )
+    kept = build_header(cell, ProgramParameters(post=way[0]), catalogue.controller(way[0]), "check")
     motion = driven.driven(cell, kept, read)
     return [
         one for one in selection_findings(motion, read, expected)

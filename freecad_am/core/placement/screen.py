@@ -82,7 +82,9 @@ def _find_served(task: Task, points: Points) -> Mask:
             + step * np.linspace(-1.0, 1.0, 2 * FINER + 1)[:, None]
         )
         served[remaining] = _serves(
-            task, points.each(remaining), best if is_full_turn else np.clip(best, low, high)
+            task,
+            points.select_points(remaining),
+            best if is_full_turn else np.clip(best, low, high),
         )[0]
     return served
 

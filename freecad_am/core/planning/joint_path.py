@@ -80,8 +80,10 @@ class JointPath:
         """(T, axes) joints of all deposit points, rad."""
         return np.concatenate([bead.joints for bead in self.beads])
 
-    def judged(self, motion: Motion) -> tuple[Array, Array]:
-        """Condition and its threshold at the deposit rows of its motion; NaN where a bead runs on over its own beginning."""
+    def conditions(self, motion: Motion) -> tuple[Array, Array]:
+        """Return condition and threshold at the deposit rows of its motion; NaN where a bead overlaps its own
+        start.
+        """
         starts = np.flatnonzero(motion.point[motion.deposit] == 0)
         condition = np.full(int(motion.deposit.sum()), np.nan)
         threshold = condition.copy()

@@ -68,7 +68,7 @@ OF_ROBOTS = (
 )
 BRANCHES = 8
 # with the branch left open: beads looked at in each, and branches planned until one serves
-SCREENED, TRIED = 12, 3
+SCREENED, MAX_BRANCHES_PLANNED = 12, 3
 REVOLUTION = "revolution"
 
 
@@ -110,14 +110,14 @@ def plan_joints(
         features,
     )
 
-    def served(sampled_beads: Sequence[Bead]) -> float:
+    def count_served(sampled_beads: Sequence[Bead]) -> float:
         return -_ranked(sampled_beads, bead_ids, task, among)[0][0] / min(
             len(sampled_beads), SCREENED
         )
 
     planned: JointPath | None = None
     for beads, bead_ids, tilted in ways(cell, toolpath):
-        for moved in track.place_track(beads, cell, served):
+        for moved in track.place_track(beads, cell, count_served):
             branches = (
                 [requested_branch]
                 if requested_branch is not None
@@ -177,7 +177,9 @@ def _in_branches(
             break
     level = None
     if together:
-        (paths, issues), level = _bettered(task, beads, bead_ids, (paths, issues), progress)
+        (paths, issues), level = _optimise_external(
+            task, beads, bead_ids, (paths, issues), progress
+        )
     issues = [*tilted, *issues, *notes]
     if cell.robot.arm is not None and cell.robot.arm.followed:
         issues = [
@@ -275,7 +277,7 @@ def best_branches(
     ranks = _ranked(
         beads, bead_ids, Task(cell, 0, parameters, joined, arm_clearance), range(BRANCHES)
     )
-    return [rank[-1] for rank in ranks if rank[0] == ranks[0][0]][:TRIED]
+    return [rank[-1] for rank in ranks if rank[0] == ranks[0][0]][:MAX_BRANCHES_PLANNED]
 
 
 def _ranked(
@@ -331,7 +333,7 @@ def _planned(
     return paths, given.not_used(task.parameters, bead_ids) + issues + issues_found
 
 
-def _bettered(
+def _optimise_external(
     task: Task,
     beads: Sequence[Bead],
     bead_ids: Sequence[Place],
@@ -346,7 +348,7 @@ def _bettered(
         finished, issues_found = _finished(task, paths)
         return finished, first_issues + issues_found
 
-    return external_rule.bettered(
+    return external_rule.choose_better(
         task,
         level,
         planned,

@@ -56,15 +56,15 @@ class Points:
         starts[self.first] = True
         return starts
 
-    def each(self, index: Integers) -> Points:
-        """Chosen points, each as a bead of its own."""
-        alone = np.arange(len(index))
+    def select_points(self, index: Integers) -> Points:
+        """Return the selected points, each as a bead of one point."""
+        numbers = np.arange(len(index))
         return Points(
             self.position[index],
             self.tool[index],
             self.parameter[index],
-            alone,
-            alone,
+            numbers,
+            numbers,
             np.zeros(len(index), dtype=bool),
             self.frames.of(index),
             None if self.external is None else self.external[index],
@@ -105,7 +105,7 @@ class Points:
         smallest: Array = np.minimum.reduceat(values, self.first, axis=-1)
         return smallest
 
-    def spread(self, values: Array) -> Array:
+    def spread_to_points(self, values: Array) -> Array:
         """(..., T, axes) what there is of each bead (..., B, axes) at its points, axis by axis in memory."""
         return np.swapaxes(np.swapaxes(values, -1, -2)[..., self.bead], -1, -2)
 
@@ -209,9 +209,9 @@ def unwrapped(joints: Array, points: Points) -> Array:
     if any_lost:
         rising[unreachable] = 0.0
         unreachable = np.cumsum(unreachable, axis=-2)
-        unreachable = unreachable > points.spread(unreachable[..., points.first, :])
+        unreachable = unreachable > points.spread_to_points(unreachable[..., points.first, :])
     np.cumsum(rising, axis=-2, out=rising)
-    rising += points.spread(joints[..., points.first, :] - rising[..., points.first, :])
+    rising += points.spread_to_points(joints[..., points.first, :] - rising[..., points.first, :])
     if any_lost:
         rising[unreachable] = np.nan
     return rising

@@ -188,7 +188,7 @@ class Task:
         if not np.nan_to_num(turns).any():
             return joints
         moved = joints.copy(order="K")
-        moved[..., some] += points.spread(turns)
+        moved[..., some] += points.spread_to_points(turns)
         return moved
 
     def jacobians(self, points: Points, phi: Array, joints: Array) -> Iterator[tuple[slice, Array]]:

@@ -60,20 +60,20 @@ def promises(evidence: Evidence) -> tuple[Promise, ...]:
     issues = evidence.issues
     return (
         deposit.lies_on_part(evidence.toolpath, issues),
-        deposit.whole(evidence.balance, issues),
+        deposit.all_deposited(evidence.balance, issues),
         deposit.nothing_outside(evidence.balance, issues),
         deposit.once(evidence.balance, issues),
-        deposit.carried(evidence.toolpath, issues),
+        deposit.beads_supported(evidence.toolpath, issues),
         deposit.layers(evidence.toolpath, issues, evidence.distances),
-        deposit.fed(evidence.toolpath, evidence.process),
+        deposit.wire_feed(evidence.toolpath, evidence.process),
         *deposit.predicted(evidence.toolpath, issues),
         clearance.nozzle(issues, evidence.looked),
-        *_of_motion(evidence),
+        *_motion_promises(evidence),
         *written.promises(evidence.read, evidence.on_controller),
     )
 
 
-def _of_motion(evidence: Evidence) -> list[Promise]:
+def _motion_promises(evidence: Evidence) -> list[Promise]:
     cell, motion = evidence.cell, evidence.motion
     rapids = evidence.rapids
     if (
@@ -91,5 +91,7 @@ def _of_motion(evidence: Evidence) -> list[Promise]:
         *clearance.external_links(
             motion, cell, evidence.arm, evidence.true_shapes, evidence.issues
         ),
-        *payload.carried(motion, cell, evidence.toolpath, evidence.process, evidence.issues),
+        *payload.payload_promises(
+            motion, cell, evidence.toolpath, evidence.process, evidence.issues
+        ),
     ]

@@ -17,84 +17,94 @@ from ..motion import Motion
 from ..simulation.arm import ArmTouches
 from ..simulation.rapid_look import RapidsLooked
 from ..strategies.clearance.look import Looked
-from .promise import Place, Promise, issue_place, number, of_codes, row_place
+from .promise import Place, Promise, issue_place, number, row_place, select_issues
 
 DEPOSITING = ("CLEARANCE", "OVER_PLATFORM")
 ON_RAPIDS = "The nozzle stays clear on the rapids"
 RAPIDS = ("RAPID_COLLISION", "RAPID_UNREACHABLE", "RAPID_LIMIT", "RAPID_SINGULAR")
 
 
-def nozzle(issues: Sequence[Issue], looked: Looked | None) -> Promise:
-    """While depositing; None where the job asks for no clearance."""
+def nozzle(issues: Sequence[Issue], nozzle_check: Looked | None) -> Promise:
+    """Whether the nozzle keeps clear while depositing; not checked if the job asks for no clearance."""
     what = "The nozzle stays clear of deposit, part and platform while it deposits"
-    if looked is None:
+    if nozzle_check is None:
         return Promise(what, "not checked: build_direction.clearance is none", None)
-    found = of_codes(issues, DEPOSITING)
+    collisions = select_issues(issues, DEPOSITING)
     how = Text(
         "the nozzle as a cone at {} points, against platform, part and what is deposited by then; beads as wide and "
         "high as they count",
-        looked.count,
+        nozzle_check.count,
     )
-    place = (
-        issue_place(found) if found or looked.first_touch is None else Place(*looked.first_touch)
+    location = (
+        issue_place(collisions)
+        if collisions or nozzle_check.first_touch is None
+        else Place(*nozzle_check.first_touch)
     )
     return Promise(
-        what, how, not found and not looked.touched, float(looked.touched), "points", 0.0, place
+        what,
+        how,
+        not collisions and not nozzle_check.touched,
+        float(nozzle_check.touched),
+        "points",
+        0.0,
+        location,
     )
 
 
-def rapids(issues: Sequence[Issue], looked: RapidsLooked) -> Promise:
-    """On the way between beads."""
-    found = of_codes(issues, RAPIDS)
+def rapids(issues: Sequence[Issue], rapids_check: RapidsLooked) -> Promise:
+    """Whether the nozzle keeps clear on rapids."""
+    collisions = select_issues(issues, RAPIDS)
     how = Text(
         "retracts, travels and approaches driven again, at {} places {} mm apart, against bodies, platform and beads "
         "as wide and high as they are by then",
-        looked.places,
-        number(looked.step),
+        rapids_check.places,
+        number(rapids_check.step),
     )
-    place = issue_place(found) if looked.place is None else Place(*looked.place)
+    location = issue_place(collisions) if rapids_check.place is None else Place(*rapids_check.place)
     return Promise(
         ON_RAPIDS,
         how,
-        not found and not len(looked.rows),
-        float(len(looked.rows)),
+        not collisions and not len(rapids_check.rows),
+        float(len(rapids_check.rows)),
         "rapids",
         0.0,
-        place,
+        location,
     )
 
 
 def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: bool) -> Promise:
-    """Of the links. Plain ones, drawn from the kinematics alone, can neither keep the promise nor break it."""
+    """Whether the links keep clear. Links drawn from the kinematics only can neither keep the promise nor
+    break it.
+    """
     what = "The arm stays clear of part, deposit, platform, nozzle and itself"
     if touches is None:
         return Promise(what, "not checked: the machine file gives no shapes for its links", None)
     rows, met = np.flatnonzero(touches.link != NONE), "nothing"
-    place: Place | None = None
+    location: Place | None = None
     if len(rows):
-        place = row_place(motion, int(rows[0]))
-        link, other = touches.link[rows[0]], touches.names[touches.what[rows[0]]]
-        met = Text("{} with {}", other, touches.links[link])
+        location = row_place(motion, int(rows[0]))
+        link, obstacle = touches.link[rows[0]], touches.names[touches.what[rows[0]]]
+        met = Text("{} with {}", obstacle, touches.links[link])
     step = number(math.degrees(touches.step))
-    near = (
+    contact_verb = (
         Text("come nearer than {:g} mm to", cell.arm_clearance) if cell.arm_clearance else "touch"
     )
     if not true_shapes:
         how = Text(
             "not checked: without the manufacturer's shapes, links drawn from the kinematics {} {}, checked every "
             "{} deg",
-            Word(near),
+            Word(contact_verb),
             Word(met),
             step,
         )
-        return Promise(what, how, None, float(len(rows)), "points", None, place)
+        return Promise(what, how, None, float(len(rows)), "points", None, location)
     how = Text(
         "shapes of all links, against each other too, every {} deg of the whole motion: they {} {}",
         step,
-        Word(near),
+        Word(contact_verb),
         Word(met),
     )
-    return Promise(what, how, not len(rows), float(len(rows)), "points", 0.0, place)
+    return Promise(what, how, not len(rows), float(len(rows)), "points", 0.0, location)
 
 
 def external_links(
@@ -104,37 +114,38 @@ def external_links(
     true_shapes: bool,
     issues: Sequence[Issue],
 ) -> list[Promise]:
-    """Of positioner and track; nothing of a cell without external axes. Links of the robot that are drawn from the
-    kinematics alone can neither keep the promise nor break it."""
+    """Whether positioner and track keep clear; empty for a cell without external axes. Links of the robot
+    that are drawn from the kinematics only can neither keep the promise nor break it.
+    """
     if cell.external is None:
         return []
     what = "Positioner and track stay clear of nozzle, torch, robot and obstacles"
-    names = [one.name for one in cell.external_links]
+    names = [item.name for item in cell.external_links]
     lacking = ", ".join(titles_without_shape(cell.external, cell.external_links))
     missing = Text("no file says what {} is made of", lacking) if lacking else ""
     if touches is None or not names:
         return [Promise(what, Text("not checked: no file says what {} is made of", lacking), None)]
-    own = cell.robot.chain.axes
+    robot_axes = cell.robot.chain.axes
     about = np.isin(touches.what, [touches.names.index(name) for name in names]) | (
-        touches.link >= own + LINKS_MORE
+        touches.link >= robot_axes + LINKS_MORE
     )
     rows = np.flatnonzero((touches.link != NONE) & about)
     rows = rows[
-        np.argsort((touches.link[rows] <= own) & (not true_shapes), kind="stable")
+        np.argsort((touches.link[rows] <= robot_axes) & (not true_shapes), kind="stable")
     ]  # those that count first
-    met, place = "nothing", None
+    met, location = "nothing", None
     if len(rows):
-        place = row_place(motion, int(rows[0]))
+        location = row_place(motion, int(rows[0]))
         met = Text(
             "{} with {}", touches.names[touches.what[rows[0]]], touches.links[touches.link[rows[0]]]
         )
     text = [
-        one
-        for one in of_codes(issues, (*DEPOSITING, *RAPIDS))
-        if not {*names}.isdisjoint(values_in(one.message))
+        item
+        for item in select_issues(issues, (*DEPOSITING, *RAPIDS))
+        if not {*names}.isdisjoint(values_in(item.message))
     ]
-    broken = bool(text) or bool(len(rows) and (true_shapes or touches.link[rows[0]] > own))
-    whole = true_shapes and not lacking
+    broken = bool(text) or bool(len(rows) and (true_shapes or touches.link[rows[0]] > robot_axes))
+    is_complete = true_shapes and not lacking
     step = number(math.degrees(touches.step))
     how = Text(
         "{} links that move with their axes, every {} deg of the whole motion, the nozzle every mm: they touch {}",
@@ -142,7 +153,7 @@ def external_links(
         step,
         Word(met),
     )
-    if not whole:
+    if not is_complete:
         lacks = missing or "links of the robot are drawn from the kinematics"
         how = Text(
             "not checked in full, for {}: {} links that move with their axes, every {} deg of the whole motion, the "
@@ -152,7 +163,7 @@ def external_links(
             step,
             Word(met),
         )
-    ok = False if broken else True if whole else None
+    ok = False if broken else True if is_complete else None
     return [
         Promise(
             what,
@@ -160,7 +171,7 @@ def external_links(
             ok,
             float(len(rows)),
             "points",
-            0.0 if whole else None,
-            issue_place(text) or place,
+            0.0 if is_complete else None,
+            issue_place(text) or location,
         )
     ]

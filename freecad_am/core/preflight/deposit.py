@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is deposited against the part, by the issues and figures that planning it has found."""
+"""The deposit against the part, by the issues and figures of its planning."""
 
 from __future__ import annotations
 
@@ -16,23 +16,27 @@ from ..process.deposit.balance import MM3, Balance
 from ..process.model import wire, wire_taken
 from ..toolpath import Toolpath
 from ..types import Array
-from .promise import PERCENT, Place, Promise, issue_place, of_codes
+from .promise import PERCENT, Place, Promise, issue_place, select_issues
 
-HELD = 1e-6  # of what is fed, that a predicted deposit may hold more or less
+MAX_VOLUME_ERROR = 1e-6  # share of the fed volume by which a predicted deposit may differ
 
 
 def layers(
-    toolpath: Toolpath, issues: Sequence[Issue], known: Sequence[Array] | None = None
+    toolpath: Toolpath, issues: Sequence[Issue], known_distances: Sequence[Array] | None = None
 ) -> Promise:
-    """Of the distance between layers, (n,) for each but the first; what families allow of it they have said themselves."""
+    """Promise on the distance between layers, (n,) for each except the first; families state themselves
+    which distances they allow.
+    """
     what = "Layers lie one layer height apart"
     how = "distance in space of each point to the layer below, against what the strategy allows"
     if toolpath.filled and not spacing.is_plane(toolpath):
-        known = layer_heights.over_layers(toolpath)
+        known_distances = layer_heights.over_layers(toolpath)
         how = "height of each point over the nearest place of the layer below, along the build direction there"
     distances = [
         values
-        for values in (spacing.between_layers(toolpath) if known is None else known)
+        for values in (
+            spacing.between_layers(toolpath) if known_distances is None else known_distances
+        )
         if len(values)
     ]
     if not distances:
@@ -41,117 +45,123 @@ def layers(
     extremes = [(float(np.nanmin(values)), float(np.nanmax(values))) for values in distances]
     low, high = min(low for low, _ in extremes), max(high for _, high in extremes)
     worst = low if height - low > high - height else high
-    wide = of_codes(issues, ("SPACING",), WARNING)
+    wide = select_issues(issues, ("SPACING",), WARNING)
     return Promise(what, how, not wide, worst, "mm", place=issue_place(wide))
 
 
 def lies_on_part(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
-    """Of the distance between the beads and the faces or solids that they were made of."""
+    """Promise on the distance between the beads and the faces or solids of the part."""
     what = "What is deposited lies on the part"
     if toolpath.on_part is None:
         return Promise(what, "not checked: the part has no faces to measure from", None)
-    places, worst, allowed = toolpath.on_part
-    found = of_codes(issues, (on_part.CODE,))
+    count, worst, allowed = toolpath.on_part
+    deviations = select_issues(issues, (on_part.CODE,))
     how = Text(
         "distance of {:.0f} places of the beads to the shape itself, which slicing does not use",
-        places,
+        count,
     )
     if toolpath.fitted is not None:
         how = Text(
             "distance of {:.0f} places of the beads to the shape itself, less what a scan moved their layers",
-            places,
+            count,
         )
-    off = worst > allowed or bool(of_codes(issues, (REMAINS,), WARNING))
-    return Promise(what, how, not off, worst, "mm", allowed, issue_place(found))
+    off = worst > allowed or bool(select_issues(issues, (REMAINS,), WARNING))
+    return Promise(what, how, not off, worst, "mm", allowed, issue_place(deviations))
 
 
-def whole(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
-    """Of what of the part is left out."""
+def all_deposited(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
+    """Promise on the volume of the part that is not deposited."""
     what = "All of the part is deposited"
     if balance is None or balance.lines:
         return Promise(what, "not checked: the part encloses no volume", None)
-    found = of_codes(
+    gaps = select_issues(
         [*issues, *deposit_balance.issues(balance)], (deposit_balance.LEFT_OUT,), WARNING
     )
     how = "volume of the part deeper than half of a bead's width below the wall, or of its solids aside"
     if balance.filled:
         how = "volume of the part less what beads cover of each layer, as wide as they count, times the layer height"
     worst = None if balance.left_out is None else balance.left_out / MM3
-    return Promise(what, how, not found, worst, "cm3")
+    return Promise(what, how, not gaps, worst, "cm3")
 
 
 def nothing_outside(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
-    """Of what the beads deposit that is not the part."""
+    """Promise on the volume of beads outside the part."""
     what = "Nothing is deposited outside the part"
     if balance is None or balance.outside is None:
         return Promise(what, "not checked: the part encloses no volume", None)
-    found = of_codes(
+    excess = select_issues(
         [*issues, *deposit_balance.issues(balance)], (deposit_balance.OUTSIDE,), WARNING
     )
     how = "volume of the beads, as wide as they count, that is wider than the part is thick"
     if balance.filled:
         how = "volume of the beads, as wide as they are laid, outside of their layers, and of layers outside of the part"
-    return Promise(what, how, not found, balance.outside / MM3, "cm3")
+    return Promise(what, how, not excess, balance.outside / MM3, "cm3")
 
 
 def once(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
-    """Of beads laid over others of their layer."""
+    """Promise on the volume of beads that overlap in a layer."""
     what = "Little is deposited twice"
     if balance is None or balance.twice is None:
         return Promise(what, "not checked: planned by an earlier version", None)
-    found = of_codes([*issues, *deposit_balance.issues(balance)], (deposit_balance.TWICE,), WARNING)
+    overlaps = select_issues(
+        [*issues, *deposit_balance.issues(balance)], (deposit_balance.TWICE,), WARNING
+    )
     how = "what of beads of one layer is wider than they are apart, against 10 % of the beads"
     if balance.filled:
         how = "volume of the beads, as wide as they are apart, less what they cover, against 10 % of the part"
-    whole = (balance.part_volume or 0.0) - balance.hub if balance.filled else balance.beads or 0.0
+    reference_volume = (
+        (balance.part_volume or 0.0) - balance.hub if balance.filled else balance.beads or 0.0
+    )
     return Promise(
         what,
         how,
-        not found,
+        not overlaps,
         balance.twice / MM3,
         "cm3",
-        deposit_balance.TWICE_WARNING_SHARE * whole / MM3,
+        deposit_balance.TWICE_WARNING_SHARE * reference_volume / MM3,
     )
 
 
-def carried(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
-    """Of beads over nothing."""
+def beads_supported(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
+    """Promise on unsupported beads."""
     what = "Every bead is carried by what lies below it"
     if toolpath.unsupported is None:
         return Promise(what, "not checked: it is not known how wide the beads count", None)
-    found = of_codes(issues, (support.CODE,), WARNING)
+    overhangs = select_issues(issues, (support.CODE,), WARNING)
     how = "each short piece of a bead, against its build direction, over earlier deposit as wide as it is and what is there"
-    kept = not found and toolpath.unsupported <= 0.0
-    return Promise(what, how, kept, toolpath.unsupported, "mm", 0.0, issue_place(found))
+    is_supported = not overhangs and toolpath.unsupported <= 0.0
+    return Promise(what, how, is_supported, toolpath.unsupported, "mm", 0.0, issue_place(overhangs))
 
 
 def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...]:
-    """Of the deposit that is predicted, at the speeds asked for, where an allowance is; nothing elsewhere."""
-    found = toolpath.predicted
-    if found is None:
+    """Promises on the predicted deposit, at the requested speeds, for parts with a machining allowance;
+    empty without a prediction.
+    """
+    prediction = toolpath.predicted
+    if prediction is None:
         return ()
     from ..process.shape import compare  # few jobs have one
 
     how = Text(
         "how far a deposit of cubes of {:.3g} mm, filled bead by bead with what the wire feeds, reaches beyond {} "
         "places of the part's faces, along their normals",
-        found.edge,
-        found.places,
+        prediction.edge,
+        prediction.places,
     )
     inside = Promise(
         "The part lies inside the predicted deposit, by its machining allowance",
         how,
-        found.short <= 0.0,
-        found.least,
+        prediction.short <= 0.0,
+        prediction.least,
         "mm",
-        found.allowance,
-        Place(found.layer, found.bead, found.point),
+        prediction.allowance,
+        Place(prediction.layer, prediction.bead, prediction.point),
         at_least=True,
     )
-    off = abs(found.laid - found.fed) / max(found.fed, 1e-300)
-    drifts = of_codes(issues, (compare.DRIFT,), WARNING)
-    known = found.drift[np.isfinite(found.drift)]
-    most = float(known[np.abs(known).argmax()]) if len(known) else 0.0
+    off = abs(prediction.laid - prediction.fed) / max(prediction.fed, 1e-300)
+    drifts = select_issues(issues, (compare.DRIFT,), WARNING)
+    drifts_known = prediction.drift[np.isfinite(prediction.drift)]
+    largest_drift = float(drifts_known[np.abs(drifts_known).argmax()]) if len(drifts_known) else 0.0
     return (
         inside,
         Promise(
@@ -159,7 +169,7 @@ def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...
             "surface of each layer of the predicted deposit, in the mean, "
             "against where the next one should begin",
             not drifts,
-            most,
+            largest_drift,
             "mm",
             place=issue_place(drifts),
         ),
@@ -167,38 +177,45 @@ def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...
             "The predicted deposit holds what the wire feeds",
             "cubes of the deposit against wire section x feed x time, or "
             "what beads count where no wire is known",
-            off <= HELD,
+            off <= MAX_VOLUME_ERROR,
             PERCENT * off,
             "%",
-            PERCENT * HELD,
+            PERCENT * MAX_VOLUME_ERROR,
         ),
     )
 
 
-def fed(toolpath: Toolpath, process: ProcessParameters) -> Promise:
-    """Of the wire against the section of the beads, at the speeds at which they are run."""
+def wire_feed(toolpath: Toolpath, process: ProcessParameters) -> Promise:
+    """Promise on the wire against the section of the beads, at the speeds at which they are run."""
     what = "The wire feeds what the beads take"
-    parts = toolpath.parts
+    features = toolpath.parts
     if process.bead_model != "none" or any(
-        part.wire_feed is None or part.bead_width is None for part, _ in parts
+        feature_toolpath.wire_feed is None or feature_toolpath.bead_width is None
+        for feature_toolpath, _ in features
     ):
         return Promise(
             what, "not checked: a bead model, or nothing, says how wide the beads are", None
         )
-    if not any(part.wire_feed for part, _ in parts):
+    if not any(feature_toolpath.wire_feed for feature_toolpath, _ in features):
         return Promise(what, "not checked: there is no wire, process.wire.feed is 0", None)
-    found = [
+    mismatches = [
         (off, Place(int(numbers[layer]), bead, None))
-        for part, numbers in parts
-        if (most := wire_taken.off_most(part, process))
-        for off, layer, bead in [most]
+        for feature_toolpath, numbers in features
+        if (largest_mismatch := wire_taken.off_most(feature_toolpath, process))
+        for off, layer, bead in [largest_mismatch]
     ]
-    others = sorted({name for part, _ in parts for name in wire_taken.by_schedules(part, process)})
-    off, where = max(found, key=lambda one: one[0], default=(0.0, None))
-    if others and off <= wire.TOLERANCE:
+    schedule_classes = sorted(
+        {
+            name
+            for feature_toolpath, _ in features
+            for name in wire_taken.by_schedules(feature_toolpath, process)
+        }
+    )
+    off, where = max(mismatches, key=lambda mismatch: mismatch[0], default=(0.0, None))
+    if schedule_classes and off <= wire.TOLERANCE:
         how: str = Text(
             "not checked: the welder's own schedules, which are not known here, set the feed of {}",
-            ", ".join(others),
+            ", ".join(schedule_classes),
         )
         return Promise(what, how, None)
     how = "section of the wire times its feed, against width x height x speed of beads of each class, their starts and ends"

@@ -55,32 +55,32 @@ def _limits(motion: Motion, cell: Cell) -> Promise:
 
 def _reach(motion: Motion, cell: Cell) -> Promise:
     what = "The joints bring the tool to every point"
-    lost = np.flatnonzero(~motion.reachable)
-    if len(lost):
-        place = row_place(motion, int(lost[0]))
+    unreachable = np.flatnonzero(~motion.reachable)
+    if len(unreachable):
+        location = row_place(motion, int(unreachable[0]))
         return Promise(
             what,
             "closed-form inverse",
             False,
-            float(len(lost)),
+            float(len(unreachable)),
             "points",
             0.0,
-            place,
-            row=int(lost[0]),
+            location,
+            row=int(unreachable[0]),
         )
     deposited = np.flatnonzero(motion.deposit)
-    away = np.linalg.norm(
+    distances = np.linalg.norm(
         cell.tip_at(motion.joints[deposited]) - motion.position[deposited], axis=1
     )
-    row = int(deposited[int(away.argmax())])
+    row = int(deposited[int(distances.argmax())])
     how = "planned joints of the deposit driven through the joint-frame chain, which planning does not use"
-    worst = float(away.max())
+    worst = float(distances.max())
     return Promise(
         what, how, worst <= COMPUTED_MM, worst, "mm", COMPUTED_MM, row_place(motion, row), row=row
     )
 
 
-def _speeds(motion: Motion, cell: Cell, most: float) -> Promise:
+def _speeds(motion: Motion, cell: Cell, max_percent: float) -> Promise:
     what = "No axis is asked for more than its largest speed"
     if not np.isfinite(cell.machine.max_speed).any():
         return Promise(what, "the machine file gives no largest speeds", None)
@@ -93,10 +93,10 @@ def _speeds(motion: Motion, cell: Cell, most: float) -> Promise:
     return Promise(
         what,
         how,
-        bool(worst <= most * (1.0 + ROUNDING)),
+        bool(worst <= max_percent * (1.0 + ROUNDING)),
         worst,
         "%",
-        most,
+        max_percent,
         row_place(motion, row),
         row=row,
     )
@@ -104,10 +104,10 @@ def _speeds(motion: Motion, cell: Cell, most: float) -> Promise:
 
 def _singularities(motion: Motion, condition: Array, threshold: Array) -> Promise:
     what = "The tool keeps away from singularities while it deposits"
-    known = np.isfinite(condition) & np.isfinite(threshold)
-    if not known.any():
+    is_known = np.isfinite(condition) & np.isfinite(threshold)
+    if not is_known.any():
         return Promise(what, "not known of this machine", None)
-    spare = np.where(known, condition - threshold, np.inf)
+    spare = np.where(is_known, condition - threshold, np.inf)
     row = int(spare.argmin())
     how = "inverse condition number of the Jacobian at the points of the deposit, against the least one allowed"
     return Promise(

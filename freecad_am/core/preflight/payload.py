@@ -12,28 +12,30 @@ from ..motion import Motion
 from ..parameters.process import ProcessParameters
 from ..simulation.payload import CODE, finished
 from ..toolpath import Toolpath
-from .promise import Promise, issue_place, number, of_codes
+from .promise import Promise, issue_place, number, select_issues
 
 WHAT = "What carries the part carries its weight"
 
 
-def carried(
+def payload_promises(
     motion: Motion,
     cell: Cell,
     toolpath: Toolpath,
     process: ProcessParameters,
     issues: Sequence[Issue],
 ) -> list[Promise]:
-    """Of robot or positioner; nothing where the part stands still, or lies on a machine with rotary axes."""
+    """Promise on the load of robot or positioner; empty if the part does not move, or is on a machine with
+    rotary axes.
+    """
     if not cell.carriers or not cell.machine.free:
         return []
-    mass, text = finished(motion, cell, toolpath, process), of_codes(issues, (CODE,))
-    least = min(cell.carriers, key=lambda one: one.payload.kg)
+    mass, text = finished(motion, cell, toolpath, process), select_issues(issues, (CODE,))
+    weakest = min(cell.carriers, key=lambda carrier: carrier.payload.kg)
     weighed = Text(
         "deposit and what it grows on, where that is closed, at {} g/cm3 (process.density)",
         number(process.density),
     )
-    untold = [one.title for one in cell.carriers if math.isinf(one.payload.kg)]
+    untold = [carrier.title for carrier in cell.carriers if math.isinf(carrier.payload.kg)]
     if untold and not text:
         return [
             Promise(
@@ -44,11 +46,11 @@ def carried(
                 "kg",
             )
         ]
-    how = Text("{}, against what {} carries", Word(weighed), least.title)
-    if not math.isinf(least.payload.from_axis):
+    how = Text("{}, against what {} carries", Word(weighed), weakest.title)
+    if not math.isinf(weakest.payload.from_axis):
         how = Text(
             "{}, against what {} carries, and its moment about the last axis, as it grows",
             Word(weighed),
-            least.title,
+            weakest.title,
         )
-    return [Promise(WHAT, how, not text, mass, "kg", least.payload.kg, issue_place(text))]
+    return [Promise(WHAT, how, not text, mass, "kg", weakest.payload.kg, issue_place(text))]

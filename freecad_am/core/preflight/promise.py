@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is promised of a job before it is started, how it was checked, and its worst value with its place."""
+"""A promise about a job before its start, how it was checked, and its worst value with its position."""
 
 from __future__ import annotations
 
@@ -70,17 +70,21 @@ class Promise:
         return value if self.bound is None else Text("{} ({} {})", value, sign, number(self.bound))
 
 
-def amount(value: float, unit: str, shown: Callable[[float], str] = number) -> str:
-    """A value with its unit; what is counted in the singular or plural of the language, of which some have one for 0."""
+def amount(value: float, unit: str, formatted: Callable[[float], str] = number) -> str:
+    """A value with its unit; counts in the singular or plural of the language, which some also have for
+    0.
+    """
     if unit == "points":
         return Text(
-            "0 points" if value == 0.0 else "1 point" if value == 1.0 else "{} points", shown(value)
+            "0 points" if value == 0.0 else "1 point" if value == 1.0 else "{} points",
+            formatted(value),
         )
     if unit == "rapids":
         return Text(
-            "0 rapids" if value == 0.0 else "1 rapid" if value == 1.0 else "{} rapids", shown(value)
+            "0 rapids" if value == 0.0 else "1 rapid" if value == 1.0 else "{} rapids",
+            formatted(value),
         )
-    return " ".join(filter(None, (shown(value), unit)))
+    return " ".join(filter(None, (formatted(value), unit)))
 
 
 def row_place(motion: Motion, row: int) -> Place:
@@ -91,10 +95,17 @@ def row_place(motion: Motion, row: int) -> Place:
 def issue_place(issues: Sequence[Issue]) -> Place | None:
     """The place of the first issue that has one."""
     return next(
-        (Place(one.layer, one.bead, one.point) for one in issues if one.layer is not None), None
+        (
+            Place(issue.layer, issue.bead, issue.point)
+            for issue in issues
+            if issue.layer is not None
+        ),
+        None,
     )
 
 
-def of_codes(issues: Sequence[Issue], codes: Collection[str], level: str = ERROR) -> list[Issue]:
+def select_issues(
+    issues: Sequence[Issue], codes: Collection[str], level: str = ERROR
+) -> list[Issue]:
     """The issues of a level that have one of the codes."""
     return [issue for issue in issues if issue.level == level and issue.code in codes]

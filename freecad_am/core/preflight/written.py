@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The text of a program against the plan, and what only its controller can show."""
+"""The text of a program against the plan, and the checks that only its controller can do."""
 
 from __future__ import annotations
 
@@ -29,42 +29,42 @@ class ReadBack:
     solvers: int
 
 
-def promises(read: ReadBack | None, on_controller: Sequence[str]) -> list[Promise]:
-    """The promises about a text; `on_controller`: what nobody can check but there."""
-    there = "not checked: only the controller can show it"
-    return [*_read_back(read), *(Promise(text, there, None) for text in on_controller)]
+def promises(read_back: ReadBack | None, on_controller: Sequence[str]) -> list[Promise]:
+    """The promises about a text; `on_controller`: checks that only the controller can do."""
+    not_checked = "not checked: only the controller can show it"
+    return [*_read_back(read_back), *(Promise(text, not_checked, None) for text in on_controller)]
 
 
-def _read_back(read: ReadBack | None) -> list[Promise]:
-    if read is None:
+def _read_back(read_back: ReadBack | None) -> list[Promise]:
+    if read_back is None:
         return [
             Promise(what, "not checked: there is no program that was read back", None)
             for what in (TEXT, BETWEEN)
         ]
     how = "read back by a reader of its own and driven through the joint-frame chain"
-    both = (
+    method = (
         Text("{} and PyKDL", Word(how))
-        if read.solvers > 1
+        if read_back.solvers > 1
         else Text("{}; PyKDL is not installed", Word(how))
     )
     return [
         Promise(
             TEXT,
-            both,
-            _within(read, read.at_points, read.bound),
-            *_figure(read.at_points, read.bound),
+            method,
+            _is_within(read_back, read_back.at_points, read_back.bound),
+            *_figure(read_back.at_points, read_back.bound),
         ),
         Promise(
             BETWEEN,
             "the path of the text between its points, as the controller interpolates it",
-            _within(read, read.between, read.allowed),
-            *_figure(read.between, read.allowed),
+            _is_within(read_back, read_back.between, read_back.allowed),
+            *_figure(read_back.between, read_back.allowed),
         ),
     ]
 
 
-def _within(read: ReadBack, value: float, bound: float) -> bool:
-    return read.ok and value <= bound
+def _is_within(read_back: ReadBack, value: float, bound: float) -> bool:
+    return read_back.ok and value <= bound
 
 
 def _figure(value: float, bound: float) -> tuple[float | None, str, float | None]:

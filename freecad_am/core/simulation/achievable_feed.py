@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where a machine cannot keep the speed it is asked for, and what the speed becomes there.
+"""The speeds that a machine can keep along a motion.
 
-A motion asks for a speed at the deposition point on every segment. Each axis has a largest speed, and where the machine
-file tells it a largest acceleration; the motion as it will be is the fastest along the same joints that no axis forbids and
-that is nowhere faster than asked.
+A motion asks for a speed at the deposition point on every segment. Each axis has a maximum speed
+and, if the machine file states it, a maximum acceleration. The resulting motion is the fastest
+along the same joints within these limits that is nowhere faster than requested.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ def _accelerated(
     profile = _Way.of(rates[moving], time, square, largest, _blocks(motion)[moving])
     node = profile.fastest()
     gain, by_speed = profile.gain(node)
-    # bends are told at nodes, and go on between two that have one
+    # bends are known at nodes, and continue between two nodes with a bend
     mean = _mean_rate(
         node[:-1],
         node[1:],
@@ -152,11 +152,11 @@ class _Way:
         )
 
     def fastest(self) -> Array:
-        """(m + 1,) the largest p^2 at the nodes, to within a percent or so, from below.
+        """Return the largest p^2 (m + 1,) at the nodes, to within a percent or so, from below.
 
-        A ceiling of p^2 tells how much of the accelerations bends take at most, and so how steeply p^2 may rise and fall
-        below it. Low ceilings leave room to speed up, high ones are fast once there; of motions that are possible the
-        faster one at each place is possible too.
+        A ceiling of p^2 bounds the acceleration that bends need, and so how steeply p^2 may rise and fall
+        below it. Low ceilings leave more acceleration, high ones are faster once reached; the maximum of
+        possible motions is possible too.
         """
         best = np.zeros(len(self.most))
         for share in CEILINGS:

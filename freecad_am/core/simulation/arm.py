@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where along a motion the links of a robot touch what is in the cell, between its rows too."""
+"""Positions along a motion, between its rows too, where links of the robot touch an obstacle."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from ..kinematics.links.rounds import NONE
 from ..motion import Motion
 from ..types import Array, Index, Mask
 
-# joints are looked at whenever the fastest of them has turned by so many rad, or moved by so many mm, at so many places at
-# most: of longer motions at fewer places of each turn
+# a sample each time the fastest joint has turned by STEP rad or moved by SLIDE mm, at this number of
+# samples at most: longer motions have fewer samples a turn
 STEP, SLIDE, MAX_LOOKS = float(np.radians(1.0)), 10.0, 40_000
 
 
@@ -34,7 +34,9 @@ class ArmTouches:
 
 
 def deposit_obstacles(motion: Motion, width: float, height: float) -> Obstacles | None:
-    """The deposit of a motion as arms can touch it; width of beads where the motion does not tell it, and height, mm."""
+    """Return the deposit of a motion as an obstacle for arms; width of beads where the motion does not
+    state it, and height, mm.
+    """
     deposit_rows = motion.deposit
     if not deposit_rows.any():
         return None
@@ -50,13 +52,15 @@ def deposit_obstacles(motion: Motion, width: float, height: float) -> Obstacles 
 
 
 def arm_touches(motion: Motion, arm: ArmContact, max_places: int | None = None) -> ArmTouches:
-    """What the arm touches on the way, at so many places at most. Rows without joint values touch nothing."""
+    """Return the contacts of the arm along the motion, checked at `max_places` positions at most. Rows
+    without joint values have none.
+    """
     n = len(motion)
     link, what = np.full(n, NONE, dtype=np.int64), np.full(n, NONE, dtype=np.int64)
     joints, row, step = places(motion.joints, max_places, tracks_of(arm.cell))
     deposited_before: Index = np.cumsum(motion.deposit) - motion.deposit
     touches = arm.touches(joints, deposited_before[row])
-    # rows that lie closer than the places looked at are as the next of these is: every run of rows ends with one
+    # rows closer together than the samples take the result of the next sample: every run of rows ends with one
     reachable = np.flatnonzero(motion.reachable)
     next_place = np.searchsorted(row, reachable)
     link[reachable], what[reachable] = touches.link[next_place], touches.what[next_place]
@@ -70,7 +74,7 @@ def arm_touches(motion: Motion, arm: ArmContact, max_places: int | None = None) 
 
 
 def tracks_of(cell: Cell) -> Mask:
-    """(axes,) which axes of a cell are those of a track."""
+    """Return which axes (axes,) of a cell belong to a track."""
     tracks: Mask = cell.machine.chain.sliding.copy()
     tracks[: cell.robot.chain.axes] = False
     return tracks
@@ -79,11 +83,12 @@ def tracks_of(cell: Cell) -> Mask:
 def places(
     joints: Array, max_places: int | None = None, sliding: Mask | None = None
 ) -> tuple[Array, Index, float]:
-    """Joints (k, axes) along a motion (n, axes), the rows (k,) whose segments they are on, rising, and the step, rad.
+    """Sample a motion between its rows.
 
-    They are at even steps of the joint that moves most, SLIDE of those that are `sliding` counting as STEP, and at both ends
-    of every run of rows with joint values, be it of one row alone; on the way between two runs, which nobody knows, there
-    are none.
+    Returns joints (k, axes) along the motion (n, axes), the rows (k,) of their segments, rising, and
+    the step, rad. Samples are at even steps of the joint that moves most, SLIDE of the `sliding`
+    axes counting as STEP, and at both ends of every run of rows with joint values, even of a single
+    row; the unknown moves between two runs have none.
     """
     n = len(joints)
     reachable: Mask = np.asarray(np.isfinite(joints).all(axis=1))

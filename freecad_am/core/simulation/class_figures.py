@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What of a motion is of which class of beads: lengths, times, speeds, schedules."""
+"""Figures of a motion by bead class: lengths, times, speeds, schedules."""
 
 from __future__ import annotations
 
@@ -13,8 +13,10 @@ from ..parameters.process import ProcessParameters
 
 
 def figures(motion: Motion, process: ProcessParameters) -> list[dict[str, Any]]:
-    """Of each class that beads are of, in the usual order: number of beads, mm and s of deposit, lead times left out, least
-    and largest mm/s, its schedule, and its weave where any has one. Nothing of motions from before there were classes."""
+    """For each bead class of the motion, in the usual order: number of beads, mm and s of deposit
+    without lead times, minimum and maximum mm/s, its schedule, and its weave if any class has one.
+    Empty for motions from before bead classes.
+    """
     class_rows: list[dict[str, Any]] = []
     step_lengths = np.linalg.norm(
         np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1

@@ -25,7 +25,7 @@ def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> A
     ]
     nominal = process.bead_width if toolpath.bead_width is None else toolpath.bead_width
     width = np.where(np.isfinite(motion.width), motion.width, nominal)
-    # the width of a segment is the mean of those at its ends
+    # the width of a segment is the mean of the widths at its ends
     mean_width = 0.5 * (width + np.concatenate([width[:1], width[:-1]]))
     height: Array | float = toolpath.layer_height
     if toolpath.features or toolpath.fitted is not None:
@@ -36,7 +36,7 @@ def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> A
 
 
 def _mean_heights(toolpath: Toolpath) -> Array:
-    """(layers,) mm, how high layers are in the mean of their beads: those that were fitted to a scan are uneven."""
+    """(layers,) mm, the mean height of each layer's beads: layers fitted to a scan are uneven."""
     layer_heights = toolpath.layer_heights
     for number, layer in enumerate(toolpath.layers):
         if any(bead.height is not None for bead in layer.beads):
@@ -54,8 +54,9 @@ def _mean_heights(toolpath: Toolpath) -> Array:
 
 
 def fed_volume(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> float | None:
-    """mm^3 of wire fed while depositing, lead times left out; None where the speed of the wire is not known, or there is
-    none."""
+    """mm^3 of wire fed while depositing, without lead times; None if the wire speed is not known or
+    there is no wire.
+    """
     nominal = toolpath.wire_feed or np.nan
     feed = np.where(np.isfinite(motion.wire), motion.wire, nominal)
     seconds = np.where(motion.deposit & motion.moves, np.nan_to_num(motion.duration), 0.0)
@@ -64,9 +65,8 @@ def fed_volume(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -
 
 
 def deposit_motion(toolpath: Toolpath, axes: int = 0) -> Motion:
-    """The deposit alone, for a job that has no joint path: no rapid rows, durations from length and speed.
-
-    `axes` columns of joints that no point has.
+    """The deposit only, for a job without a joint path: no rapid rows, durations from length and speed.
+    `axes` columns of NaN joints.
     """
     beads = list(toolpath)
     sizes = [len(bead) for _, _, bead in beads]

@@ -12,10 +12,10 @@ from ..types import Array, Integers, Mask
 
 
 def speed_ratios(joints: Array, duration: Array, speed_limits: Array) -> Array:
-    """(n, a) mean joint speed on the segment that ends at each row, as a share of what the axis can do.
+    """(n, a) mean joint speed on the segment that ends at each row, as a share of the axis' maximum.
 
-    joints: (n, a) rad or mm. duration: (n,) s of that segment; where it takes no time the ratio is 0, or infinite if an
-    axis moves all the same. speed_limits: (a,) rad/s or mm/s, infinite where not known.
+    joints: (n, a) rad or mm. duration: (n,) s of that segment; where it is 0 the ratio is 0, or
+    infinite if an axis moves. speed_limits: (a,) rad/s or mm/s, infinite if not known.
     """
     moved = np.abs(np.diff(joints, axis=0, prepend=joints[:1]))
     lasts = duration[:, None] > 0.0
@@ -38,9 +38,8 @@ def spread_to_deposit_rows(deposit: Mask, values: Array) -> Array:
 
 
 def from_next(deposit: Mask, point: Integers, values: Array) -> Array:
-    """(n,) values of segments, with the first row of each bead, that ends none, taking that of the row after it.
-
-    deposit, point: (n,) as in a motion.
+    """(n,) values of segments, where the first row of each bead, at which no segment ends, takes the
+    value of the next row. deposit, point: (n,) as in a motion.
     """
     first_rows = np.flatnonzero(deposit & (point == 0))
     shifted = values.copy()

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Whether what carries the part can: its mass as it grows, and how far its centre of gravity is from the last axis.
+"""Whether the machine can carry the part: its growing mass, and the distance of its centre of gravity
+from the last axis.
 
-The part is the deposit and the bodies it grows on, all as dense as the deposit; what of them is not a closed mesh counts
-nothing. A load may be farther from the axis the less it weighs: what counts is its moment about the axis.
+The part is the deposit and the bodies that it grows on, all of the density of the deposit; bodies
+that are not a closed mesh have no mass. A load may be farther from the axis the less it weighs:
+its moment about the axis is the limit.
 """
 
 from __future__ import annotations
@@ -65,7 +67,7 @@ def issues(
 
 
 def finished(motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters) -> float:
-    """kg that the finished part weighs, what it grows on included as far as that is closed."""
+    """kg of the finished part, including the bodies that it grows on if they are closed."""
     deposited = np.nan_to_num(volumes(motion, process, toolpath)).sum()
     return float(KG * process.density * (deposited + enclosed_volume(toolpath.surroundings)[0]))
 
@@ -107,7 +109,7 @@ def _too_far(motion: Motion, machine: Machine, mass: Array, moment: Array) -> li
 def _from_axis(
     cell: Cell, machine: Machine, position: Array, deposited: Array, bodies: float, centre: Array
 ) -> Array:
-    """(n,) kg mm, the moment of the part about the last axis of what carries it, after each row."""
+    """(n,) kg mm, the moment of the part about the last axis of its carrier, after each row."""
     frames_at_rest = machine.chain.frames(np.zeros(machine.chain.axes))
     to_flange = frames.inverse(frames_at_rest.flange)
     axis = to_flange[:3, :3] @ frames_at_rest.directions[-1]

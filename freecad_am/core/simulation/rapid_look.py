@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the nozzle meets on the rapids of a motion, looked at alone: whatever planning found, or tried, of them."""
+"""Contacts of the nozzle on the rapids of a motion, checked independently of the planning."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def looked_at(
                 travel[rows_now], np.linalg.norm(np.diff(end, axis=1), axis=2).sum(axis=1)
             )
         corners += [tip.min(axis=(0, 1))[None], tip.max(axis=(0, 1))[None]]
-    # a row more for each move: both of its ends are looked at
+    # a row more for each move: both ends are checked
     step = max(STEP, float(travel.sum()) / max(max_places - 2 * len(rows), 1))
     count = 2 + np.floor(travel / step).astype(np.intp)
     move = np.repeat(np.arange(len(rows)), count)

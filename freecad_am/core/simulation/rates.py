@@ -29,7 +29,7 @@ def rates(motion: Motion) -> Rates:
     within = motion.deposit & (motion.point > 0) & (motion.duration > 0.0)
     time = np.where(within, motion.duration, np.nan)[:, None]
     speed = np.diff(motion.joints, axis=0, prepend=motion.joints[:1]) / time
-    # rows of a bead follow each other, and its first one is NaN: what reaches over its ends is NaN by itself
+    # rows of a bead are consecutive and the first is NaN, so differences across its ends are NaN
     between = 0.5 * (time[:-1] + time[1:])
     acceleration, jerk = np.full_like(speed, np.nan), np.full_like(speed, np.nan)
     acceleration[:-1] = np.diff(speed, axis=0) / between

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What machines with rotary axes look like: table, cradle and bearings, head and torch, from the chain alone.
+"""Shapes of machines with rotary axes: table, cradle and bearings, head and torch, from the chain
+only.
 
-The chain is seen from the torch: head axes, linear axes, table axes. Which side the linear axes carry in truth no
-machine file tells; drawn are the table's bearings standing still, and a torch that moves.
+The chain is seen from the torch: head axes, linear axes, table axes. No machine file states which
+side the linear axes really carry; the drawing shows fixed table bearings and a moving torch.
 """
 
 from __future__ import annotations
@@ -45,39 +46,49 @@ def solids(chain: Chain, radius: float = RADIUS, torch: float = 60.0) -> list[li
     return [[solid.move(pose) for solid in link] for pose, link in zip(back, solids_of_links)]
 
 
-def _head(directions: Array, origins: Array, torch: float, found: list[list[Solid]]) -> None:
+def _head(
+    directions: Array, origins: Array, torch: float, solids_by_link: list[list[Solid]]
+) -> None:
     """The torch's body up to its pivot, a drum for each head axis, and the ram above."""
     up = np.array([0.0, 0.0, 1.0])
-    place = torch * up
-    found[0].append(cylinder(0.8 * place, place, 0.5 * JOINT, DARK))
+    joint_position = torch * up
+    solids_by_link[0].append(cylinder(0.8 * joint_position, joint_position, 0.5 * JOINT, DARK))
     for axis, (direction, origin) in enumerate(zip(directions, origins)):
-        pivot = origin + ((place - origin) @ direction) * direction  # where it is nearest
-        if np.linalg.norm(pivot - place) > 1.0:
-            found[axis].append(capsule(place, pivot, 0.6 * JOINT, 0.8 * JOINT))
+        pivot = origin + ((joint_position - origin) @ direction) * direction  # where it is nearest
+        if np.linalg.norm(pivot - joint_position) > 1.0:
+            solids_by_link[axis].append(capsule(joint_position, pivot, 0.6 * JOINT, 0.8 * JOINT))
         half = JOINT * direction
-        found[axis].append(cylinder(pivot - half, pivot + half, 0.9 * JOINT))
-        found[axis + 1].append(
+        solids_by_link[axis].append(cylinder(pivot - half, pivot + half, 0.9 * JOINT))
+        solids_by_link[axis + 1].append(
             cylinder(pivot - 1.15 * half, pivot + 1.15 * half, 0.65 * JOINT, DARK)
         )
-        place = pivot
-    ram = found[len(directions)]
-    ram.append(cylinder(place, place + 1.6 * JOINT * up, 0.85 * JOINT))
+        joint_position = pivot
+    ram = solids_by_link[len(directions)]
+    ram.append(cylinder(joint_position, joint_position + 1.6 * JOINT * up, 0.85 * JOINT))
     x, y = np.eye(3)[:2]
-    ram.append(box(place + 5.5 * JOINT * up, x, y, (2.2 * JOINT, 2.2 * JOINT, 8.0 * JOINT)))
+    ram.append(
+        box(joint_position + 5.5 * JOINT * up, x, y, (2.2 * JOINT, 2.2 * JOINT, 8.0 * JOINT))
+    )
 
 
 def _table(
-    directions: Array, origins: Array, flange: Array, radius: float, found: list[list[Solid]]
+    directions: Array,
+    origins: Array,
+    flange: Array,
+    radius: float,
+    solids_by_link: list[list[Solid]],
 ) -> None:
     """The table's disc, and what carries it: bearings of its last axis, the cradle of one before."""
     face, up = flange[:3, 3], flange[:3, 2]
     thick = 0.16 * radius
-    found[-1].append(cylinder(face - thick * up, face - 0.2 * up, radius, BRIGHT, 0.03))
-    found[-1].append(cylinder(face - 1.7 * thick * up, face - thick * up, 0.55 * radius, DARK))
+    solids_by_link[-1].append(cylinder(face - thick * up, face - 0.2 * up, radius, BRIGHT, 0.03))
+    solids_by_link[-1].append(
+        cylinder(face - 1.7 * thick * up, face - thick * up, 0.55 * radius, DARK)
+    )
     below, carried = face - 1.7 * thick * up, len(directions)
     if carried >= 2:
-        below = _cradle(directions[-2], origins[-2], below, up, radius, found)
-    floor, stands = below - 0.5 * radius * up, found[0]
+        below = _cradle(directions[-2], origins[-2], below, up, radius, solids_by_link)
+    floor, stands = below - 0.5 * radius * up, solids_by_link[0]
     side = np.eye(3)[int(np.argmin(np.abs(up)))]
     x = np.cross(side, up) / np.linalg.norm(np.cross(side, up))
     if carried < 2:
@@ -99,13 +110,13 @@ def _cradle(
     below: Array,
     up: Array,
     radius: float,
-    found: list[list[Solid]],
+    solids_by_link: list[list[Solid]],
 ) -> Array:
     """The cradle that turns about `direction` and its two bearings; the lowest point of what turns."""
     axis = origin + ((below - origin) @ direction) * direction
     across = np.cross(up, direction)
     reach = 1.22 * radius
-    cradle, stands = found[-2], found[0]
+    cradle, stands = solids_by_link[-2], solids_by_link[0]
     bottom = below - 0.14 * radius * up
     cradle.append(
         box(0.5 * (bottom + below), direction, across, (2.0 * reach, 1.1 * radius, 0.14 * radius))

@@ -57,29 +57,33 @@ class Timeline:
 
     @property
     def total(self) -> float:
-        """Time of all moves and waits, s."""
+        """Time of moves and waits, s."""
         return float(self.leave[-1]) if len(self.leave) else 0.0
 
     @property
     def waits(self) -> Array:
-        """(n,) s it stands at each row."""
+        """(n,) s of waiting at each row."""
         return np.asarray(self.leave - self.arrive)
 
-    def at(self, time: ArrayLike) -> State:
-        """The state at times (...,) s; before the start and after the end it is that of the first and of the last row."""
+    def state_at(self, time: ArrayLike) -> State:
+        """Return the state at times (...,) s; before the start and after the end the state of the first and
+        last row.
+        """
         motion, when = self.motion, np.clip(np.asarray(time, float), 0.0, self.total)
         row = np.minimum(np.searchsorted(self.leave, when, side="left"), len(self.leave) - 1)
-        before = np.maximum(row - 1, 0)
-        went = self.arrive[row] - self.leave[before]
+        previous = np.maximum(row - 1, 0)
+        went = self.arrive[row] - self.leave[previous]
         running = (when < self.arrive[row]) & (row > 0)
         share = np.where(
-            running, (when - self.leave[before]) / np.where(went > 0.0, went, 1.0), 1.0
+            running, (when - self.leave[previous]) / np.where(went > 0.0, went, 1.0), 1.0
         )
         start, end = (1.0 - share)[..., None], share[..., None]
         joints = np.where(
-            end < 1.0, start * motion.joints[before] + end * motion.joints[row], motion.joints[row]
+            end < 1.0,
+            start * motion.joints[previous] + end * motion.joints[row],
+            motion.joints[row],
         )
-        position = start * motion.position[before] + end * motion.position[row]
+        position = start * motion.position[previous] + end * motion.position[row]
         stayed_lit = (when - self.arrive[row] < self.lit[row]) & (self.lit[row] > 0.0)
         at_start = motion.deposit[row] & (motion.point[row] == 0)
         deposit = np.where(running, motion.deposit[row] & ~at_start, stayed_lit)
@@ -95,19 +99,25 @@ class Timeline:
 
 
 def timeline(motion: Motion, process: ProcessParameters, waits: Sequence[float] = ()) -> Timeline:
-    """The times of a motion, run as a program does: with lead times at the ends of beads and waits between layers.
+    """The times of a motion, run as a program does: with lead times at the ends of beads and waits
+    between layers.
 
-    waits: s to stand before each layer, by its number, none when left out; `between_layers.wait` counts towards them. The
-    time to the first row is not in it: nobody knows where the machine comes from. Waits for inputs have no length.
+    waits: s of waiting before each layer, by its number, none if left out; `between_layers.wait`
+    counts towards them. The time to the first row is not included: the start position of the machine
+    is unknown. Waits for inputs have no length.
     """
     n = len(motion)
     lit, dark = np.zeros(n), np.zeros(n)
     if n:
-        first = motion.deposit & (motion.point == 0)
-        last = motion.deposit & np.append(~motion.deposit[1:] | first[1:], True)
+        is_start = motion.deposit & (motion.point == 0)
+        is_end = motion.deposit & np.append(~motion.deposit[1:] | is_start[1:], True)
         of_class = [process.for_class(name) for name in (*CLASSES, "")]  # of none the last one
-        lit[first] += np.array([one.lead_on for one in of_class])[motion.bead_class[first]]
-        lit[last] += np.array([one.lead_off for one in of_class])[motion.bead_class[last]]
+        lit[is_start] += np.array([parameters.lead_on for parameters in of_class])[
+            motion.bead_class[is_start]
+        ]
+        lit[is_end] += np.array([parameters.lead_off for parameters in of_class])[
+            motion.bead_class[is_end]
+        ]
         dark = _between_layers(motion, process, waits)
     steps = np.nan_to_num(motion.duration)
     stay = lit + dark
@@ -117,7 +127,9 @@ def timeline(motion: Motion, process: ProcessParameters, waits: Sequence[float] 
 
 
 def _between_layers(motion: Motion, process: ProcessParameters, waits: Sequence[float]) -> Array:
-    """(n,) s to stand at each row for the layer that comes: withdrawn from the last bead where there is a withdrawal."""
+    """(n,) s of waiting at each row for the next layer: retracted from the last bead if there is a
+    retract.
+    """
     result = np.zeros(len(motion))
     starts = np.flatnonzero(np.diff(motion.layer)) + 1
     of_layer = (

@@ -35,10 +35,7 @@ class Totals:
 def totals(
     motion: Motion, times: Timeline, process: ProcessParameters, toolpath: Toolpath
 ) -> Totals:
-    """The totals of a motion.
-
-    The volume is that of `deposit.volumes`, the mass that by `process.density`.
-    """
+    """The totals of a motion: the volume by `deposit.volumes`, the mass by `process.density`."""
     length = np.concatenate([[0.0], np.linalg.norm(np.diff(motion.position, axis=0), axis=1)])[
         : len(motion)
     ]
@@ -59,7 +56,7 @@ def totals(
 
 
 def as_dict(sums: Totals) -> dict[str, float | None]:
-    """The totals as report.json tells them."""
+    """The totals in the form of report.json."""
     return {
         "time_s": sums.time,
         "deposit_s": sums.deposit_time,

@@ -20,7 +20,7 @@ from .achievable_feed import AchievableFeed
 from .arm import ArmTouches
 
 # nearer to a limit than this many degrees or mm counts as near
-CLOSE = 0.5
+NEAR_LIMIT_MARGIN = 0.5
 # programs keep 0.05 deg; what rounding leaves is not a violation, degrees or mm
 _ROUNDING = 1e-6
 
@@ -75,8 +75,8 @@ class Watch:
     def singular(self) -> Mask:
         """(n,) rows nearer to a singularity than is allowed."""
         with np.errstate(invalid="ignore"):
-            near: Mask = self.condition < self.threshold * (1.0 - 1e-9)
-        return near
+            is_singular: Mask = self.condition < self.threshold * (1.0 - 1e-9)
+        return is_singular
 
 
 def shown_margins(cell: Cell, joints: ArrayLike) -> Array:
@@ -95,83 +95,86 @@ def bad_links(
     reachable: bool,
     touching: int = NONE,
 ) -> Mask:
-    """(axes + 1,) links to be marked, base first: those whose axis is at or past a limit, near one, or asked to be faster
-    than it can be; those of a coupled limit; the one that is `touching` something; all that move where the machine is near a
-    singularity or does not reach.
+    """(axes + 1,) links to mark, base first: those whose axis is at, past or near a limit, or asked to
+    exceed its maximum speed; the links of a coupled limit; the link that is `touching` something; all
+    moving links if the machine is near a singularity or does not reach.
 
-    margins: (limits,) as of `shown_margins`. ratios: (axes,) shares of the largest speeds that are asked for.
+    margins: (limits,) as by `shown_margins`. ratios: (axes,) requested shares of the maximum speeds.
     """
     axes = len(cell.machine.axes)
     bad = np.zeros(axes + 1, dtype=bool)
-    close = np.asarray(margins, float) < CLOSE
+    close = np.asarray(margins, float) < NEAR_LIMIT_MARGIN
     bad[1:] = close[:axes] | (np.asarray(ratios, float) > 1.0 + _ROUNDING)
     for coefficients in cell.limits.coefficients[close[axes:]]:
         bad[1:] |= coefficients != 0.0
     bad[1:] |= singular or not reachable
-    if touching != NONE:  # what is carried, part or nozzle, counts as what carries it
-        own = cell.robot.chain.axes
-        if touching >= own + LINKS_MORE:
-            bad[own + 1 + cell.external_links[touching - own - LINKS_MORE].axis] = True
+    if touching != NONE:  # the load, part or nozzle, counts as its carrier
+        robot_axes = cell.robot.chain.axes
+        if touching >= robot_axes + LINKS_MORE:
+            bad[robot_axes + 1 + cell.external_links[touching - robot_axes - LINKS_MORE].axis] = (
+                True
+            )
         else:
-            on_positioner = touching == own + 1 and not cell.torch_stands
-            bad[touching if touching <= own else -1 if on_positioner else own] = True
+            on_positioner = touching == robot_axes + 1 and not cell.torch_stands
+            bad[touching if touching <= robot_axes else -1 if on_positioner else robot_axes] = True
     return bad
 
 
 def watch(
     motion: Motion,
     cell: Cell,
-    kept: AchievableFeed,
+    feed: AchievableFeed,
     condition: Array,
     threshold: Array,
     issues: Sequence[Issue] = (),
     arm: ArmTouches | None = None,
 ) -> Watch:
-    """What is to be seen in a motion; condition, threshold: (n,), NaN where not known. Notes are not findings. arm: what the
-    links touch, None where nobody has looked."""
+    """The findings of a motion; condition, threshold: (n,), NaN where not known. Notes are not findings.
+    arm: the contacts of the links, None if they were not checked.
+    """
     margins = shown_margins(cell, motion.joints)
     limit = np.argmin(np.where(np.isnan(margins), np.inf, margins), axis=1)
     margin = np.take_along_axis(margins, limit[:, None], axis=1)[:, 0]
     touching = np.full(len(motion), NONE, dtype=np.int64) if arm is None else arm.link
-    seen = Watch(margin, limit, condition, threshold, (), touching, arm is not None)
+    watched = Watch(margin, limit, condition, threshold, (), touching, arm is not None)
     with np.errstate(invalid="ignore"):
-        near = (margin < CLOSE) & ~seen.past
+        is_near = (margin < NEAR_LIMIT_MARGIN) & ~watched.past
     labels, axes = cell.limits.labels, cell.machine.axes
-    found = [
+    findings = [
         Finding(row, UNREACHABLE) for row, _ in _runs(~motion.reachable, np.zeros(len(motion)))
     ]
     for kind, mask in (
-        (LIMIT, seen.past),
-        (NEAR_LIMIT, near),
+        (LIMIT, watched.past),
+        (NEAR_LIMIT, is_near),
     ):  # where it is worst, as errors of the plan say
-        found += [
+        findings += [
             Finding(worst, kind, labels[limit[worst]], float(margin[worst]))
             for _, worst in _runs(mask, margin)
         ]
-    found += [
+    findings += [
         Finding(worst, SINGULAR, "", float(condition[worst]), float(threshold[worst]))
-        for _, worst in _runs(seen.singular, condition)
+        for _, worst in _runs(watched.singular, condition)
     ]
-    share = np.where(kept.slowed, kept.achieved / np.where(kept.asked > 0.0, kept.asked, 1.0), 1.0)
-    found += [
+    share = np.where(feed.slowed, feed.achieved / np.where(feed.asked > 0.0, feed.asked, 1.0), 1.0)
+    findings += [
         Finding(
             row,
             SLOWED,
-            axes[kept.axis[worst]],
-            float(kept.achieved[worst]),
-            float(kept.asked[worst]),
+            axes[feed.axis[worst]],
+            float(feed.achieved[worst]),
+            float(feed.asked[worst]),
         )
-        for row, worst in _runs(kept.slowed, share)
+        for row, worst in _runs(feed.slowed, share)
     ]
     if arm is not None:
-        found += _touching(arm)
-    found += [
+        findings += _touching(arm)
+    findings += [
         Finding(_row_of(motion, issue), ISSUE, issue.message)
         for issue in issues
         if issue.level != NOTE and issue.layer is not None
     ]
-    found.sort(key=lambda finding: finding.row)
-    return replace(seen, findings=tuple(found))
+    findings.sort(key=lambda finding: finding.row)
+    return replace(watched, findings=tuple(findings))
 
 
 def _touching(arm: ArmTouches) -> list[Finding]:
@@ -197,9 +200,9 @@ def _row_of(motion: Motion, issue: Issue) -> int:
     """The deposit row an issue is about, or the first row of its layer."""
     layer = issue.layer or 0
     low, high = np.searchsorted(motion.layer, [layer, layer + 1])
-    here = np.ones(high - low, dtype=bool)
+    matches = np.ones(high - low, dtype=bool)
     for column, index in ((motion.bead, issue.bead), (motion.point, issue.point)):
         if index is not None:
-            here &= (column[low:high] == index) & motion.deposit[low:high]
-    rows = np.flatnonzero(here)
+            matches &= (column[low:high] == index) & motion.deposit[low:high]
+    rows = np.flatnonzero(matches)
     return min(int(low + rows[0]) if len(rows) else int(low), len(motion) - 1)

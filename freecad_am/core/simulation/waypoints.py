@@ -18,22 +18,29 @@ _LENGTHS, _DIRECTIONS, _ANGLES = 6, 9, 7  # decimals
 _ROWS_AT_ONCE = 4000
 CLASS = "class"
 _KINDS = np.frombuffer(b"rapid\0\0deposit", dtype=np.uint8).reshape(2, -1)
-_WIDEST = max(map(len, CLASSES))
+_MAX_WIDTH = max(map(len, CLASSES))
 _CLASSES = np.array(
-    [list(name.encode().ljust(_WIDEST, b"\0")) for name in (*CLASSES, "")], dtype=np.uint8
+    [list(name.encode().ljust(_MAX_WIDTH, b"\0")) for name in (*CLASSES, "")], dtype=np.uint8
 )
 
 
 def text(motion: Motion, axes: tuple[str, ...] = (), units: tuple[str, ...] = ()) -> Iterator[str]:
-    """The file in pieces. `axes` names the columns of `motion.joints`, `units` are what they are written in: 'mm' where an
-    axis slides, 'deg' where it turns and where left out. Where the wire follows the travel speed, its own comes
-    next. The last column is the class of the bead, empty where it is not known."""
+    """Yield the file in pieces.
+
+    `axes` names the columns of `motion.joints`, `units` their units in the file: 'mm' for prismatic
+    axes, 'deg' for revolute ones and if left out. If the wire follows the travel speed, its speed is
+    the next column. The last column is the class of the bead, empty if not known.
+    """
     units = units or ("deg",) * len(axes)
     wire = has_wire(motion)
-    last = [WIRE, CLASS] if wire else [CLASS]
+    last_columns = [WIRE, CLASS] if wire else [CLASS]
     yield (
         ",".join(
-            (HEADER, *(f"{axis}_{unit}" for axis, unit in zip(axes, units, strict=True)), *last)
+            (
+                HEADER,
+                *(f"{axis}_{unit}" for axis, unit in zip(axes, units, strict=True)),
+                *last_columns,
+            )
         )
         + "\n"
     )
@@ -71,16 +78,19 @@ def _rows(motion: Motion, units: tuple[str, ...], wire: bool, rows: slice) -> st
     texts.append(_CLASSES[motion.bead_class[rows]].T)  # of none the last one
     ends = [*[b","] * (len(texts) - 1), b"\n"]
     return digits.joined(
-        [part for pair in zip(texts, ends, strict=True) for part in pair], len(motion.deposit[rows])
+        [column for pair in zip(texts, ends, strict=True) for column in pair],
+        len(motion.deposit[rows]),
     )
 
 
 def _cells(columns: Sequence[Array | Index], decimals: int) -> list[digits.Characters]:
-    """Characters (w, n) of columns (n,) of numbers with so many decimals, none of a NaN. No -0.000000."""
+    """Characters (w, n) of columns (n,) of numbers with `decimals` decimals, none for NaN. No
+    -0.000000.
+    """
     if not columns:
         return []
     values = np.concatenate(columns)
-    known = np.isfinite(values)
-    text = digits.plain(digits.whole(np.where(known, values, 0.0), decimals), decimals)
-    text[:, ~known] = 0
+    is_known = np.isfinite(values)
+    text = digits.plain(digits.whole(np.where(is_known, values, 0.0), decimals), decimals)
+    text[:, ~is_known] = 0
     return [*text.reshape(len(text), len(columns), -1).transpose(1, 0, 2)]

@@ -85,7 +85,7 @@ def maker_of(obj: Any) -> Callable[[], Source]:
         cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
         condition, threshold = (
             spread_to_deposit_rows(motion.deposit, column)
-            for column in planned.joint_path.judged(motion)
+            for column in planned.joint_path.conditions(motion)
         )
         if start is not None:
             rows = programs.rows_from(motion, start)

@@ -92,7 +92,7 @@ class Player:
         if self.finding is not None:
             index = (self.finding + 1) % len(findings)
         else:
-            now = int(self.run.times.at(self.time).row) if self.row is None else self.row
+            now = int(self.run.times.state_at(self.time).row) if self.row is None else self.row
             later = [number for number, finding in enumerate(findings) if finding.row >= now]
             index = later[0] if later else 0
         self.go_to_row(findings[index].row)
@@ -102,7 +102,7 @@ class Player:
     def moment(self) -> Moment:
         """What there is to tell now."""
         run = self.run
-        state = run.times.at(self.time)
+        state = run.times.state_at(self.time)
         row = int(state.row) if self.row is None else self.row
         motion, machine = run.motion, run.cell.machine
         before = slice(max(row - 1, 0), row + 1)

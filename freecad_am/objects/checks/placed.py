@@ -37,7 +37,7 @@ class Placing(NamedTuple):
     document: str
 
     def search_poses(self, parameters: PlaceParameters) -> Placed:
-        """The results for the poses of a box; reports to `progress`. Errors as `place.placed`."""
+        """The results for the poses of a box; reports to `progress`. Errors as `place.place_part`."""
         return place_part(self.job(), self.settings, parameters, progress.report)
 
 

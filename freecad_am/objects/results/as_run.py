@@ -43,7 +43,7 @@ def as_run(
     motion = planned.motion
     condition, threshold = (
         spread_to_deposit_rows(motion.deposit, column)
-        for column in planned.joint_path.judged(motion)
+        for column in planned.joint_path.conditions(motion)
     )
     if settings is None:
         return AsRun(motion, condition, threshold, issues)

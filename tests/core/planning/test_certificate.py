@@ -52,7 +52,7 @@ def shortest(task, path):
     points = gather([path.bead], task.cell)
     phi = np.arange(FINE) * 2.0 * np.pi / FINE
     joints = np.stack(
-        [task.raw_joints(points.each(np.full(FINE, i)), phi) for i in range(len(points))]
+        [task.raw_joints(points.select_points(np.full(FINE, i)), phi) for i in range(len(points))]
     )
     away = np.exp(1j * (joints - task.middle))
     reachable = np.isfinite(joints).all(axis=2) & (
@@ -277,13 +277,13 @@ def test_objectives_of_points_one_by_one(planned, objective):
     points = gather([path.bead], task.cell)
     phi = np.linspace(-np.pi, np.pi, 361)
     every = np.repeat(np.arange(len(points)), len(phi))
-    each = points.each(every)
+    each = points.select_points(every)
     turned = np.tile(phi, len(points))
     joints = task.in_range(task.raw_joints(each, turned), each)
     flange = each.frames.flange_poses(turned)
     good = np.isfinite(joints).all(axis=1)
     value, ratio = np.full(len(joints), np.inf), np.zeros(len(joints))
-    rows = points.each(every[good])
+    rows = points.select_points(every[good])
     value[good] = criteria.value(
         task, rows, joints[good], task.jacobian_at(rows.frames, turned[good], joints[good])
     )

@@ -175,7 +175,7 @@ def test_what_is_no_better_stays(hemisphere, both, monkeypatch):
     """Whatever the descent brings: turned by half, beads have less margin or none."""
     monkeypatch.setattr(
         optimised,
-        "_climbed",
+        "_optimise_in_stages",
         lambda freedom, path: (
             freedom,
             np.full((1 + freedom.external.axes) * freedom.shape.shape[1], 0.5),

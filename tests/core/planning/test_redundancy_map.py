@@ -563,7 +563,9 @@ def test_cells_beside_a_positioner_are_where_pykdl_finds_them(on_positioner, acr
     )
     whole, reached = KdlArm(cell.machine), 0
     for row, column in np.random.default_rng(3).integers(0, (25, len(at)), (60, 2)):
-        flange = at.points.each(np.array([column])).frames.flange_poses(found.phi[row, [column]])
+        flange = at.points.select_points(np.array([column])).frames.flange_poses(
+            found.phi[row, [column]]
+        )
         for branch, q in enumerate(
             spin_map.joints_at(task, at, int(column), float(found.phi[row, column]))
         ):
@@ -596,7 +598,7 @@ def test_cells_beside_a_positioner_are_where_pykdl_finds_them(on_positioner, acr
     shown = spin_map.picture(task, found, 0)
     there = np.argwhere(shown.reachable)
     for row, column in there[:: max(1, len(there) // 20)]:
-        part = at.points.each(np.array([column]))
+        part = at.points.select_points(np.array([column]))
         q = spin_map.joints_at(task, at, int(column), float(found.phi[row, column]))[0]
         assert shown.condition[row, column] == pytest.approx(
             float(task.condition(part, found.phi[row, [column]], q[None])[0]), abs=1e-9

@@ -16,7 +16,7 @@ from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning.external import remedies
-from freecad_am.core.preflight.payload import carried
+from freecad_am.core.preflight.payload import payload_promises
 from freecad_am.core.simulation import deposit, payload
 from tests.core.planned_dome import planned_dome
 
@@ -242,7 +242,9 @@ def test_payloads_that_are_none(positioner, load):
 
 def promised(toolpath, cell, process):
     motion = deposit.deposit_motion(toolpath)
-    return carried(motion, cell, toolpath, process, payload.issues(motion, cell, toolpath, process))
+    return payload_promises(
+        motion, cell, toolpath, process, payload.issues(motion, cell, toolpath, process)
+    )
 
 
 def test_the_preflight_tells_what_it_weighs_and_what_carries_it(toolpath, positioner):

@@ -57,10 +57,10 @@ def test_times_are_those_of_a_walk_through_the_program(a_motion, seed, rapids):
     assert line.total == pytest.approx(steps[-1][0], abs=1e-9)
     assert line.total == pytest.approx(motion.duration.sum() + 8 * 1.1 + 5.0 + 3.0 + 9.0)
     times, rows = np.array([step[0] for step in steps]), np.array([step[1] for step in steps])
-    state = line.at(times)
+    state = line.state_at(times)
     assert np.abs(state.position - motion.position[rows]).max() < 1e-9
     assert np.abs(state.joints - motion.joints[rows]).max() < 1e-9
-    just_before = line.at(times - 1e-9)
+    just_before = line.state_at(times - 1e-9)
     assert (just_before.deposit == np.array([step[2] for step in steps]))[1:].all()
 
 
@@ -70,14 +70,14 @@ def test_between_rows_all_runs_straight_and_at_the_speed_asked_for(a_motion):
     random = np.random.default_rng(5)
     rows = np.flatnonzero(motion.duration > 0.0)
     share = random.uniform(0.01, 0.99, len(rows))
-    state = line.at(line.arrive[rows] - (1.0 - share) * motion.duration[rows])
+    state = line.state_at(line.arrive[rows] - (1.0 - share) * motion.duration[rows])
     assert (state.row == rows).all() and np.abs(state.share - share).max() < 1e-9
     for name in ("joints", "position"):
         column = getattr(motion, name)
         wanted = column[rows - 1] + share[:, None] * (column[rows] - column[rows - 1])
         assert np.abs(getattr(state, name) - wanted).max() < 1e-9
     assert (state.deposit == motion.deposit[rows]).all() and not state.standing.any()
-    late = line.at(line.arrive[rows] - (1.0 - share - 1e-3) * motion.duration[rows])
+    late = line.state_at(line.arrive[rows] - (1.0 - share - 1e-3) * motion.duration[rows])
     gone = np.linalg.norm(late.position - state.position, axis=1) / (1e-3 * motion.duration[rows])
     assert np.allclose(gone, state.speed, rtol=1e-6)
 
@@ -86,7 +86,7 @@ def test_deposit_is_on_as_long_as_the_moves_of_beads_and_their_leads(a_motion):
     motion = a_motion(4)
     line = timeline(motion, PROCESS, [0.0, 5.0, 1.0, 9.0])
     when = np.linspace(0.0, line.total, 200_001)
-    share = line.at(when).deposit.mean()
+    share = line.state_at(when).deposit.mean()
     on = motion.duration[motion.deposit].sum() + 8 * (PROCESS.lead_on + PROCESS.lead_off)
     assert share * line.total == pytest.approx(on, abs=2e-3 * on)
 
@@ -97,12 +97,12 @@ def test_outside_it_stays_at_the_ends_and_unreachable_joints_are_told(a_motion):
     joints[10] = np.nan
     motion = dataclasses.replace(motion, joints=joints)
     line = timeline(motion, PROCESS)
-    first, last = line.at([-5.0, line.total + 5.0]).row
+    first, last = line.state_at([-5.0, line.total + 5.0]).row
     assert (first, last) == (0, len(motion) - 1)
-    assert np.isnan(line.at(line.arrive[10]).joints).all()
+    assert np.isnan(line.state_at(line.arrive[10]).joints).all()
     assert (
-        np.isfinite(line.at(line.arrive[9]).joints).all()
-        and np.isfinite(line.at(line.leave[12]).joints).all()
+        np.isfinite(line.state_at(line.arrive[9]).joints).all()
+        and np.isfinite(line.state_at(line.leave[12]).joints).all()
     )
 
 

@@ -31,19 +31,24 @@ from .refined import refined_clear
 FIRST_LOOK, TURNS = (
     4,
     72,
-)  # candidates of a bead looked at before there is a map, and rotations of that
-ENDS = 3  # points of a bead looked at before all of them: where no rotation serves one of these, none serves the bead
-POINTS_PER_BEAD = 24  # and turn, at which the links are looked at
+)  # candidates of a bead checked before a map is made, and the rotations of the map
+ENDS = 3  # points of a bead checked before the others: where no rotation serves one of these, none serves the bead
+POINTS_PER_BEAD = 24  # and turn, at which the links are checked
 SHARES = (0.75, 0.5, 0.25, 0.0)  # of the way from where the local search began to what it found
-TOUCHING = -1e-3  # margin of the candidate that is planned where none is clear, so that what is in its way can be named
+TOUCHING = (
+    -1e-3
+)  # margin of the candidate that is planned where none is clear, so that the obstacle can be named
 
 
 def exclude_touching(
     task: Task, arm_clearance: ArmKept, points: Points, bead_ids: Sequence[Place], candidates: Found
 ) -> Found:
-    """The candidates, without a margin where a link comes too near: of each bead the best ones are looked at themselves,
-    until one is clear; where the first few are not, all by a map of the rotations at which links come too near. Where none
-    is clear the one that was best has next to none."""
+    """Return the candidates, without a margin where a link comes too near.
+
+    The best candidates of each bead are checked directly, until one is clear; if the first few are
+    not, all are checked by a map of the rotations at which links come too near. Where none is clear
+    the best one keeps next to no margin.
+    """
     margin, bead_rows = candidates.margin.copy(), np.arange(points.beads)
     pending = np.ones(points.beads, dtype=bool)
     for attempt in range(3 * FIRST_LOOK):
@@ -206,7 +211,7 @@ def _stepped_back(
 
 
 def findings(arm_clearance: ArmKept, paths: Sequence[BeadPath]) -> list[Issue]:
-    """An error for each bead at whose points a link comes too near, with the link and what it comes near to."""
+    """An error for each bead at whose points a link comes too near, with the link and its obstacle."""
     issues = []
     for path in paths:
         sampled = np.unique(

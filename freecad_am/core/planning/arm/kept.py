@@ -84,7 +84,7 @@ def contact_of(
     width: float,
     height: float,
 ) -> ArmContact | None:
-    """The links against bodies and all beads; width, height: mm, of those that do not tell theirs."""
+    """Return the links against bodies and beads; width, height: mm, for beads without their own."""
     if cell.arm_clearance is None or not cylinders:
         return None
     deposited = Beads.of(beads, width, height).solid(LINK_GRAIN)

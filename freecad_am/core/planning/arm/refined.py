@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The local search of polynomials that keep the links clear: how far they are off, linear about what was looked at last,
-among its constraints.
+"""The local search of polynomials that keep the links clear: the clearances, linear about the last
+check, are among its constraints.
 
-To look costs many times what all else does, so that all beads are looked at together: at each look gaps and their changes
-with the polynomial are found at all points, the optimiser goes as far as these serve, and there is the next look.
+A check costs many times as much as the rest, so all beads are checked together: each check finds
+the gaps at all points and their change with the polynomial, the optimiser goes as far as these
+serve, and the next check follows.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ from ..task import Task
 from .kept import ArmKept, Place
 
 MAX_LINEARIZATIONS = 10
-GAP_RANGE_MM = 50.0  # mm; of what is farther off than it has to be nothing is told
-EXTRA_GAP_MM = 0.01  # mm that are kept besides, so that what is found is clear
+GAP_RANGE_MM = 50.0  # mm; pairs with more than this extra clearance are no constraint
+EXTRA_GAP_MM = 0.01  # mm of extra clearance, so that the result is clear
 REACH = 0.3  # rad that a polynomial may change by from the first look to the second
 UNCHANGED = 1e-4  # rad, and share of the objective, less than which is no change
 STOPPED = "the way to what is better comes too near"

@@ -32,7 +32,7 @@ INTERPOLATION = np.array(
     ]
 )
 ROUNDS = 8
-POINTS_PER_BATCH = 4096  # points of beads that are looked at together, about
+POINTS_PER_BATCH = 4096  # approximate number of points of beads that are checked together
 # rounding room: beads of revolution use their chord error up by themselves, mm
 ROUNDING = 1e-6
 
@@ -103,7 +103,7 @@ def _deviation(
     """(k,) the same of the segments (k,) that begin at those of the points (n, 3) with their joints (n, axes)."""
     distances = _looked_at(task, points, joints, segments, INNER_SHARES)
     deviation: Array = np.maximum.reduce(distances)
-    # nearly all leave it evenly, most in the middle: between what was seen it is no more
+    # nearly all leave it evenly, most in the middle, so samples do not miss the maximum
     doubtful = np.flatnonzero(
         (deviation > 0.5 * chord_error) & (np.maximum.reduce(INTERPOLATION @ distances) > deviation)
     )

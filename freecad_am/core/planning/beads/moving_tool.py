@@ -25,11 +25,11 @@ from ..turns import configurations as following
 def refined_to_chord_error(
     motion: Motion, cell: Cell, chord_error: float, beads: Sequence[Bead]
 ) -> Motion:
-    """The motion with as many points added to its beads as it takes to stay within the chord error (mm) of them.
+    """Return the motion with points added to its beads until it keeps the chord error (mm).
 
-    beads: all those of the motion, in its order. For the part on the robot. Added points lie on the curves of the beads,
-    evenly in length and in rotation; the points of a bead are numbered anew. Segments without joint values at their ends
-    stay as they are.
+    beads: the beads of the motion, in order. For the part on the robot. Added points are on the
+    curves of the beads, evenly in length and in rotation; the points of a bead get new numbers.
+    Segments without joint values at their ends stay unchanged.
     """
     counts = _piece_counts(motion, cell, chord_error)
     row = np.repeat(np.arange(len(motion)), counts)

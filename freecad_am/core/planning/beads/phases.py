@@ -98,8 +98,9 @@ def _borders(stretches: Sequence[Stretch], along: Array) -> Array:
 
 
 def _stretches(bead: Bead, length: float) -> list[Stretch]:
-    """What of a bead is at another speed. Steps of ramps are of no phase: what is told at the ends of a bead beside their
-    speed is not told there."""
+    """Return the stretches of a bead with another speed. Steps of ramps have no phase: the other
+    settings of bead ends do not apply there.
+    """
     start_length, slow, end_length, late = bead.ends[:4]
     up, down = bead.ends[4:] or (0.0, 0.0)
     rising, falling = ramp(up, slow, float(bead.speed[1])), ramp(down, float(bead.speed[-1]), late)
@@ -150,7 +151,7 @@ def _shares(cell: Cell, path: BeadPath, segment: Index, lengths_in: Array) -> Ar
 def _insert_points(
     cell: Cell, path: BeadPath, along: Array, borders: Array, condition_at: Condition
 ) -> BeadPath:
-    """The path with points at `borders` (k,) mm along it, rising, none of which is one of its own."""
+    """Return the path with points at `borders` (k,) mm along it, rising, none of which exists yet."""
     segment = np.searchsorted(along, borders) - 1
     share = _shares(cell, path, segment, borders - along[segment])
     insert_rows = segment + 1

@@ -35,7 +35,9 @@ class _Way(NamedTuple):
 
 
 def gone_back(bead: Bead, length: float) -> Bead:
-    """An open bead whose last `length` mm are laid once more, backwards, at most all of it; a closed one as it is."""
+    """Return an open bead whose last `length` mm are printed once more, backwards, at most the full
+    length; a closed bead unchanged.
+    """
     if length <= 0.0 or bead.closed:
         return bead
     retreat = _way(bead, length)
@@ -86,7 +88,7 @@ def go_back(task: Task, path: BeadPath, length: float) -> BeadPath:
 
 
 def turns_back(bead: Bead) -> Array:
-    """(n,) 1 at the points at which a bead turns back on itself, where a machine has to stop to be there at all; else 0."""
+    """Return 1 (n,) at the points where a bead reverses, at which a machine has to stop; else 0."""
     if bead.tangents is None:
         return np.zeros(len(bead))
     return (dots(bead.tangents[:, 0], bead.tangents[:, 1]) < BACK).astype(float)

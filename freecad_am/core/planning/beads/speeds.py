@@ -18,9 +18,9 @@ from ...types import Array, Mask
 from ..joint_path import BeadPath
 
 SLOWED = "SLOWED"
-JUST = 1.0 - 1e-9  # of what an axis can do
+JUST = 1.0 - 1e-9  # share of the maximum speed of an axis
 PILE = 1.0  # of the bead's width: so much too much may lie where the deposit is slowed
-DEFAULT_WIDTH_RATIO = 2.0  # a bead's width in layer heights where no model tells it
+DEFAULT_WIDTH_RATIO = 2.0  # a bead's width in layer heights without a model
 
 
 def rings_slowed(
@@ -75,11 +75,12 @@ class _Place(NamedTuple):
 def corners_slowed(
     cell: Cell, paths: Sequence[BeadPath], layer_height: float, law: SpeedLaw | None
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """The paths of beads on hubs with short places at the speed the axes allow, and a warning that says so.
+    """Return the paths of beads on hubs with short stretches at the speed the axes allow, and a warning.
 
-    At corners and near poles any five-axis controller slows down, and so does a robot. What is deposited meanwhile piles up:
-    a place is short where that is no more than PILE of the bead's width. Longer ones are left as they are. law: what the
-    bead's width, height and speed follow, None where no model says.
+    At corners and near poles any five-axis controller slows down, and so does a robot. The deposit
+    then piles up: a stretch is short if the pile is at most PILE of the bead's width. Longer ones
+    are left unchanged. law: how the bead's width, height and speed depend on each other, None without
+    a model.
     """
     result: list[BeadPath] = []
     slow_sections: list[_Place] = []
@@ -115,7 +116,7 @@ def corners_slowed(
 def _slowed(
     path: BeadPath, ratio: Array, layer_height: float, law: SpeedLaw | None
 ) -> tuple[BeadPath, list[_Place]]:
-    """A path whose axes would turn at `ratio` (n - 1,) of what they can, and where it is slowed."""
+    """A path whose axes would turn at `ratio` (n - 1,) of their maximum speed, and its slowed positions."""
     bead = path.bead
     length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
     middle = np.cumsum(length) - 0.5 * length

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Points of beads that come sooner after one another than a controller steps: left out where the bead hardly needs them.
+"""Points of beads that follow sooner than a controller steps: removed where the bead hardly needs
+them.
 
-Where walls are thin, small, or laid fast, corners and ends have points some hundredths of a millimetre apart. What is left
-out lies within a share of the chord error of the way that stays; where it does not, the move is given the time of a step.
+Where walls are thin, small, or printed fast, corners and ends have points some hundredths of a
+millimetre apart. Removed points are within a share of the chord error of the remaining path;
+where they would not be, the move gets the time of a step.
 """
 
 from __future__ import annotations
@@ -23,7 +25,9 @@ REACH = 2000.0  # mm; so far off an axis, at most, is what it turns
 def programmed(
     motion: Motion, controller: Controller, chord_error: float, blend: float
 ) -> tuple[Motion, Index]:
-    """The motion that programs of a controller tell, and which rows (m,) of all these are. blend: percent."""
+    """Return the motion for programs of a controller, and its rows (m,) in the given motion. blend:
+    percent.
+    """
     step, blended = controller.least_step, controller.least_blend
     if not step:
         return motion, np.arange(len(motion))
@@ -35,7 +39,7 @@ def programmed(
     }
     inside = columns["deposit"] & (columns["point"] > 0)
     duration = np.diff(np.cumsum(motion.duration)[rows], prepend=0.0)
-    # the time of what was left out goes to the move that takes its place
+    # the time of removed rows goes to the move that replaces them
     joined = inside & (np.diff(rows, prepend=-1) > 1)
     columns["duration"] = np.where(joined, duration, columns["duration"])
     slow = inside & (columns["duration"] < step)
@@ -50,7 +54,9 @@ def programmed(
 
 
 def _select_rows(motion: Motion, seconds: float, min_distance: float, chord_error: float) -> Mask:
-    """(n,) the rows that stay: ends of beads, rapids, and what comes `seconds` and `min_distance` mm after the one before."""
+    """Return which rows (n,) stay: ends of beads, rapids, and rows `seconds` and `min_distance` mm after
+    the previous one.
+    """
     step_lengths = np.linalg.norm(
         np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1
     )
@@ -77,9 +83,11 @@ def _select_rows(motion: Motion, seconds: float, min_distance: float, chord_erro
 
 
 def _remove_returns(motion: Motion, keep: Mask, min_distance: float, off: float) -> Mask:
-    """The rows that stay, without those that come back to within `min_distance` mm of the one before, as where a bead turns round in
-    less than a blend: the way between two points counts there, not the way along the bead. All rows left out lie within
-    `off` mm of the way between those that stay; where that cannot be, the row stays."""
+    """Return the rows that stay, without those that come back to within `min_distance` mm of the previous
+    one, as where a bead turns round in less than a blend: there the distance between two points
+    counts, not the length along the bead. Removed rows are within `off` mm of the straight path
+    between the remaining ones; otherwise the row stays.
+    """
     keep, checked = keep.copy(), np.zeros(len(keep), dtype=bool)
     inside = motion.deposit & (motion.point > 0) & motion.reachable
     last_points = inside & np.append(~inside[1:], True)
@@ -119,8 +127,9 @@ def _sparse(clock: Array) -> Mask:
 
 
 def _add_needed(motion: Motion, keep: Mask, off: float) -> Mask:
-    """The rows that stay, and of the others as few as it takes that all lie within `off` mm of the way between these, and
-    that axes do not turn so far that they would leave it in between."""
+    """Return the rows that stay and as few of the others as needed so that removed rows are within `off`
+    mm of the path between these, and axes do not turn so far that they would leave it in between.
+    """
     keep = keep.copy()
     while True:
         gone = np.flatnonzero(~keep)
@@ -138,8 +147,9 @@ def _add_needed(motion: Motion, keep: Mask, off: float) -> Mask:
 
 
 def _off_way(motion: Motion, start: Index, end: Index, gone: Index) -> Array:
-    """How far (k,) mm rows left out lie off the straight way between two rows, or as far as axes that turn between these would
-    leave it."""
+    """Return the distance (k,) mm of removed rows from the straight path between two rows, or the
+    distance by which axes that turn between these would leave it.
+    """
     chord = motion.position[end] - motion.position[start]
     offset = motion.position[gone] - motion.position[start]
     share = np.einsum("nk,nk->n", offset, chord) / np.maximum(

@@ -174,7 +174,7 @@ def _best_known(task: Task, points: Points, path: BeadPath) -> float:
     """What the best course of the rotation takes that is found from that of the path."""
     groups = _grouped(steps(path.joints, points), task.weights)
     group_points, scale, threshold = (
-        points.each(groups),
+        points.select_points(groups),
         task.weights / np.diff(groups)[:, None],
         path.threshold[groups],
     )

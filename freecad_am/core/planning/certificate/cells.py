@@ -37,7 +37,7 @@ def possible(
         index, phi, half
     )  # where the end of the cell before is not the beginning of this one
     sampled = np.concatenate([phi[begins] - half[begins], phi, phi + half])
-    sampled_points = points.each(np.concatenate([index[begins], index, index]))
+    sampled_points = points.select_points(np.concatenate([index[begins], index, index]))
     joints, begin_count = task.raw_joints(sampled_points, sampled), int(begins.sum())
     rows = begin_count + np.arange(2 * count).reshape(2, count)
     rows = np.stack([np.where(begins, np.cumsum(begins) - 1, rows[1] - 1), *rows])

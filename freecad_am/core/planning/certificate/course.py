@@ -110,9 +110,9 @@ def best(
     return best_phi, best_value
 
 
-def _newton(moved: Array, slope: Array, scale: Array, joined: bool, held: Mask) -> Array:
+def _newton(moved: Array, slope: Array, scale: Array, joined: bool, is_fixed: Mask) -> Array:
     """The step (n,) of Gauss and Newton for squared steps moved (n - 1, axes) with d q / d phi (n, axes); 0 at points that
-    are `held` (n,)."""
+    are `is_fixed` (n,)."""
     from scipy.linalg import solveh_banded  # slow to import, and few jobs ask for a certificate
 
     bands = np.zeros((2, len(slope)))
@@ -123,8 +123,8 @@ def _newton(moved: Array, slope: Array, scale: Array, joined: bool, held: Mask) 
     rate = np.zeros(len(slope))
     rate[:-1] -= (moved * slope[:-1] * scale).sum(axis=1)
     rate[1:] += (moved * slope[1:] * scale).sum(axis=1)
-    bands[1, held] = HOLD_STIFFNESS * bands[1].max()
-    rate[held] = 0.0
+    bands[1, is_fixed] = HOLD_STIFFNESS * bands[1].max()
+    rate[is_fixed] = 0.0
     sides = rate[:, None]
     if joined:  # what holds both ends together is a multiplier
         together = np.zeros(len(slope))
@@ -136,8 +136,8 @@ def _newton(moved: Array, slope: Array, scale: Array, joined: bool, held: Mask) 
         solved = sides / bands[1][:, None]
     step = -solved[:, 0]
     if joined:
-        held = solved[0, 1] - solved[-1, 1]
-        step -= (step[0] - step[-1]) / held * solved[:, 1]
+        is_fixed = solved[0, 1] - solved[-1, 1]
+        step -= (step[0] - step[-1]) / is_fixed * solved[:, 1]
     return np.asarray(step, dtype=np.float64)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Points of a bead, each with so many rotations about the tool axis over a turn: the joints there."""
+"""Points of a bead, each with N rotations about the tool axis over a turn: the joints there."""
 
 from __future__ import annotations
 
@@ -46,52 +46,54 @@ class Lattice:
         return ends
 
     @cached_property
-    def whole(self) -> Mask:
-        """(m, N) possible cells both ends of which are within reach."""
+    def closed_cells(self) -> Mask:
+        """Possible cells (m, N) with both ends within reach."""
         return np.asarray(self.possible & self.passable & np.roll(self.passable, -1, axis=1))
 
     @cached_property
     def ragged(self) -> Mask:
         """(m, N) rotations beside which a possible cell has its other end out of reach."""
-        torn = self.possible & ~self.whole
+        torn = self.possible & ~self.closed_cells
         return np.asarray(self.passable & (torn | np.roll(torn, 1, axis=1)))
 
     @cached_property
     def about(self) -> tuple[Array, Array]:
         """Where cells about each rotation are whole, (m, N) each, in steps: from -0.5 to 0.5, further where the next
         rotation has none beyond it."""
-        right, left = self.whole, np.roll(self.whole, 1, axis=1)
-        low = np.where(left, np.where(np.roll(left, 1, axis=1), -0.5, -1.0), 0.0)
-        return low, np.where(right, np.where(np.roll(right, -1, axis=1), 0.5, 1.0), 0.0)
+        right_closed, left_closed = self.closed_cells, np.roll(self.closed_cells, 1, axis=1)
+        low = np.where(left_closed, np.where(np.roll(left_closed, 1, axis=1), -0.5, -1.0), 0.0)
+        return low, np.where(
+            right_closed, np.where(np.roll(right_closed, -1, axis=1), 0.5, 1.0), 0.0
+        )
 
     @cached_property
     def shift(self) -> Index:
         """(m, N) by how many rotations the middle of five in a row, about whole cells, is off that rotation; NO_FIVE where
         there are no five."""
-        right, left = (np.zeros(self.possible.shape, dtype=np.int64) for _ in range(2))
+        right_count, left_count = (np.zeros(self.possible.shape, dtype=np.int64) for _ in range(2))
         to_right, to_left = np.ones_like(self.possible), np.ones_like(self.possible)
         for by in range(4):
-            to_right = to_right & np.roll(self.whole, -by, axis=1)
-            to_left = to_left & np.roll(self.whole, by + 1, axis=1)
-            right += to_right
-            left += to_left
-        lowest, highest = 2 - left, right - 2
+            to_right = to_right & np.roll(self.closed_cells, -by, axis=1)
+            to_left = to_left & np.roll(self.closed_cells, by + 1, axis=1)
+            right_count += to_right
+            left_count += to_left
+        lowest, highest = 2 - left_count, right_count - 2
         return np.where(lowest <= highest, np.clip(0, lowest, np.maximum(lowest, highest)), NO_FIVE)
 
     @cached_property
     def rate(self) -> Array:
-        """(m,) the root of what going from a rotation to the next one takes of eq. 17, the largest of each point."""
-        moved = self.moved(self.joints, np.roll(self.joints, -1, axis=1))
+        """(m,) the root of the cost by eq. 17 from a rotation to the next one, the largest of each point."""
+        moved = self.joint_steps(self.joints, np.roll(self.joints, -1, axis=1))
         return np.asarray(np.nan_to_num(np.sqrt((moved * moved) @ self.weights)).max(axis=1))
 
-    def moved(self, start: Array, end: Array) -> Array:
+    def joint_steps(self, start: Array, end: Array) -> Array:
         """(..., axes) the short ways between joints."""
         difference = end - start
         return np.where(self.turning, shortest(difference), difference)
 
     @property
     def first(self) -> Lattice:
-        """The first point alone."""
+        """The lattice of only the first point."""
         return Lattice(self.joints[:1], self.possible[:1], self.weights, self.turning)
 
     @property
@@ -117,7 +119,7 @@ def lattice(task: Task, points: Points, rows: Index, threshold: Array, count: in
     """The lattice of points `rows` (m,) with `count` rotations; threshold (m,) is the smallest condition allowed there."""
     ends = _rotations(task, points, rows, count)
     joints = task.raw_joints(
-        points.each(np.repeat(rows, count)), np.tile(ends[:-1], len(rows))
+        points.select_points(np.repeat(rows, count)), np.tile(ends[:-1], len(rows))
     ).reshape(len(rows), count, -1)
     return Lattice(
         joints,
@@ -132,7 +134,7 @@ def _rotations(task: Task, points: Points, rows: Index, count: int) -> Array:
     at one of the points."""
     phi = -np.pi + TURN / RATE_SAMPLES * np.arange(RATE_SAMPLES)
     joints = task.raw_joints(
-        points.each(np.repeat(rows, len(phi))), np.tile(phi, len(rows))
+        points.select_points(np.repeat(rows, len(phi))), np.tile(phi, len(rows))
     ).reshape(len(rows), len(phi), -1)
     moved = np.nan_to_num(shortest(np.roll(joints, -1, axis=1) - joints))
     rate = np.sqrt(((moved * moved) @ task.weights).max(axis=0))

@@ -315,11 +315,11 @@ def _near(column: Index, start: Array, next_lattice: Lattice, j: int, value: Arr
     five %= count
     middle = joints[column]
     to_five = (
-        next_lattice.moved(middle[:, None], joints[five])
-        + next_lattice.moved(start, middle)[:, None]
+        next_lattice.joint_steps(middle[:, None], joints[five])
+        + next_lattice.joint_steps(start, middle)[:, None]
     )
     ahead_ = np.where((shift == NO_FIVE)[:, None], np.nan, value[five])
-    whole_cells = next_lattice.whole[j]
+    whole_cells = next_lattice.closed_cells[j]
     with np.errstate(invalid="ignore"):
         return _Near(
             np.einsum("pk,nka->pna", POWERS, to_five),

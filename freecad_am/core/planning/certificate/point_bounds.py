@@ -51,7 +51,7 @@ def point_bound(task: Task, points: Points, threshold: Array) -> float:
 
 def _values(task: Task, points: Points, index: Index, phi: Array) -> Array:
     """(n,) what the objective says of rotations phi (n,) at chosen points; NaN out of reach."""
-    name, selected = task.parameters.objective, points.each(index)
+    name, selected = task.parameters.objective, points.select_points(index)
     joints = task.raw_joints(selected, phi)
     if name not in ("manipulability", "condition"):
         centred = joints - task.middle

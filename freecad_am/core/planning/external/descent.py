@@ -12,7 +12,7 @@ from ...types import Array, Index
 from .freedom import Bound, Freedom
 
 ROUNDS = 4  # each with the constraints added that the one before came close to
-ACTIVE = 0.1  # rows with so much more margin than asked for are not told to the optimiser at first
+ACTIVE = 0.1  # rows with this much more margin than requested are at first no constraint of the optimiser
 ITERATIONS, TOLERANCE = 80, 1e-7
 # Largest changes of a variable in further attempts, after one without bounds ended outside its constraints. SLSQP may
 # step across a singularity, from which it does not return; whether it does depends on the last bits of the processor.
@@ -22,13 +22,13 @@ UNREACHABLE_OBJECTIVE = 1e3  # the objective out of reach, in those of the start
 
 
 class Seen:
-    """What holds at changes that were looked at last, so that value and slope cost one look."""
+    """The bound at the last changes, so that value and slope cost one evaluation."""
 
     def __init__(self, freedom: Freedom) -> None:
         self.freedom, self.key = freedom, b""
         self.found: Bound | None = None
 
-    def at(self, x: Array) -> Bound | None:
+    def bound_at(self, x: Array) -> Bound | None:
         """What holds with changes x (v,)."""
         if x.tobytes() != self.key:
             self.key, self.found = x.tobytes(), self.freedom.look(x)
@@ -38,11 +38,11 @@ class Seen:
 def least_objective(freedom: Freedom, start: Array, margin: float) -> tuple[Array, int]:
     """The changes (v,) with the least objective of all with a margin, and after how many iterations."""
     cache = Seen(freedom)
-    initial = cache.at(start)
+    initial = cache.bound_at(start)
     scale = 1.0 if initial is None else max(initial.objective, 1e-12)
 
     def value(z: Array) -> tuple[float, Array]:
-        state = cache.at(z)
+        state = cache.bound_at(z)
         return (
             (UNREACHABLE_OBJECTIVE, np.zeros(len(z)))
             if state is None
@@ -63,7 +63,7 @@ def largest_margin(
     """The changes (v,) with the largest margin, `enough` at most, of all with no more than an objective, and after how many
     iterations."""
     cache, v = Seen(freedom), len(start)
-    initial = cache.at(start)
+    initial = cache.bound_at(start)
     if initial is None or initial.margins.min() >= enough:
         return start, 0
     scale = max(objective, 1e-12)
@@ -99,12 +99,12 @@ def _solved(
     value: Callable[[Array], tuple[float, Array]],
     constraint_values: Callable[[Bound, Array], tuple[Array, Array]],
 ) -> tuple[Array, int]:
-    """The best z that SLSQP finds; run again where it came upon constraints that it had not been told of."""
+    """The best z that SLSQP finds; run again if it violates constraints that it was not given."""
     from scipy.optimize import minimize  # slow to import, and most jobs never need it
 
     v, count, rows = len(start), 0, np.zeros(0, dtype=np.int64)
     for _ in range(ROUNDS):
-        current = cache.at(z[:v])
+        current = cache.bound_at(z[:v])
         if current is None:
             break
         previous_count, values = len(rows), constraint_values(current, z)[0]
@@ -116,7 +116,7 @@ def _solved(
         reported = rows
 
         def constraints(z: Array, reported: Index = reported) -> tuple[Array, Array]:
-            state = cache.at(z[:v])
+            state = cache.bound_at(z[:v])
             if state is None:
                 return np.full(len(reported), -1.0), np.zeros((len(reported), len(z)))
             values, slopes = constraint_values(state, z)
@@ -145,7 +145,7 @@ def _solved(
                 -VIOLATION, constraints(z)[0].min(initial=0.0)
             ):
                 break
-        if cache.at(result.x[:v]) is None:
+        if cache.bound_at(result.x[:v]) is None:
             break
         z = result.x
     return z, count

@@ -204,7 +204,7 @@ def _upright_enough(
     assert external is not None
     for _ in range(TRIES):
         freedom = _freedom(task, shifted, coefficients, directions, allowed - spare)
-        candidate = _evaluate_path(task, shifted, *_climbed(freedom, path))
+        candidate = _evaluate_path(task, shifted, *_optimise_in_stages(freedom, path))
         assert candidate.bead.external is not None
         leans = tilt_from(
             external.upright(directions(candidate.bead.tool), candidate.bead.external), external.up
@@ -262,7 +262,7 @@ def _evaluate_path(
     return result
 
 
-def _climbed(freedom: Freedom, path: BeadPath) -> tuple[Freedom, Array, int]:
+def _optimise_in_stages(freedom: Freedom, path: BeadPath) -> tuple[Freedom, Array, int]:
     """Least objective with no less margin than the path, then the largest margin that gives back little of the gain."""
     x = np.zeros((1 + freedom.external.axes) * freedom.shape.shape[1])
     state = freedom.look(x)

@@ -49,7 +49,7 @@ def asked(parameters: JointParameters, cell: Cell) -> tuple[bool, list[Issue]]:
     return True, []
 
 
-def bettered(
+def choose_better(
     task: Task,
     level: Found,
     planned: Sequence[BeadPath],

@@ -47,7 +47,7 @@ def find_room(
     if moved is not None:
         return [moved]
     for _ in range(ROUNDS):
-        solutions = _Ways.along(cell, bead, max_lean)
+        solutions = _Ways.of_bead(cell, bead, max_lean)
         if cuts := _cuts(solutions.reach, 0, solutions.last(0, overlap)):
             return _split_bead(solutions, cuts, previous, overlap)
         if not solutions.fits.any(axis=0).all():
@@ -62,7 +62,7 @@ def _begun_elsewhere(
 ) -> Bead | None:
     """A closed bead from a seam that leaves room for all of it."""
     for _ in range(ROUNDS):
-        solutions, count = _Ways.along(cell, bead, max_lean), len(bead) - 1
+        solutions, count = _Ways.of_bead(cell, bead, max_lean), len(bead) - 1
         for start, values in solutions.seams(count, previous):
             moved = _set_external(bead.started_at(start), values, previous, solutions.rows)
             if runs_on(cell, moved, max_lean, overlap):
@@ -85,7 +85,7 @@ def _split_bead(
     extended = (bead.started_at(cuts[0]) if cuts[0] else bead).run_on(overlap)
     sections = list[Bead]()
     for low, high in itertools.pairwise(cuts):
-        values = solutions.taken(low, high, previous)
+        values = solutions.choose_values(low, high, previous)
         section = extended.part(slice(low - cuts[0], high + 1 - cuts[0]))
         if high == cuts[-1] and overlap > 0.0:
             values[-1] = values[-2] + _share(bead, high, section) * (values[-1] - values[-2])
@@ -140,21 +140,21 @@ def waiting(cell: Cell, values: Array, beginning: Array) -> Array:
 @dataclasses.dataclass(frozen=True)
 class _Ways:
     """Ways to turn directions (n, 3) of a bead upright, three times round a closed one, whole turns told apart, held within
-    the limits. values: (ways, n, k) of the turning axes, `rows` of all. held: (ways, n) rad by which they are kept from
-    where they would go. fits: (ways, n) whether the tool then leans no more than it may, `most`."""
+    the limits. values: (ways, n, k) of the turning axes, `rows` of all. clamped: (ways, n) rad by which they are kept from
+    where they would go. fits: (ways, n) whether the tool then leans no more than it may, `max_lean`."""
 
     cell: Cell
     bead: Bead
     external: ExternalAxes
     directions: Array
-    most: float
+    max_lean: float
     rows: Index
     values: Array
-    held: Array
+    clamped: Array
     fits: Mask
 
     @classmethod
-    def along(cls, cell: Cell, bead: Bead, max_lean: float) -> _Ways:
+    def of_bead(cls, cell: Cell, bead: Bead, max_lean: float) -> _Ways:
         external, (rows, lower, upper) = cell.external, limits_of(cell)
         assert external is not None
         directions = directions_on_face(cell, bead.tool)
@@ -227,33 +227,33 @@ class _Ways:
         """Points of a closed bead of so many segments from which a way has room all round, with its values (count + 1, k):
         those first that hold an axis back least, then the nearest to the seam, then to where the axes are."""
         course, start = np.nonzero(self.furthest[:, :count] >= np.arange(count) + count)
-        so_far = np.cumsum(np.pad(self.held, ((0, 0), (1, 0))), axis=1)
+        so_far = np.cumsum(np.pad(self.clamped, ((0, 0), (1, 0))), axis=1)
         clamped = np.round(so_far[course, start + count + 1] - so_far[course, start], 6)
-        distances = self._away(self.values[course, start], previous)
+        distances = self._travel_time(self.values[course, start], previous)
         for k in np.lexsort((distances, np.minimum(start, count - start), clamped)):
             yield int(start[k]), self.values[course[k], start[k] : start[k] + count + 1]
 
-    def taken(self, low: int, high: int, previous: Array) -> Array:
+    def choose_values(self, low: int, high: int, previous: Array) -> Array:
         """Values (n, k) from one point to another: one and the same where that serves, else of the ways that have room the
         one that holds the axes back least, then moves least, then starts nearest to where they are."""
         directions = self.directions[low : high + 1]
         mean_direction = middle(directions)
         if (
             mean_direction is not None
-            and float(tilt_from(directions, mean_direction).max()) <= self.most
+            and float(tilt_from(directions, mean_direction).max()) <= self.max_lean
         ):
             standing = chosen(self.cell, upright(self.external, mean_direction[None]), previous)
             if not lacks(self.cell, standing):
                 return np.asarray(np.tile(standing[:, self.rows], (len(directions), 1)))
         able = np.flatnonzero(self.furthest[:, low] >= high)
         values = self.values[able, low : high + 1]
-        clamped = np.round(self.held[able, low : high + 1].sum(axis=1), 6)
+        clamped = np.round(self.clamped[able, low : high + 1].sum(axis=1), 6)
         motion = np.round(np.abs(np.diff(values, axis=1)).sum(axis=(1, 2)), 6)
         return np.asarray(
-            values[np.lexsort((self._away(values[:, 0], previous), motion, clamped))[0]]
+            values[np.lexsort((self._travel_time(values[:, 0], previous), motion, clamped))[0]]
         )
 
-    def _away(self, values: Array, previous: Array) -> Array:
+    def _travel_time(self, values: Array, previous: Array) -> Array:
         """(m,) s from where the axes are to values (m, k), told to the microsecond."""
         speed = self.cell.machine.max_speed[self.cell.robot.chain.axes + self.rows]
         return np.asarray(np.round((np.abs(values - previous[self.rows]) / speed).max(axis=1), 6))

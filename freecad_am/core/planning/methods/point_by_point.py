@@ -45,7 +45,7 @@ def plan(
     joints = np.full((len(points), len(task.weights)), np.nan)
     for number in range(counts.max()):
         index = points.first[counts > number] + number
-        current = points.each(index)
+        current = points.select_points(index)
         if number == 0:
             phi[index], joints[index] = _searched(
                 task, current, threshold[index], deposited[points.bead[index]], None
@@ -74,7 +74,7 @@ def _step(
         good = np.isfinite(joints).all(axis=1)
         if not good.any():
             break
-        reachable = points.each(np.flatnonzero(good))
+        reachable = points.select_points(np.flatnonzero(good))
         rates, _ = task.rotation_rates(reachable.frames, phi[good], joints[good])
         motion = joints[good] - previous[good]
         curvature = (rates * rates) @ task.weights
@@ -87,7 +87,11 @@ def _step(
         bad |= task.kept.contact.touches(joints, deposited).any
     if bad.any():
         phi[bad], joints[bad] = _searched(
-            task, points.each(np.flatnonzero(bad)), threshold[bad], deposited[bad], previous[bad]
+            task,
+            points.select_points(np.flatnonzero(bad)),
+            threshold[bad],
+            deposited[bad],
+            previous[bad],
         )
     return phi, joints
 

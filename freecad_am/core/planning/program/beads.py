@@ -55,7 +55,7 @@ def deposited(
         )
     schedule = numbers[0] if by == ARC and not parameters.dry_run else None
     schedule_before, lead = _ahead(numbers[0], parameters), parameters.trigger.lead
-    # what waits, or is told where the machine stands before, is not ahead of anything
+    # waits and instructions at standstill have no lead
     on = DepositOn(
         bead_process.lead_on,
         None if moves[0].wire is None else float(moves[0].wire[0]),
@@ -106,17 +106,18 @@ def _ahead(schedule: int | None, parameters: ProgramParameters) -> list[Block]:
 
 
 def standing(blocks: Sequence[Block]) -> tuple[Block, ...]:
-    """The blocks, with the deposit switched on where the machine stands for beads onto which nothing moves it, and for one
-    that the program begins at: how far its first move is, from wherever the machine stands, is not known."""
-    found: list[Block] = []
-    places: list[Array] = []  # the last two, and no more
+    """Return the blocks, with the deposit switched on at standstill for beads onto which no move leads,
+    and for one at which the program begins: the length of its first move is not known.
+    """
+    result: list[Block] = []
+    positions: list[Array] = []  # the last two, and no more
     for block in blocks:
         if isinstance(block, Moves) and len(block):
-            places = [*places, *block.joints[-2:]][-2:]
-        stands = len(places) < 2 or bool(np.abs(places[1] - places[0]).max() <= STILL)
-        found.append(
+            positions = [*positions, *block.joints[-2:]][-2:]
+        stands = len(positions) < 2 or bool(np.abs(positions[1] - positions[0]).max() <= STILL)
+        result.append(
             dataclasses.replace(block, ahead=None)
             if isinstance(block, DepositOn) and stands
             else block
         )
-    return tuple(found)
+    return tuple(result)

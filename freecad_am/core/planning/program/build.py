@@ -70,17 +70,15 @@ def build(
 
     Raises InputError: START_AT for a start past the last bead, NO_SCHEDULE, SCHEDULE.
     """
-    blocks = _Blocks(motion, cell, process, parameters, controller).of_all(waits, returns)
+    blocks = _Blocks(motion, cell, process, parameters, controller).build_all(waits, returns)
     remarks = remarks_of(cell, parameters, [block for block in blocks if isinstance(block, Moves)])
-    return replace(
-        without_moves(cell, parameters, controller, name), blocks=blocks, remarks=remarks
-    )
+    return replace(build_header(cell, parameters, controller, name), blocks=blocks, remarks=remarks)
 
 
-def without_moves(
+def build_header(
     cell: Cell, parameters: ProgramParameters, controller: Controller, name: str
 ) -> Program:
-    """What a program tells of its cell before the first move."""
+    """Return the program of a cell up to the first move."""
     return Program(
         name=name,
         machine=cell.machine.title,
@@ -126,9 +124,9 @@ def without_moves(
 
 
 def _owners(cell: Cell) -> list[Machine]:
-    """What each axis belongs to: the robot, or a mechanism beside it."""
+    """The machine of each axis: the robot, or an external mechanism."""
     owners = (
-        [cell.robot, *(one.machine for one in cell.external.mechanisms)]
+        [cell.robot, *(mechanism.machine for mechanism in cell.external.mechanisms)]
         if cell.external
         else [cell.robot]
     )
@@ -165,8 +163,10 @@ def _letter(axis: str) -> str:
     return (axis[1:] if len(axis) == 2 and axis[0] == "m" else axis).upper()
 
 
-def carried(cell: Cell, parameters: ProgramParameters) -> Six | None:
-    """What the flange carries as a program tells it; None where the origin on it is known only with the toolpath."""
+def carried_pose(cell: Cell, parameters: ProgramParameters) -> Six | None:
+    """Return the pose of the flange's load in a program; None if its origin is known only with the
+    toolpath.
+    """
     return six_of(frames_of(cell, parameters)[1]) if isinstance(parameters.origin, str) else None
 
 
@@ -185,8 +185,8 @@ def rows_from(motion: Motion, start: StartParameters) -> Mask:
             start.layer,
             motion.layer.max(),
         )
-    first = int(np.flatnonzero(run)[0])
-    ahead = np.arange(len(motion)) < first + int(motion.deposit[first:].argmax())
+    first_row = int(np.flatnonzero(run)[0])
+    ahead = np.arange(len(motion)) < first_row + int(motion.deposit[first_row:].argmax())
     run[ahead & (motion.role == motions.RETRACT)] = False
     return np.asarray(run, dtype=np.bool_)
 
@@ -201,7 +201,7 @@ class _Blocks:
     parameters: ProgramParameters
     controller: Controller
 
-    def of_all(
+    def build_all(
         self, waits: Sequence[float], returns: Collection[tuple[int, int]]
     ) -> tuple[Block, ...]:
         """The blocks of the rows that are run; waits and returns as of `build`."""
@@ -211,30 +211,37 @@ class _Blocks:
         blocks: list[Block] = []
         layer: int | None = None
         for number, rows in enumerate(groups):
-            first = int(rows[0])
-            if self.motion.deposit[first]:
+            first_row = int(rows[0])
+            if self.motion.deposit[first_row]:
                 blocks += self._bead(number, rows)
                 continue
-            here = int(self.motion.layer[first])
+            layer_number = int(self.motion.layer[first_row])
             if layer is None:
-                blocks += [LayerStart(here), *self._approach(rows, returns, arriving=True)]
+                blocks += [LayerStart(layer_number), *self._approach(rows, returns, arriving=True)]
             elif number == len(groups) - 1:
                 blocks.append(self._moves(rows, RAPID))
-            elif here == layer:
+            elif layer_number == layer:
                 blocks += self._approach(rows, returns)
             else:
                 retract = self.motion.role[rows] == motions.RETRACT
                 blocks += [self._moves(rows[retract], RAPID)] if retract.any() else []
-                blocks += _between(self.process.between_layers, waits[here] if len(waits) else 0.0)
-                blocks += [LayerStart(here), *self._approach(rows[~retract], returns)]
-            layer = here
+                blocks += _between(
+                    self.process.between_layers, waits[layer_number] if len(waits) else 0.0
+                )
+                blocks += [LayerStart(layer_number), *self._approach(rows[~retract], returns)]
+            layer = layer_number
         return standing(blocks)
 
     def _bead(self, number: int, rows: Integers) -> list[Block]:
-        """A bead, switched on and off, by the group of rows of that number."""
+        """Return a bead, switched on and off, from the group of rows `rows`."""
         kind = _class_of(self.motion, int(rows[0]))
-        parts = split_by_schedule(self.motion.phase[rows[1:]], self.process.for_class(kind))
-        runs = [(self._moves(rows[1:][part], DEPOSIT), number) for part, number in parts]
+        runs_by_schedule = split_by_schedule(
+            self.motion.phase[rows[1:]], self.process.for_class(kind)
+        )
+        runs = [
+            (self._moves(rows[1:][segment_rows], DEPOSIT), number)
+            for segment_rows, number in runs_by_schedule
+        ]
         return deposited(runs, kind, self.process, self.parameters)
 
     def _approach(
@@ -242,8 +249,8 @@ class _Blocks:
     ) -> list[Block]:
         """Rapids that lead to a bead; where it returns to a place the torch waits above it."""
         cooling = self.process.cooling
-        place = int(self.motion.layer[rows[-1]]), int(self.motion.bead[rows[-1]])
-        if cooling.below is None or place not in returns:
+        bead_id = int(self.motion.layer[rows[-1]]), int(self.motion.bead[rows[-1]])
+        if cooling.below is None or bead_id not in returns:
             return self._onto(rows, arriving)
         onto = self.motion.role[rows] == motions.APPROACH
         if not onto.any():
@@ -252,7 +259,7 @@ class _Blocks:
         down = self._onto(rows[onto], arriving and not above)
         return [
             *above,
-            WaitBelow(cooling.input, cooling.zero + cooling.gain * cooling.below, *place),
+            WaitBelow(cooling.input, cooling.zero + cooling.gain * cooling.below, *bead_id),
             *down,
         ]
 
@@ -263,8 +270,8 @@ class _Blocks:
         linear_approach.check(
             self.motion, self.cell, rows, arriving, self.parameters.schedule.by == ARC
         )
-        before = [self._moves(rows[:-1], RAPID, arriving)] if len(rows) > 1 else []
-        return [*before, replace(self._moves(rows[-1:], RAPID), interpolation=LINEAR_MOVE)]
+        leading_moves = [self._moves(rows[:-1], RAPID, arriving)] if len(rows) > 1 else []
+        return [*leading_moves, replace(self._moves(rows[-1:], RAPID), interpolation=LINEAR_MOVE)]
 
     def _moves(self, rows: Integers, kind: str, arriving: bool = False) -> Moves:
         """A run of rows; arriving: the first one comes from where the machine happens to stand."""
@@ -281,17 +288,22 @@ class _Blocks:
         if parameters.motion == "cartesian":
             station, carried = frames_of(cell, parameters)
             tip = cell.machine.chain.forward(motion.joints[rows]) @ carried
-            seen = (
+            tool_poses = (
                 frames.inverse(tip) @ station
                 if cell.torch_stands
                 else frames.inverse(station) @ tip
             )
-            position, arm = seen[:, :3, 3], cell.machine.arm
+            position, arm = tool_poses[:, :3, 3], cell.machine.arm
             if arm is None:
-                direction = seen[:, :3, 2]
+                direction = tool_poses[:, :3, 2]
             else:
-                rotation, own = seen[:, :3, :3], motion.joints[rows, : cell.robot.chain.axes]
-                configuration = tuple(opw.branch_name(int(index)) for index in arm.branch_of(own))
+                rotation, robot_joints = (
+                    tool_poses[:, :3, :3],
+                    motion.joints[rows, : cell.robot.chain.axes],
+                )
+                configuration = tuple(
+                    opw.branch_name(int(index)) for index in arm.branch_of(robot_joints)
+                )
         wire = motion.wire[rows]
         with_wire = kind == DEPOSIT and not parameters.dry_run and bool(np.isfinite(wire).all())
         return Moves(
@@ -344,7 +356,7 @@ def _between(between: BetweenLayersParameters, cooling: float) -> list[Block]:
 
 
 def _roles(role: Integers) -> tuple[str, ...]:
-    """The words (n,) of roles; those of a bead are alike."""
+    """The words (n,) of roles; the rows of a bead have the same role."""
     if (role == role[0]).all():
         return (ROLES[int(role[0])],) * len(role)
-    return tuple(ROLES[one] for one in role.tolist())
+    return tuple(ROLES[number] for number in role.tolist())

@@ -295,9 +295,9 @@ def in_turns(values: Array, starts: Mask) -> Array:
 
 def joints_at(task: Task, map_columns: Columns, column: int, phi: float) -> Array:
     """(8, axes) joints of all branches at one cell, in the turn that the map counts with; NaN out of reach."""
-    joints = _of_all_branches(task, map_columns.points.each(np.array([column])), np.array([[phi]]))[
-        :, 0, 0
-    ]
+    joints = _of_all_branches(
+        task, map_columns.points.select_points(np.array([column])), np.array([[phi]])
+    )[:, 0, 0]
     turns = np.where(task.continuous, 0.0, np.round((task.middle - joints) / TURN))
     turns[:, task.cell.robot.chain.axes :] = 0.0  # external axes are where they are said to be
     return np.asarray(joints + TURN * turns)

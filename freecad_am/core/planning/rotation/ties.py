@@ -102,7 +102,7 @@ def _least_motion(task: Task, points: Points, candidates: Array, margin: Array) 
 
 def _joints_at(task: Task, points: Points, candidates: Array, index: Integers) -> Array:
     """(C, B, axes) joints at one point of each bead, zero where unreachable."""
-    at = points.each(index)
+    at = points.select_points(index)
     value = np.stack([at.polynomial(row) for row in candidates])
     phi = np.stack([task.rotation(at, row)[0] for row in value])
     return np.nan_to_num(task.raw_joints(at, phi))

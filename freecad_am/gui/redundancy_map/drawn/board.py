@@ -272,7 +272,7 @@ class Board:
     def cell(self, branch: int, column: int, value: float) -> Cell:
         """What there is to tell of a place on the map."""
         points, task = self.columns.points, self.source.task(branch)
-        at = points.each(np.array([column]))
+        at = points.select_points(np.array([column]))
         phi = redundancy_map.rotation_of(task.cell, at.tool, np.array([value]), self.axis)
         number, columns = column, self.columns
         if self.pair is not None:
@@ -281,7 +281,7 @@ class Board:
                 self.pair.number(column, value),
                 self.pair.cells,
             )
-            at = columns.points.each(np.array([number]))
+            at = columns.points.select_points(np.array([number]))
         joints = redundancy_map.joints_at(task, columns, number, float(phi[0]))[branch]
         offset = np.abs(task.given_rows.offset(joints))
         reached = bool(np.isfinite(joints).all())
