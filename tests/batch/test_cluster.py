@@ -463,7 +463,7 @@ def test_files_of_jobs_are_opened_by_where_they_are():
         f"{path.relative_to(core)}: {line.strip()}"
         for path in core.rglob("*.py")
         for line in path.read_text(encoding="utf-8").splitlines()
-        if looks.search(line) and "located(" not in line
+        if looks.search(line) and "locate(" not in line
     }
     assert (
         found

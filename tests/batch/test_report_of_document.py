@@ -9,6 +9,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.issues import InputError
+from tests.batch.conftest import JOB
 
 BEND = """\
 version: 1
@@ -68,7 +69,8 @@ def test_it_is_the_page_of_the_command(workshop):
 
 
 def test_a_toolpath_has_the_path_alone(workshop):
-    workshop.change("cell:\n  limits: paper\n  platform_diameter: 100 mm\n", "")
+    without_cell = JOB.replace("cell:\n  limits: paper\n  platform_diameter: 100 mm\n", "")
+    workshop.write_job(without_cell.replace("program:\n  post: fanuc\n", ""))
     assert workshop.run("plan", "cup.yaml").status == 0
     theirs, ours = both(workshop, "cup", "toolpath")
     assert (
