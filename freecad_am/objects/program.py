@@ -197,7 +197,7 @@ def posted(job: Job) -> Posted:
         motion = moving_tool.refined_to_chord_error(motion, cell, toolpath.chord_error, beads)
     motion, _ = steps.programmed(motion, post.CONTROLLER, toolpath.chord_error, parameters.blend)
     if linear_approach.asked(parameters, post.CONTROLLER):
-        motion = linear_approach.with_short_approaches(motion, cell)
+        motion = linear_approach.shorten_approaches(motion, cell)
     waits = [layer.wait for layer in toolpath.layers]
     returns = programs.returning(toolpath, planned.joint_path.beads)
     program = programs.build(

@@ -9,7 +9,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.kinematics.machines import machine as machines
-from freecad_am.core.planning.rotation.headroom import judged
+from freecad_am.core.planning.rotation.headroom import judge_paths
 from freecad_am.gui.panels import joint_path as joint_path_panel
 from tests.gui.previews import drawn_by_previews
 
@@ -84,7 +84,7 @@ def test_the_figures_of_a_whole_preview_are_those_of_the_plan(person, stages, mo
     assert drawn(person) is None and document.UndoCount == steps + 1
     planned = api.result(document.JointPath).joint_path
     machine = machines.load(cell.Machine)
-    found = judged(planned.beads, machine.limits("maker"), machine.max_speed)
+    found = judge_paths(planned.beads, machine.limits("maker"), machine.max_speed)
     shown = [
         round(100.0 * found.worst_margin.value, 1),
         round(found.worst_condition.value, 3),

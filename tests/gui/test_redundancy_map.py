@@ -107,10 +107,10 @@ def test_the_picture_is_what_core_computes(person, hemisphere):
             and (seen[y, x] == 20).all()
         )
         assert hatch or np.abs(seen[y, x] - wanted).max(axis=2).min() <= 3, (row, column)
-    for cells, colour in ((picture.beyond, TOO_NEAR), (~picture.reachable, NONE)):
+    for cells, colour in ((picture.past_limit, TOO_NEAR), (~picture.reachable, NONE)):
         if cells.any():
             assert (canvas.painted.colours[cells] == np.round(255 * np.array(colour))).all()
-    assert picture.beyond.any()
+    assert picture.past_limit.any()
     person.choose(panel, "colours", "condition")
     panel.findChild(person.widgets.QComboBox, "colours").activated.emit(1)
     person.idle()

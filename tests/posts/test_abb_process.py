@@ -80,7 +80,7 @@ def written(kind, most=2000, dry_run=False):
         )
         told["nc"] = NcParameters(wire_output=9, wire_gain=2.5)
     if "ahead" in kind and way == "cartesian":
-        motion = linear_approach.with_short_approaches(motion, cell)
+        motion = linear_approach.shorten_approaches(motion, cell)
     parameters = ProgramParameters(post="abb", motion=way, max_points=most, dry_run=dry_run, **told)
     program = build(motion, cell, process, parameters, "job")
     return cell, motion, program, abb.write(program)

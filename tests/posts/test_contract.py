@@ -140,7 +140,7 @@ def test_a_retract_distance_of_nothing_leads_over_what_was_just_laid(way):
 def test_the_drive_finds_what_a_broken_check_lets_pass(broken, monkeypatch):
     """The same jobs planned by a check that misses something: the drive of the text finds it."""
     way = STACKED[0]
-    met, built = rapids.RapidObstacles.met, bead_ends.build_deposit
+    met, built = rapids.RapidObstacles.find_collisions, bead_ends.build_deposit
     with monkeypatch.context() as patch:
         if broken == "beads are lines":
             patch.setattr(
@@ -153,13 +153,13 @@ def test_the_drive_finds_what_a_broken_check_lets_pass(broken, monkeypatch):
         elif broken == "nothing is laid yet":
             patch.setattr(
                 rapids.RapidObstacles,
-                "met",
+                "find_collisions",
                 lambda self, moves: met(self, moves._replace(deposited=0 * moves.deposited)),
             )
         else:
             patch.setattr(
                 rapids.RapidObstacles,
-                "met",
+                "find_collisions",
                 lambda self, moves: np.zeros(len(moves.deposited), dtype=bool),
             )
         planned_jobs.planned.cache_clear(), planned_jobs.written.cache_clear()

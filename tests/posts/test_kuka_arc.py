@@ -37,7 +37,7 @@ NAMES = [
 def made(name):
     """Cell, motion, program and files of a planned job, lit by ArcTech."""
     cell, _, motion = planned(name)
-    motion = linear_approach.with_short_approaches(motion, cell)
+    motion = linear_approach.shorten_approaches(motion, cell)
     program = build(motion, cell, LIT, ARC, "job")
     return cell, motion, program, kuka.write(program)
 
@@ -145,7 +145,7 @@ def test_the_way_onto_a_bead_stays_by_the_one_that_was_looked_at():
     """The rows that are added lie on the way straight in the joints; what is told as a linear move leaves it by 0.2 mm at
     most, by PyKDL; and not cut it would leave it by more, which building and reading back refuse."""
     cell, _, whole = planned("kuka positioner")
-    motion = linear_approach.with_short_approaches(whole, cell)
+    motion = linear_approach.shorten_approaches(whole, cell)
     added = len(motion) - len(whole)
     assert added and motion.total_time == pytest.approx(whole.total_time, abs=1e-9)
     solver, looked = kdl_chain.KdlArm(cell.machine), 0

@@ -155,7 +155,7 @@ def test_the_largest_lead_is_told_and_read_back_and_more_is_refused(post, motion
     cell, _, motion_ = planned(CELL[post])
     process = dataclasses.replace(PROCESS, lead_on=0.0, lead_off=0.0)
     if post == "abb":
-        motion_ = linear_approach.with_short_approaches(motion_, cell)
+        motion_ = linear_approach.shorten_approaches(motion_, cell)
 
     def made(lead):
         asked = ProgramParameters(
@@ -200,7 +200,7 @@ def test_a_controller_of_linear_triggers_goes_straight_onto_beads_and_waits_for_
     bare = dataclasses.replace(PROCESS, lead_on=0.0, cooling=CoolingParameters(below=150.0))
     ahead = ProgramParameters(post="abb", motion="cartesian", trigger=TriggerParameters(lead=0.02))
     returns = {(1, 0), (1, 1)}
-    short = linear_approach.with_short_approaches(motion, cell)
+    short = linear_approach.shorten_approaches(motion, cell)
     blocks = build(short, cell, bare, ahead, "job", returns=returns).blocks
     waits = [k for k, block in enumerate(blocks) if isinstance(block, WaitBelow)]
     assert [(blocks[k].layer, blocks[k].bead) for k in waits] == sorted(returns)

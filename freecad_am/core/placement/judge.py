@@ -29,7 +29,7 @@ from ..planning.external.level import levelled
 from ..planning.joint_path import JointPath
 from ..planning.motion import assemble
 from ..planning.plan import Progress, plan_joints
-from ..planning.sampled import Sampled, sampled
+from ..planning.sampled import Sampled, sample_toolpath
 from ..toolpath import Bead, Toolpath
 from .screen import screen_points, single_points
 
@@ -87,7 +87,7 @@ class Judge:
         joints = dataclasses.replace(self.job.joints, compare=(), certificate=False)
         object.__setattr__(self, "job", dataclasses.replace(self.job, joints=joints))
         max_points = toolpath.point_count if self.most is None else self.most
-        object.__setattr__(self, "_some", sampled(toolpath, max_points, BEADS_IN_SEQUENCE))
+        object.__setattr__(self, "_some", sample_toolpath(toolpath, max_points, BEADS_IN_SEQUENCE))
         width = toolpath.bead_width or toolpath.layer_height
         object.__setattr__(
             self,
@@ -116,7 +116,7 @@ class Judge:
             path = plan_joints(
                 sampled_toolpath,
                 cell,
-                dataclasses.replace(job.joints, given=self._some.given(job.joints.given)),
+                dataclasses.replace(job.joints, given=self._some.select_given(job.joints.given)),
                 progress,
                 () if cell.arm_clearance is None else cylinders,
             )

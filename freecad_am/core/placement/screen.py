@@ -14,7 +14,7 @@ from ..geometry.angles import TURN
 from ..kinematics.cell import Cell
 from ..parameters.joints import JointParameters
 from ..planning.points import Points
-from ..planning.task import FITS, Task
+from ..planning.task import MIN_MARGIN, Task
 from ..toolpath import Bead
 from ..types import Array, Mask
 
@@ -99,7 +99,7 @@ def _serves(task: Task, points: Points, phi: Array) -> tuple[Mask, Array]:
     is_best = np.zeros(phi.shape, dtype=bool)
     is_best[margin.argmax(axis=0), np.arange(len(points))] = True
     for selected in (is_best, ~is_best):
-        row, column = np.nonzero(selected & (margin >= FITS) & ~served)
+        row, column = np.nonzero(selected & (margin >= MIN_MARGIN) & ~served)
         if len(row):
             flange = points.frames.of(column).flange_poses(phi[row, column])
             sufficient = task.condition_at(flange, joints[row, column]) >= threshold[column]

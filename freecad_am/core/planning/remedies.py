@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What would make an infeasible job feasible, found by planning it so.
+"""The change that makes an infeasible job feasible, found by planning with it.
 
-Changes are tried in order, what costs the user least first: the program's own (speed, branch, rotation, lift), then the
-process (directions), then the cell. Each is planned for some of the layers that failed, and only one that serves there for
-the whole job. How much is tried is bounded by points, not by time, so that the same job says the same.
+Changes are tried in order of cost for the user: the program's own (speed, branch, rotation, lift),
+then the process (directions), then the cell. Each is planned for some of the failed layers, and only
+one that serves there for the whole job. The effort is bounded by points, not by time, so that the
+same job gets the same answer.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from .tried import POINTS, Tried, some_of
 
 REMEDY, NO_REMEDY = "REMEDY", "NO_REMEDY"
 CHANGES = 16  # that are tried, about
-MAX_POINTS_REPLANNED = 20_000  # points of a job that is planned anew as a whole
+MAX_POINTS_REPLANNED = 20_000  # points of a job that is planned again as a whole
 MAX_FULL_PLANS = 3  # times that it is
 LONGEST_SEARCH = 60.0  # s on the clock, of a search
 RETRACTS = (50.0, 100.0, 5.0)  # mm
@@ -35,7 +36,7 @@ FULL_TURN = (-math.pi, math.pi)
 
 
 def most_points(toolpath: Toolpath, issues: Sequence[Issue]) -> int:
-    """How many points are planned anew at most to find what makes a job with these issues feasible, 0 of a feasible one."""
+    """Return the maximum number of points to plan again in the search for a remedy, 0 for a feasible job."""
     if not has_errors(list(issues)):
         return 0
     sampled_count = min(POINTS, CHANGES * some_of(toolpath, _failed(issues)).point_count)
@@ -55,13 +56,16 @@ def remedies(
     progress: Progress,
     longest: float = LONGEST_SEARCH,
 ) -> list[Issue]:
-    """A note with the first change found that makes an infeasible job feasible, or with all that were tried; none of a
-    feasible one. path: its joint path. progress may raise to cancel. longest: s on the clock, after which the search stops,
-    which is told."""
+    """Return a note with the first change that makes an infeasible job feasible, or with all failed
+    changes; empty for a feasible one.
+
+    path: its joint path. progress may raise to cancel. longest: s of wall-clock time after which the
+    search stops and says so.
+    """
     if not has_errors(list(issues)):
         return []
     until = time.monotonic() + longest
-    tried: list[str] = []
+    attempts: list[str] = []
 
     def in_time(share: float, text: str) -> None:
         progress(share, text)
@@ -69,9 +73,9 @@ def remedies(
             raise _Late
 
     try:
-        return _searched(job, path, issues, in_time, tried)
+        return _searched(job, path, issues, in_time, attempts)
     except _Late:
-        tried_text = Text.joined("; ", tried[:-1]) if len(tried) > 1 else Text("none")
+        tried_text = Text.joined("; ", attempts[:-1]) if len(attempts) > 1 else Text("none")
         return [
             Issue(
                 NOTE,
@@ -90,9 +94,9 @@ def _searched(
     path: JointPath,
     issues: Sequence[Issue],
     progress: Progress,
-    tried: list[str],
+    attempts: list[str],
 ) -> list[Issue]:
-    """The note on what helps; changes are added to those tried as they are."""
+    """Return the note on the remedy; appends each change to `attempts`."""
     failed = _failed(issues)
     points, full_plans_left = POINTS, MAX_FULL_PLANS
     for change in _changes(job, path, issues):
@@ -103,7 +107,7 @@ def _searched(
             points -= sampled.point_count
             if points < 0:
                 break
-            tried.append(change.remedy)
+            attempts.append(change.remedy)
             if has_errors(change.issues(sampled, False, progress)):
                 continue
             if toolpath.point_count > MAX_POINTS_REPLANNED:
@@ -133,14 +137,15 @@ def _searched(
                 break
         except AmError:  # what cannot be asked for is not a remedy
             continue
-    if not tried:
+    if not attempts:
         return []
     return [
         Issue(
             NOTE,
             NO_REMEDY,
             Text(
-                "none of these makes the job feasible, each was tried: {}", Text.joined("; ", tried)
+                "none of these makes the job feasible, each was tried: {}",
+                Text.joined("; ", attempts),
             ),
         )
     ]

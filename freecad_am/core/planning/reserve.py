@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is kept free beside every limit (docs/decisions/0009)."""
+"""The margin kept free at every limit (docs/decisions/0009)."""
 
 import math
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A toolpath that is planned at once: of many beads some, and of these some points."""
+"""A sample of a toolpath that is planned at once: some of its beads, and some of their points."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ..types import Index
 
 PER_TURN = 16  # points of a turn that are kept, about
 FEWEST_PER_TURN = 5  # where beads of many turns are too few to leave some out: all sides are seen, axes still counted on
-LEAST = 8  # segments of a bead that are kept where it has so many
+MIN_SEGMENTS = 8  # minimum number of segments kept of a bead that has as many
 
 Place = tuple[int, int]
 
@@ -32,46 +32,57 @@ class Sampled:
     places: tuple[Place, ...]
 
     @property
-    def whole(self) -> bool:
-        """Whether it is all of the toolpath."""
+    def is_complete(self) -> bool:
+        """Whether the sample is the complete toolpath."""
         return self.beads == self.points == 1
 
-    def given(self, given: Sequence[str]) -> tuple[str, ...]:
-        """Entries of `joints.given` for the whole, told of the beads as they are numbered here; without those of beads that
-        are left out."""
-        here = {place: (layer, bead) for place, (layer, bead, _) in zip(self.places, self.toolpath)}
+    def select_given(self, entries: Sequence[str]) -> tuple[str, ...]:
+        """Return the entries of `joints.given` for the sampled beads, with the numbers of the beads in the
+        sample.
+        """
+        sample_ids = {
+            bead_id: (layer, bead) for bead_id, (layer, bead, _) in zip(self.places, self.toolpath)
+        }
         issues = []
-        for entry, place in zip(given, given_polynomials(tuple(given))):
-            if place is None:
+        for entry, bead_id in zip(entries, given_polynomials(tuple(entries))):
+            if bead_id is None:
                 issues.append(entry)
-            elif place in here:
-                layer, bead = here[place]
+            elif bead_id in sample_ids:
+                layer, bead = sample_ids[bead_id]
                 issues.append(f"{layer}/{bead}:{entry.partition(':')[2]}")
         return tuple(issues)
 
 
-def sampled(toolpath: Toolpath, most: int, together: int = 1) -> Sampled:
-    """About `most` points of a toolpath, all of it where it has no more. The first and last bead are among those that are
-    kept, and the ends of each; layers keep their numbers, beads not. The chord error grows as that of the points does.
-    More are kept of a few beads that have very many turns. together: so many beads that follow each other are kept of so
-    many times as many, where some are left out."""
-    every = list(toolpath)
+def sample_toolpath(toolpath: Toolpath, max_points: int, together: int = 1) -> Sampled:
+    """Sample about `max_points` points of a toolpath, all of it if it has no more.
+
+    The first and last bead are kept, and the ends of each bead; layers keep their numbers, beads do
+    not. The chord error grows with the point spacing. A few beads with very many turns keep more
+    points. together: number of consecutive beads that are kept as a group.
+    """
+    all_beads = list(toolpath)
     total = toolpath.point_count
-    if total <= most:
-        return Sampled(toolpath, 1, 1, tuple((layer, index) for layer, index, _ in every))
-    points = _one_in([bead for _, _, bead in every], most, PER_TURN)
-    wanted = math.ceil(sum(len(_kept(bead, points)) for _, _, bead in every) / most)
-    beads = min(wanted, max(1, len(every) - 1))
-    chosen = [one for k, one in enumerate(every[:-1]) if k % (together * beads) < together] + every[
-        -1:
-    ]
-    if beads < wanted:  # there are no more beads to leave out
-        points = max(points, _one_in([bead for _, _, bead in chosen], most, FEWEST_PER_TURN))
+    if total <= max_points:
+        return Sampled(toolpath, 1, 1, tuple((layer, index) for layer, index, _ in all_beads))
+    points = _one_in([bead for _, _, bead in all_beads], max_points, PER_TURN)
+    stride_needed = math.ceil(
+        sum(len(_select_points(bead, points)) for _, _, bead in all_beads) / max_points
+    )
+    beads = min(stride_needed, max(1, len(all_beads) - 1))
+    kept_beads = [
+        entry for k, entry in enumerate(all_beads[:-1]) if k % (together * beads) < together
+    ] + all_beads[-1:]
+    if beads < stride_needed:  # there are no more beads to leave out
+        points = max(
+            points, _one_in([bead for _, _, bead in kept_beads], max_points, FEWEST_PER_TURN)
+        )
     layers = tuple(
         replace(
             layer,
             beads=tuple(
-                bead.thinned(_kept(bead, points)) for place, _, bead in chosen if place == number
+                bead.thinned(_select_points(bead, points))
+                for bead_layer, _, bead in kept_beads
+                if bead_layer == number
             ),
         )
         for number, layer in enumerate(toolpath.layers)
@@ -80,23 +91,25 @@ def sampled(toolpath: Toolpath, most: int, together: int = 1) -> Sampled:
         replace(toolpath, layers=layers, chord_error=toolpath.chord_error * points**2),
         beads,
         points,
-        tuple((layer, index) for layer, index, _ in chosen),
+        tuple((layer, index) for layer, index, _ in kept_beads),
     )
 
 
-def _one_in(beads: Sequence[Bead], most: int, per_turn: int) -> int:
-    """Of how many points of beads one is kept for about `most`, but `per_turn` of each turn."""
+def _one_in(beads: Sequence[Bead], max_points: int, per_turn: int) -> int:
+    """Return the stride that keeps about `max_points` points of beads, but `per_turn` of each turn."""
     total = sum(map(len, beads))
     turns = sum(abs(float(bead.parameter[-1] - bead.parameter[0])) for bead in beads) / TURN
-    return max(1, min(math.ceil(total / most), int(total / (per_turn * max(turns, 1.0)))))
+    return max(1, min(math.ceil(total / max_points), int(total / (per_turn * max(turns, 1.0)))))
 
 
-def _kept(bead: Bead, points: int) -> Index:
-    """The numbers of the points of a bead that are kept: one of so many, more of a short one and of turns with few."""
-    last = len(bead) - 1
-    step = max(1, min(points, last // LEAST))
+def _select_points(bead: Bead, points: int) -> Index:
+    """Return the numbers of the kept points of a bead: one of `points`, more for a short bead and for
+    turns with few points.
+    """
+    last_index = len(bead) - 1
+    step = max(1, min(points, last_index // MIN_SEGMENTS))
     share = np.abs(np.diff(bead.parameter)) * (FEWEST_PER_TURN / TURN)
     passed = np.floor(np.cumsum(np.maximum(1.0, step * share)) / step)
     return np.asarray(
-        np.unique(np.r_[0, np.flatnonzero(np.diff(passed, prepend=0.0) >= 1.0) + 1, last])
+        np.unique(np.r_[0, np.flatnonzero(np.diff(passed, prepend=0.0) >= 1.0) + 1, last_index])
     )

@@ -23,23 +23,26 @@ from .tried import LAYERS, POINTS, Tried
 
 
 def suited(job: Tried, progress: Progress, failed_layers: Collection[int] = ()) -> CellParameters:
-    """The parameters of the first cell in which some layers of a job can be done, those it has first; they themselves where
-    none was found. The layers are the first, the middle and the last one, that which leans most, and those that failed when
-    all of the job was planned, by their places. progress may raise to cancel. Raises what reading the toolpath and resolving
-    the cell raise."""
+    """Return the parameters of the first cell in which some layers of a job can be done, the current ones
+    first; the current ones if none is found.
+
+    The layers are the first, the middle and the last one, the one that leans most, and those that
+    failed in the plan of the complete job, by their numbers. progress may raise to cancel. Raises the
+    errors of reading the toolpath and resolving the cell.
+    """
     toolpath = job.toolpath()
-    some = _layers(toolpath, failed_layers)
-    left, until = POINTS, time.monotonic() + LONGEST_SEARCH
-    errors = _errors(job, some, progress)
+    sample = _layers(toolpath, failed_layers)
+    points_left, until = POINTS, time.monotonic() + LONGEST_SEARCH
+    errors = _errors(job, sample, progress)
     if not errors or not arrangement_of(job.settings.setup).free:
         return job.settings
     for change in _changes(job, errors):
-        left -= some.point_count
-        if left < 0 or time.monotonic() > until:
+        points_left -= sample.point_count
+        if points_left < 0 or time.monotonic() > until:
             break
         progress(1.0, Text("looking for a cell in which it can be done: {}", change.remedy))
         try:
-            if not _errors(change, some, progress):
+            if not _errors(change, sample, progress):
                 return change.settings
         except AmError:  # what cannot be asked for is no cell
             continue
@@ -47,7 +50,9 @@ def suited(job: Tried, progress: Progress, failed_layers: Collection[int] = ()) 
 
 
 def _changes(job: Tried, errors: set[str]) -> Iterator[Tried]:
-    if NOT_LEVEL in errors:  # which no turn about the tool mends, and no place of what stands still
+    if (
+        NOT_LEVEL in errors
+    ):  # which neither a rotation about the tool nor another fixed position remedies
         return other_cells.external_axes(job, {NOT_LEVEL})
     return itertools.chain(
         other_cells.clear_of_arm(job, errors),
@@ -62,11 +67,15 @@ def _errors(job: Tried, toolpath: Toolpath, progress: Progress) -> set[str]:
 
 
 def _layers(toolpath: Toolpath, failed: Collection[int]) -> Toolpath:
-    """Some of its layers, that which leans most from the part's axis and those that failed among them."""
+    """Return some of its layers, including the one that leans most from the part's axis and the failed
+    ones.
+    """
     upright = [
         min((float((bead.tool @ toolpath.frame[:3, 2]).min()) for bead in layer.beads), default=1.0)
         for layer in toolpath.layers
     ]
-    chosen = {round(at) for at in np.linspace(0, len(upright) - 1, LAYERS)}
-    chosen |= {int(np.argmin(upright)), *(k for k in failed if 0 <= k < len(upright))}
-    return dataclasses.replace(toolpath, layers=tuple(toolpath.layers[k] for k in sorted(chosen)))
+    layer_ids = {round(index) for index in np.linspace(0, len(upright) - 1, LAYERS)}
+    layer_ids |= {int(np.argmin(upright)), *(k for k in failed if 0 <= k < len(upright))}
+    return dataclasses.replace(
+        toolpath, layers=tuple(toolpath.layers[k] for k in sorted(layer_ids))
+    )

@@ -34,7 +34,7 @@ CONTINUOUS_STROKE = 1e6 * TURN
 CONDITION_FLOOR = 0.02
 CONDITION_SHARE = 0.25
 # a margin that counts as none: optima lean on limits, which the reserve keeps off the true ones
-FITS = -1e-6
+MIN_MARGIN = -1e-6
 
 
 @dataclass(frozen=True)
@@ -116,18 +116,20 @@ class Task:
         assert arm is not None  # resolve() refuses other machines
         return arm
 
-    def raw_joints(self, points: Points, phi: Array, before: Array | None = None) -> Array:
+    def raw_joints(self, points: Points, phi: Array, previous: Array | None = None) -> Array:
         """(..., T, axes) joint values of the branch as the inverse gives them; NaN where unreachable.
 
-        Arms whose solutions have to be followed go on from joints `before` (T, axes), or else from point to point of beads.
+        Arms whose solutions have to be followed go on from joints `previous` (T, axes), or else from point to point of beads.
         """
         if phi.ndim == 1 and not self.arm.followed:
             return self._raw_joints_of_all(points, phi)
         flange = (
             points.frames.flange_poses(phi) if self.arm.followed else points.frames.by_entry(phi)
         )
-        if self.arm.followed and before is not None:
-            joints = following.from_before(self.arm, flange, self.branch, self._own(before))
+        if self.arm.followed and previous is not None:
+            joints = following.from_before(
+                self.arm, flange, self.branch, self._robot_joints(previous)
+            )
         elif self.arm.followed:
             rows = flange.reshape(-1, *flange.shape[-3:])
             joints = following.along_beads(self.arm, rows, self.branch, points).reshape(
@@ -137,33 +139,39 @@ class Task:
             joints = self.arm.inverse_branch(flange.reshape(-1, 4, 4), self.branch).reshape(
                 *phi.shape, -1
             )
-        return joints if points.external is None else with_external(joints, points.external)
+        return joints if points.external is None else append_external(joints, points.external)
 
     def _raw_joints_of_all(self, points: Points, phi: Array) -> Array:
         """The same of one phi (T,) for all points: their poses together would take much memory."""
         joints = np.empty((self.cell.machine.chain.axes, len(points))).T
-        for some in in_pieces(len(points)):
-            own = self.arm.inverse_branch(points.frames.of(some).by_entry(phi[some]), self.branch)
-            joints[some] = (
-                own if points.external is None else with_external(own, points.external[some])
+        for rows in in_pieces(len(points)):
+            robot_joints = self.arm.inverse_branch(
+                points.frames.of(rows).by_entry(phi[rows]), self.branch
+            )
+            joints[rows] = (
+                robot_joints
+                if points.external is None
+                else append_external(robot_joints, points.external[rows])
             )
         return joints
 
-    def inverse(self, flange: Array, near: Array | None = None) -> Array:
-        """(N, axes) joint values of the branch at flange poses (N, 4, 4); NaN where unreachable.
+    def inverse(self, flange: Array, nearby_joints: Array | None = None) -> Array:
+        """Return joint values (N, axes) of the branch at flange poses (N, 4, 4); NaN where unreachable.
 
-        `near`: joints (N, axes) next to which they are looked for, of arms of which several solutions bear the same words;
-        external axes stay where they are there.
+        `nearby_joints`: joints (N, axes) near which arms with several solutions of the same configuration
+        search; external axes keep these values.
         """
-        if self.arm.followed and near is not None:
-            joints = following.from_before(self.arm, flange, self.branch, self._own(near))
+        if self.arm.followed and nearby_joints is not None:
+            joints = following.from_before(
+                self.arm, flange, self.branch, self._robot_joints(nearby_joints)
+            )
         else:
             joints = self.arm.inverse_branch(flange, self.branch)
-        external = None if near is None else self.cell.external_of(near)
-        return joints if external is None else with_external(joints, external)
+        external = None if nearby_joints is None else self.cell.external_of(nearby_joints)
+        return joints if external is None else append_external(joints, external)
 
-    def _own(self, joints: Array) -> Array:
-        """(..., axes of the robot) joints without those of external axes."""
+    def _robot_joints(self, joints: Array) -> Array:
+        """Return joints (..., axes of the robot) without external axes."""
         return joints[..., : self.cell.robot.chain.axes]
 
     def joints(self, points: Points, phi: Array) -> Array:
@@ -171,31 +179,34 @@ class Task:
         raw = self.raw_joints(points, phi)
         if phi.ndim > 1 and not np.isnan(raw.max()):
             return self.in_range(unwrapped_by_turns(raw, points), points)
-        found = self.in_range(unwrapped(raw, points), points)
-        # of what is planned row by row: what is summed up over the axes is so in the order of memory
-        return np.ascontiguousarray(found) if phi.ndim == 1 else found
+        joints_in_range = self.in_range(unwrapped(raw, points), points)
+        # sums over the axes follow the order of memory: contiguous for plans row by row
+        return np.ascontiguousarray(joints_in_range) if phi.ndim == 1 else joints_in_range
 
     def in_range(self, joints: Array, points: Points) -> Array:
         """The same joints, each limited axis of each bead moved by the whole turns that centre its range."""
-        every = tuple(range(joints.ndim - 1))
-        away = np.maximum(
-            joints.max(axis=every) - self.middle, self.middle - joints.min(axis=every)
+        leading_axes = tuple(range(joints.ndim - 1))
+        distances = np.maximum(
+            joints.max(axis=leading_axes) - self.middle, self.middle - joints.min(axis=leading_axes)
         )
-        some = np.flatnonzero(~self.unturned & ~(away <= 0.5 * TURN))  # most axes never get so far
-        low = np.minimum.reduceat(joints[..., some], points.first, axis=-2)
-        high = np.maximum.reduceat(joints[..., some], points.first, axis=-2)
-        turns = np.round((self.middle[some] - 0.5 * (low + high)) / TURN) * TURN
+        axis_ids = np.flatnonzero(
+            ~self.unturned & ~(distances <= 0.5 * TURN)
+        )  # most axes stay within half a turn
+        low = np.minimum.reduceat(joints[..., axis_ids], points.first, axis=-2)
+        high = np.maximum.reduceat(joints[..., axis_ids], points.first, axis=-2)
+        turns = np.round((self.middle[axis_ids] - 0.5 * (low + high)) / TURN) * TURN
         if not np.nan_to_num(turns).any():
             return joints
-        moved = joints.copy(order="K")
-        moved[..., some] += points.spread_to_points(turns)
-        return moved
+        shifted = joints.copy(order="K")
+        shifted[..., axis_ids] += points.spread_to_points(turns)
+        return shifted
 
     def jacobians(self, points: Points, phi: Array, joints: Array) -> Iterator[tuple[slice, Array]]:
-        """The robot's Jacobians (k, 6, 6) at the deposition point of pieces of the points, phi (T,) and joints (T, axes),
-        with which of them these are: together they would take much memory."""
-        for some in in_pieces(len(points)):
-            yield some, self.jacobian_at(points.frames.of(some), phi[some], joints[some])
+        """Yield the robot's Jacobians (k, 6, 6) at the deposition point for slices of the points, phi (T,) and
+        joints (T, axes), with the slice: together they would take much memory.
+        """
+        for rows in in_pieces(len(points)):
+            yield rows, self.jacobian_at(points.frames.of(rows), phi[rows], joints[rows])
 
     def jacobian_at(self, poses: PoseFrames, phi: Array, joints: Array) -> Array:
         """(N, 6, 6) Jacobian of the robot at the deposition point for poses at rotations phi (N,) and joints (N, axes)."""
@@ -203,7 +214,7 @@ class Task:
 
     def _jacobian(self, flange: Array, joints: Array) -> Array:
         result: Array = jac.jacobian(
-            self.cell.robot.chain, self._own(joints), self.cell.deposition_point(flange)
+            self.cell.robot.chain, self._robot_joints(joints), self.cell.deposition_point(flange)
         )
         return result
 
@@ -222,9 +233,9 @@ class Task:
             return np.concatenate(
                 [
                     self.condition_at(
-                        self._tips_of(points.frames.of(some), phi[some]), joints[some]
+                        self._tips_of(points.frames.of(rows), phi[rows]), joints[rows]
                     )
-                    for some in in_pieces(len(points))
+                    for rows in in_pieces(len(points))
                 ]
             )
         flange = points.frames.flange_poses(phi).reshape(-1, 4, 4)
@@ -238,20 +249,20 @@ class Task:
             return np.full(len(joints), np.nan)
         good = np.flatnonzero(np.isfinite(joints).all(axis=1))
         value = np.zeros(len(joints))
-        for piece in in_pieces(len(good)):
-            some = good[piece]
-            value[some] = jac.condition(
-                self._jacobian(flange[some], joints[some]), self.parameters.characteristic_length
+        for slice_of_good in in_pieces(len(good)):
+            rows = good[slice_of_good]
+            value[rows] = jac.condition(
+                self._jacobian(flange[rows], joints[rows]), self.parameters.characteristic_length
             )
         # the last bits depend on where in memory the arrays happen to lie: the same job gives the same bytes without them
         return np.round(value, 12)
 
     def thresholds(self, points: Points) -> Array:
         """(T,) the smallest condition allowed (eq. 19): given, or a quarter of its value at RZ = 0 with a floor."""
-        wanted = self.parameters.min_condition
-        if not isinstance(wanted, str):
-            return np.full(len(points), float(wanted))
-        tools = [points.tool[some] for some in in_pieces(len(points))]
+        min_condition = self.parameters.min_condition
+        if not isinstance(min_condition, str):
+            return np.full(len(points), float(min_condition))
+        tools = [points.tool[rows] for rows in in_pieces(len(points))]
         phi = np.concatenate([self.cell.phi_of_rz(tool, np.zeros(len(tool)))[0] for tool in tools])
         at_zero = self.condition(points, phi, self.raw_joints(points, phi))
         return np.maximum(CONDITION_SHARE * at_zero, CONDITION_FLOOR)
@@ -272,12 +283,13 @@ class Task:
         return np.asarray(rates, dtype=np.float64), matrix
 
 
-def with_external(joints: Array, external: Array) -> Array:
-    """(..., N, axes) joints (..., N, 6) of the robot with the values of external axes (N, k) beside them; NaN where the
-    robot does not reach, so that nothing is known of any axis."""
+def append_external(joints: Array, external: Array) -> Array:
+    """Return joints (..., N, axes) of the robot followed by the values of external axes (N, k); NaN where
+    the robot does not reach, as then no axis is known.
+    """
     values = np.broadcast_to(external, (*joints.shape[:-1], external.shape[-1]))
-    lost = np.isnan(joints).any(axis=-1, keepdims=True)
-    return np.concatenate([joints, np.where(lost, np.nan, values)], axis=-1)
+    is_unreachable = np.isnan(joints).any(axis=-1, keepdims=True)
+    return np.concatenate([joints, np.where(is_unreachable, np.nan, values)], axis=-1)
 
 
 def condition_margin(condition: Array, threshold: Array) -> Array:

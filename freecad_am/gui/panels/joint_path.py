@@ -18,8 +18,8 @@ from ...core.parameters.external import externals
 from ...core.parameters.joints import LEVEL
 from ...core.planning.joint_path import JointPath as JointsOfBeads
 from ...core.planning.plan import OF_ROBOTS, plan_joints
-from ...core.planning.rotation.headroom import Judgement, judged
-from ...core.planning.sampled import Sampled, sampled
+from ...core.planning.rotation.headroom import Judgement, judge_paths
+from ...core.planning.sampled import Sampled, sample_toolpath
 from ...objects import user_machines
 from ...objects.checks import controllers
 from ...objects.joint_path import Job, JointPath
@@ -147,14 +147,17 @@ def _place(name: str) -> str:
 def _tried(job: Job) -> tuple[Sampled, JointsOfBeads, Judgement, list[Issue]]:
     """The plan of as many points as are soon planned, with external axes where optimising them, which takes long, begins.
     Raises what planning raises."""
-    sample = sampled(job.toolpath(), MAX_POINTS)
+    sample = sample_toolpath(job.toolpath(), MAX_POINTS)
     toolpath = sample.toolpath
     cell = cells.resolve(job.settings, toolpath.frame, toolpath.family, job.folders)
     parameters = replace(
-        job.parameters, compare=(), given=sample.given(job.parameters.given), external_axes=LEVEL
+        job.parameters,
+        compare=(),
+        given=sample.select_given(job.parameters.given),
+        external_axes=LEVEL,
     )
     planned = plan_joints(toolpath, cell, parameters, progress.report)
-    judgement = judged(planned.beads, cell.limits, cell.machine.max_speed)
+    judgement = judge_paths(planned.beads, cell.limits, cell.machine.max_speed)
     return sample, planned, judgement, controllers.likely_size_issues(job.toolpath(), cell)
 
 
@@ -164,12 +167,12 @@ def _found(trial: Trial) -> list[str]:
     if not errors:
         return [
             tr("All deposit points can be carried out.")
-            if trial.sample.whole
+            if trial.sample.is_complete
             else tr("Nothing stands against it so far.")
         ]
     lines = [
         tr("Cannot be carried out:"),
-        *(_issue_text(issue, trial.sample.whole) for issue in errors[:MOST_SHOWN]),
+        *(_issue_text(issue, trial.sample.is_complete) for issue in errors[:MOST_SHOWN]),
     ]
     if len(errors) > MOST_SHOWN:
         lines.append(tr("and {} more").format(len(errors) - MOST_SHOWN))
@@ -206,7 +209,7 @@ def _figures(judgement: Judgement) -> list[str]:
 
 def _looked_at(sample: Sampled) -> str:
     """Of what this is the preview, and what is left to OK."""
-    if sample.whole:
+    if sample.is_complete:
         return tr("Preview of all points; OK looks at the rapid moves too.")
     if sample.beads == 1:
         return tr(

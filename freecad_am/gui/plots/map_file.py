@@ -50,7 +50,7 @@ def values(board: Any, picture: Picture) -> Iterator[str]:
     )
     arm = np.zeros_like(picture.outside) if picture.arm is None else picture.arm
     state = np.select(
-        [~picture.reachable, picture.beyond, picture.singular, arm, picture.forbidden],
+        [~picture.reachable, picture.past_limit, picture.singular, arm, picture.forbidden],
         ["unreachable", "beyond a limit", "near a singularity", "a link touches", "not allowed"],
         "",
     )

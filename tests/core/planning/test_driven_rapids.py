@@ -347,10 +347,10 @@ def test_few_looks_find_what_all_of_them_do(on_table, monkeypatch):
     """Moves at random, many through the wall and some that graze it: as at every look, a fraction of which is taken."""
     cell, path = on_table
     asked = []
-    touched = clearance.RapidObstacles._touched
+    touched = clearance.RapidObstacles._test_contact
     monkeypatch.setattr(
         clearance.RapidObstacles,
-        "_touched",
+        "_test_contact",
         lambda self, nozzle, looks, moves: (
             asked.append(len(looks.move)),
             touched(self, nozzle, looks, moves),
@@ -362,7 +362,7 @@ def test_few_looks_find_what_all_of_them_do(on_table, monkeypatch):
     ends = np.concatenate([one.joints for one in path.beads])[random.integers(300, size=(2, 80))]
     ends[:, :, 2] += random.uniform(-2.0, 20.0, size=(2, 80))
     moves = clearance.Moves(*ends, np.full(80, 300))
-    met = obstacles.met(moves)
+    met = obstacles.find_collisions(moves)
     few = sum(asked)
     every = clearance._evaluate_looks(cell, moves, clearance.FINE)
     hit = touched(obstacles, obstacles._nozzle(moves, every), every, moves)
@@ -371,7 +371,9 @@ def test_few_looks_find_what_all_of_them_do(on_table, monkeypatch):
     nozzle = obstacles._nozzle(moves, every)
     hit = [
         obstacles._deposit_touched(nozzle, every, moves).any(),
-        obstacles._around(every.tip).find_touching(nozzle.bodies, every.tip, every.axis).any(),
+        obstacles._nearby_bodies(every.tip)
+        .find_touching(nozzle.bodies, every.tip, every.axis)
+        .any(),
     ]
     assert obstacles.names(moves) == [
         name for name, one in zip(["the deposit", "the platform"], hit, strict=True) if one

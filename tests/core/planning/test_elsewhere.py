@@ -10,7 +10,7 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
 from freecad_am.core.planning.rotation import elsewhere, refine, search
-from freecad_am.core.planning.rotation.evaluation import judged
+from freecad_am.core.planning.rotation.evaluation import evaluate_paths
 from freecad_am.core.planning.task import Task
 from freecad_am.kdl import chain as kdl
 
@@ -58,10 +58,10 @@ def test_limits_are_kept_at_all_points_and_between_however_few_are_searched(
     cell = with_axis_6(cell_of(toolpath, branch=branch), 200.0)
     asked = []
     monkeypatch.setattr(search, "POINTS_PER_BEAD", looked)
-    others = elsewhere.of_beads
+    others = elsewhere.find_rotations
     monkeypatch.setattr(
         elsewhere,
-        "of_beads",
+        "find_rotations",
         lambda task, some, *at: asked.append(len(some)) or others(task, some, *at),
     )
     found = plan_joints(toolpath, cell, JointParameters())
@@ -118,7 +118,7 @@ def test_what_falls_short_between_points_alone_is_seen(sliced, cell_of):
             (found.margin[:, 0] >= 0.0) & ((between < -0.02) | (between > 0.0))
         ):
             refined = refine.Refined(found.coefficients[k], np.zeros(1), ("",), (0,))
-            path = judged(
+            path = evaluate_paths(
                 task,
                 [bead],
                 [place],
@@ -128,6 +128,8 @@ def test_what_falls_short_between_points_alone_is_seen(sliced, cell_of):
                 refined,
             )
             assert path[0].margin >= 0.0
-            assert elsewhere.lost(task, [bead], path) == ([0] if between[k] < 0.0 else [])
+            assert elsewhere.find_infeasible(task, [bead], path) == (
+                [0] if between[k] < 0.0 else []
+            )
             wrong += between[k] < 0.0
     assert wrong > 0

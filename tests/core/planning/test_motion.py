@@ -154,7 +154,7 @@ def test_the_platform_is_in_the_way_of_what_comes_near_it(planned, tip, axis, me
     )[:, 0]
     joints = poses[np.isfinite(poses).all(axis=1)][:1]
     moves = Driven(joints, joints, np.zeros(1, dtype=int))
-    assert surroundings.met(moves)[0] == met
+    assert surroundings.find_collisions(moves)[0] == met
     assert surroundings.names(moves) == ["the platform"] * met
     lost = Driven(
         np.r_[joints, np.nan * joints], np.r_[joints, joints], np.zeros(2, dtype=int)

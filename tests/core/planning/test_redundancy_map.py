@@ -456,7 +456,7 @@ def test_cells_where_the_arm_touches_are_those_in_which_a_link_does(funnel, setu
     moment = starts[at.bead] + at.point
     contact = ArmContact(cell, rods, [wall], Beads.of(beads, 6.0, 9.0).solid())
     touched = spin_map.arm_touched(task, found, FLIP, contact, moment)
-    looked = picture.reachable & ~picture.beyond & ~picture.outside & ~found.touching
+    looked = picture.reachable & ~picture.past_limit & ~picture.outside & ~found.touching
     assert 0 < touched.sum() < looked.sum() and not (touched & ~looked).any()
     random = np.random.default_rng(2)
     for row, column in zip(

@@ -11,8 +11,8 @@ from freecad_am.core.kinematics.jacobian import condition, jacobian
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.rotation.given import coefficients
-from freecad_am.core.planning.rotation.headroom import judged
-from freecad_am.core.planning.sampled import sampled
+from freecad_am.core.planning.rotation.headroom import judge_paths
+from freecad_am.core.planning.sampled import sample_toolpath
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 
@@ -23,9 +23,9 @@ def dome(sliced):
 
 @pytest.mark.parametrize("most", [150, 400, 1000, 2500])
 def test_a_sample_is_about_as_large_as_asked_and_spread_over_all_layers(dome, most):
-    sample = sampled(dome, most)
+    sample = sample_toolpath(dome, most)
     points, beads = sample.toolpath.point_count, sample.toolpath.bead_count
-    assert 0.3 * most <= points <= 1.3 * most and not sample.whole
+    assert 0.3 * most <= points <= 1.3 * most and not sample.is_complete
     assert beads == -(-(dome.bead_count - 1) // sample.beads) + 1 or beads == -(
         -dome.bead_count // sample.beads
     )
@@ -41,8 +41,8 @@ def test_a_sample_is_about_as_large_as_asked_and_spread_over_all_layers(dome, mo
 
 
 def test_a_small_toolpath_is_looked_at_whole(dome):
-    sample = sampled(dome, dome.point_count)
-    assert sample.whole and sample.toolpath is dome
+    sample = sample_toolpath(dome, dome.point_count)
+    assert sample.is_complete and sample.toolpath is dome
 
 
 def rings(layers, beads):
@@ -64,14 +64,14 @@ def rings(layers, beads):
 @pytest.mark.parametrize("most", [700, 1000, 3000, 20_000])
 def test_polynomials_that_are_given_stay_with_their_beads(most):
     whole = rings(100, 5)
-    sample = sampled(whole, most)
+    sample = sample_toolpath(whole, most)
     beads = [bead for _, _, bead in sample.toolpath]
-    assert not sample.whole and len(beads) == len(sample.places) == len(set(sample.places))
+    assert not sample.is_complete and len(beads) == len(sample.places) == len(set(sample.places))
     for bead, (layer, index) in zip(beads, sample.places):
         assert (bead.points[0] == whole.layers[layer].beads[index].points[0]).all()
     named = [(layer, index) for layer in (0, 30, 31, 99) for index in range(5)]
     given = tuple(f"{layer}/{index}:{layer}.5:{index}" for layer, index in named)
-    told = sample.given((*given, "*:7"))
+    told = sample.select_given((*given, "*:7"))
     places = [(layer, index) for layer, index, _ in sample.toolpath]
     found = coefficients(JointParameters(given=told), places)
     wanted = coefficients(JointParameters(given=(*given, "*:7")), sample.places)
@@ -81,13 +81,17 @@ def test_polynomials_that_are_given_stay_with_their_beads(most):
 
 
 def test_a_polynomial_for_a_bead_that_is_left_out_falls_on_no_other():
-    sample = sampled(rings(100, 5), 1000)
+    sample = sample_toolpath(rings(100, 5), 1000)
     lost = next(
         (layer, k) for layer in range(100) for k in range(5) if (layer, k) not in sample.places
     )
-    assert sample.given((f"{lost[0]}/{lost[1]}:1.0", "200/0:3")) == ()
-    whole = sampled(rings(2, 2), 10_000)
-    assert whole.whole and whole.given(("1/1:2:3", "0:4", "*:5")) == ("1/1:2:3", "0/0:4", "*:5")
+    assert sample.select_given((f"{lost[0]}/{lost[1]}:1.0", "200/0:3")) == ()
+    whole = sample_toolpath(rings(2, 2), 10_000)
+    assert whole.is_complete and whole.select_given(("1/1:2:3", "0:4", "*:5")) == (
+        "1/1:2:3",
+        "0/0:4",
+        "*:5",
+    )
 
 
 @pytest.mark.parametrize("layer_height", [3.0, 1.0, 0.5])
@@ -97,7 +101,7 @@ def test_of_a_single_bead_of_many_turns_points_alone_are_left_out(sliced, layer_
     assert spiral.bead_count == 1
     bead = spiral.layers[0].beads[0]
     turns = abs(bead.parameter[-1] - bead.parameter[0]) / (2.0 * np.pi)
-    sample = sampled(spiral, 400)
+    sample = sample_toolpath(spiral, 400)
     kept = sample.toolpath.layers[0].beads[0]
     assert (sample.beads, sample.places, sample.toolpath.bead_count) == (1, ((0, 0),), 1)
     assert 0.5 * 400 <= len(kept) <= max(1.1 * 400, 8.0 * turns)
@@ -112,15 +116,15 @@ def test_of_two_spirals_both_are_kept_and_as_few_points_as_of_one(sliced):
     one = sliced("sphere", 0.5, path="spiral")
     two = dataclasses.replace(one, layers=one.layers * 2)
     three = dataclasses.replace(one, layers=one.layers * 3)
-    alone = sampled(one, 150).toolpath.point_count
+    alone = sample_toolpath(one, 150).toolpath.point_count
     for toolpath, beads, places in ((two, 1, ((0, 0), (1, 0))), (three, 2, ((0, 0), (2, 0)))):
-        sample = sampled(toolpath, 150)
+        sample = sample_toolpath(toolpath, 150)
         assert (sample.beads, sample.places) == (beads, places)
         assert sample.toolpath.point_count == pytest.approx(2 * alone, rel=0.01)
 
 
 def test_points_leave_the_curve_by_no_more_than_the_chord_error_of_the_sample(dome):
-    sample = sampled(dome, 400)
+    sample = sample_toolpath(dome, 400)
     for number, _, bead in sample.toolpath:
         radius = np.linalg.norm(dome.layers[number].beads[0].points[:, :2], axis=1).mean()
         middle = 0.5 * (bead.points[1:] + bead.points[:-1])
@@ -137,10 +141,10 @@ def test_a_sample_is_feasible_where_the_whole_is_and_nearly_as_near_to_limits(do
     ):
         cell = cell_of(dome, limits=limits)
         found = []
-        for toolpath in (dome, sampled(dome, 400).toolpath):
+        for toolpath in (dome, sample_toolpath(dome, 400).toolpath):
             planned = plan_joints(toolpath, cell, JointParameters(method=method))
             assert has_errors(planned.issues) != feasible
-            found.append(judged(planned.beads, cell.limits, cell.machine.max_speed))
+            found.append(judge_paths(planned.beads, cell.limits, cell.machine.max_speed))
         whole, some = found
         assert some.worst_margin.value == pytest.approx(whole.worst_margin.value, abs=0.05)
         if (
@@ -154,7 +158,7 @@ def test_a_sample_is_feasible_where_the_whole_is_and_nearly_as_near_to_limits(do
         assert some.worst_condition.value == pytest.approx(whole.worst_condition.value, rel=0.1)
         assert (
             abs(some.worst_condition.layer - whole.worst_condition.layer)
-            <= 2 * sampled(dome, 400).beads
+            <= 2 * sample_toolpath(dome, 400).beads
         )
 
 
@@ -162,7 +166,7 @@ def test_what_is_told_of_planned_beads_is_what_their_joints_say(sliced, cell_of)
     toolpath = sliced("sphere", 5.0)
     cell = cell_of(toolpath, limits="maker")
     planned = plan_joints(toolpath, cell, JointParameters())
-    found = judged(planned.beads, cell.limits, cell.machine.max_speed)
+    found = judge_paths(planned.beads, cell.limits, cell.machine.max_speed)
     row = 0
     for path in planned.beads:
         for k, q in enumerate(path.joints):
@@ -206,13 +210,13 @@ def test_points_out_of_reach_have_no_figures_and_do_not_hide_the_others(sliced, 
     first, *rest = planned.beads
     joints = first.joints.copy()
     joints[3] = np.nan
-    found = judged(
+    found = judge_paths(
         [dataclasses.replace(first, joints=joints), *rest], cell.limits, cell.machine.max_speed
     )
     assert np.isnan(found.margin[3]) and np.isnan(found.condition[3]) and np.isnan(found.ratio[3])
     assert np.isfinite(found.margin[5:]).all() and found.worst_margin is not None
     lost = dataclasses.replace(first, joints=np.full_like(first.joints, np.nan))
-    nothing = judged([lost], cell.limits, cell.machine.max_speed)
+    nothing = judge_paths([lost], cell.limits, cell.machine.max_speed)
     assert (
         nothing.worst_margin is None
         and nothing.worst_condition is None

@@ -24,7 +24,7 @@ from ..limit_rows import UNREACHABLE
 from ..points import Points, gather
 from ..rotation.refine import Refined
 from ..rotation.search import Found
-from ..task import FITS, Task, condition_margin
+from ..task import MIN_MARGIN, Task, condition_margin
 from .kept import ArmKept, Place, clearance_issue
 from .refined import refined_clear
 
@@ -256,4 +256,4 @@ def _fits(task: Task, points: Points, threshold: Array, coefficients: Array) -> 
     margin = np.minimum(
         task.rows.margin(joints), condition_margin(task.condition(points, phi, joints), threshold)
     )
-    return np.asarray(points.worst(margin) >= FITS)
+    return np.asarray(points.worst(margin) >= MIN_MARGIN)

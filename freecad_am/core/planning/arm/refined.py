@@ -17,7 +17,7 @@ from ...kinematics.links.gaps import Gaps
 from ...types import Array, Index, Mask
 from ..points import Points
 from ..rotation import basis
-from ..rotation.refine import CONSTRAINT_TOLERANCE, FAR_OFF, Linear, Refined, refine_along
+from ..rotation.refine import CONSTRAINT_TOLERANCE, INACTIVE_VALUE, Linear, Refined, refine_along
 from ..rotation.refine_state import state_of
 from ..task import Task
 from .kept import ArmKept, Place
@@ -65,7 +65,7 @@ def refined_clear(
                 np.where(
                     gap[:, point_rows] < GAP_RANGE_MM,
                     (gap[:, point_rows] - EXTRA_GAP_MM) / GAP_RANGE_MM,
-                    FAR_OFF,
+                    INACTIVE_VALUE,
                 ),
                 slope[:, point_rows] / GAP_RANGE_MM,
                 reach[bead],

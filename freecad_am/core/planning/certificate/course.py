@@ -10,7 +10,7 @@ import numpy as np
 from ...geometry.angles import TURN, shortest
 from ...types import Array, Mask
 from ..points import Points
-from ..task import FITS, Task
+from ..task import MIN_MARGIN, Task
 
 STEPS = 30
 STARTS, VALUE_TOLERANCE = (
@@ -151,7 +151,7 @@ def broken_by(task: Task, points: Points, threshold: Array, phi: Array, joints: 
         [np.zeros((1, joints.shape[1])), np.cumsum(_steps(joints), axis=0)]
     )
     turns = np.round((task.middle - 0.5 * (run.min(axis=0) + run.max(axis=0))) / TURN)
-    beyond = task.rows.margin(run + np.where(task.unturned, 0.0, TURN * turns)) < FITS
+    beyond = task.rows.margin(run + np.where(task.unturned, 0.0, TURN * turns)) < MIN_MARGIN
     low, high = task.parameters.rotation_range
     if high - low < TURN - 1e-9:
         beyond |= (phi < low) | (phi > high)

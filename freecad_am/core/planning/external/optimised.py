@@ -21,7 +21,7 @@ from ...types import Array
 from ..joint_path import BeadPath
 from ..points import Points, gather, thinned
 from ..rotation import basis, refine, search
-from ..rotation.evaluation import judged
+from ..rotation.evaluation import evaluate_paths
 from ..rotation.given import GIVEN
 from ..task import Task
 from .descent import largest_margin, least_objective
@@ -250,7 +250,7 @@ def _evaluate_path(
     )
     points = gather([bead], task.cell)
     why = refine.Refined(coefficients[None], np.zeros(1), (OPTIMISED,), (iterations,))
-    (result,) = judged(
+    (result,) = evaluate_paths(
         task,
         [bead],
         [(path.layer, path.index)],

@@ -18,8 +18,8 @@ from ..arm import clear as arm_clear
 from ..joint_path import BeadPath
 from ..points import Points, gather
 from ..rotation import elsewhere, given, refine, search, ties
-from ..rotation.evaluation import judged
-from ..task import FITS, Task
+from ..rotation.evaluation import evaluate_paths
+from ..task import MIN_MARGIN, Task
 from ..turns import fit
 
 Progress = Callable[[float, str], None]
@@ -92,7 +92,7 @@ def _searched(
     )
     progress(0.7, "settling")
     paths = _resolved(task, beads, bead_ids, (coarse, coarse_threshold), (full, threshold), refined)
-    retried = elsewhere.where_lost(
+    retried = elsewhere.replace_infeasible(
         task,
         beads,
         bead_ids,
@@ -108,7 +108,9 @@ def _searched(
         )
         clear, changed = arm_clear.brought_clear(task, task.kept, beads, bead_ids, start, reached)
         if changed.any():
-            moved = judged(task, beads, bead_ids, full, threshold, clear.coefficients, clear)
+            moved = evaluate_paths(
+                task, beads, bead_ids, full, threshold, clear.coefficients, clear
+            )
             paths = [
                 cleared if is_changed else path
                 for path, cleared, is_changed in zip(paths, moved, changed)
@@ -117,14 +119,16 @@ def _searched(
     helped = {
         k: replacements
         for k, replacements in helped.items()
-        if len(replacements) == 1 or not joined[k] or paths[k].margin < FITS
+        if len(replacements) == 1 or not joined[k] or paths[k].margin < MIN_MARGIN
     }
     late = [
         k
         for k in range(len(beads))
         if k not in helped
         and k not in hopeless
-        and (paths[k].margin < FITS or (task.kept is None and retried.get(k, paths[k]) is None))
+        and (
+            paths[k].margin < MIN_MARGIN or (task.kept is None and retried.get(k, paths[k]) is None)
+        )
     ]
     helped.update(
         {
@@ -149,14 +153,14 @@ def _resolved(
     """The paths of all beads with the ties of their optima resolved. coarse, full: few and all of their points, with the
     conditions asked for there."""
     resolved = ties.resolve(task, *coarse, refined.coefficients)
-    paths = judged(task, beads, bead_ids, *full, resolved, refined)
+    paths = evaluate_paths(task, beads, bead_ids, *full, resolved, refined)
     equal = ties.as_good(task, [path.objective for path in paths], refined.objective)
-    if equal.all() and all(path.margin >= FITS for path in paths):
+    if equal.all() and all(path.margin >= MIN_MARGIN for path in paths):
         return paths
     # ties are resolved at few points of a bead: where all of them say otherwise, the optimum stays as it was found
-    as_found = judged(task, beads, bead_ids, *full, refined.coefficients, refined)
+    as_found = evaluate_paths(task, beads, bead_ids, *full, refined.coefficients, refined)
     return [
-        path if good and path.margin >= min(FITS, unresolved.margin) else unresolved
+        path if good and path.margin >= min(MIN_MARGIN, unresolved.margin) else unresolved
         for path, unresolved, good in zip(paths, as_found, equal)
     ]
 
@@ -176,7 +180,7 @@ def _add_other_turns(start: Array, candidates: search.Found) -> Array:
     )
     alternatives = []
     for turns in OTHER_TURNS:
-        turned_candidates = candidates.of_slope(turns)
+        turned_candidates = candidates.select_slope(turns)
         row = turned_candidates.best()
         serves = (turned_candidates.margin[row, bead_rows] >= 0.0) & (
             turned_candidates.objective[row, bead_rows] <= max_objective

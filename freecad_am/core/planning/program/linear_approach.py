@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Linear moves onto beads, for controllers whose arc instruction is such a move, which lights the arc at its end, or that
-switch the deposit ahead of a place on such moves.
+"""Linear moves onto beads, for controllers whose arc instruction is such a move, which lights the arc
+at its end, or that switch the deposit ahead of a position on such moves.
 
-Rapids run straight in the joints, and clearance was looked at on that way. Only so much of the end of it is told as a linear
-move as stays next to it.
+Rapids run straight in the joints, and clearance was checked on that path. The linear move covers
+only the end of the rapid that stays close to this path.
 """
 
 from __future__ import annotations
@@ -22,7 +22,9 @@ from ...program import OFF_WAY_MM, OFF_WAY_RAD
 from ...types import Array, Index
 from .beads import ARC
 
-SHARE = 0.75  # of what a linear move may be off the way that was looked at, to which it is cut
+SHARE = (
+    0.75  # share of the allowed deviation from the checked path to which a linear move is shortened
+)
 _BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
 
 
@@ -33,12 +35,13 @@ def asked(parameters: ProgramParameters, controller: Controller) -> bool:
     return parameters.motion == "cartesian" and (arc or ahead)
 
 
-def with_short_approaches(motion: Motion, cell: Cell) -> Motion:
-    """The motion with one more row on the last way onto each bead where a linear move from its start would leave it too far;
-    the joints still run straight along it, and stop there."""
+def shorten_approaches(motion: Motion, cell: Cell) -> Motion:
+    """Return the motion with one more row on the last rapid onto each bead where a linear move from its
+    start would deviate too far; the joints still run straight along it, and stop there.
+    """
     ends = _ends(motion)
     ends = ends[ends > 0]
-    off, tilt = apart(motion, cell, ends)
+    off, tilt = linear_deviations(motion, cell, ends)
     with np.errstate(divide="ignore"):  # how far it leaves grows with the square of the way
         share = np.sqrt(SHARE / np.maximum(off / OFF_WAY_MM, tilt / OFF_WAY_RAD))
     cut = (off > SHARE * OFF_WAY_MM) | (tilt > SHARE * OFF_WAY_RAD)
@@ -58,14 +61,16 @@ def with_short_approaches(motion: Motion, cell: Cell) -> Motion:
     columns["duration"][added] = (1.0 - share) * motion.duration[ends]
     columns["duration"][added + 1] = share * motion.duration[ends]
     for row in (added, added + 1):
-        way = np.linalg.norm(columns["position"][row] - columns["position"][row - 1], axis=1)
-        columns["speed"][row] = way / columns["duration"][row]
+        distance = np.linalg.norm(columns["position"][row] - columns["position"][row - 1], axis=1)
+        columns["speed"][row] = distance / columns["duration"][row]
     columns["role"][added + 1] = motions.APPROACH
     return Motion(**columns)
 
 
-def apart(motion: Motion, cell: Cell, ends: Index) -> tuple[Array, Array]:
-    """(k,) mm and rad by which a linear move to each of the rows `ends` (k,) leaves the way straight in the joints."""
+def linear_deviations(motion: Motion, cell: Cell, ends: Index) -> tuple[Array, Array]:
+    """Return mm and rad (k,) by which a linear move to each of the rows `ends` (k,) deviates from the
+    straight path in the joints.
+    """
     joints, position, tool = (
         (
             column[ends - 1, None] + _BETWEEN[:, None] * (column[ends] - column[ends - 1])[:, None]
@@ -79,31 +84,36 @@ def apart(motion: Motion, cell: Cell, ends: Index) -> tuple[Array, Array]:
     tip, axis = cell.tip_in_part(cell.machine.chain.forward(joints))
     shape = len(ends), len(_BETWEEN)
     off, tilt = (
-        np.linalg.norm(one - other, axis=1).reshape(shape).max(axis=1, initial=0.0)
-        for one, other in ((tip, position), (axis, tool))
+        np.linalg.norm(actual - expected, axis=1).reshape(shape).max(axis=1, initial=0.0)
+        for actual, expected in ((tip, position), (axis, tool))
     )
     return off, tilt
 
 
 def check(motion: Motion, cell: Cell, rows: Index, arriving: bool, arc: bool = True) -> None:
-    """Raises InputError SCHEDULE, of another program than one of an `arc` TRIGGER, where a linear move to the last of rapid
-    `rows`, at a bead, would leave the way that was looked at. arriving: where the first of them comes from is not known."""
-    last = rows[-1:]
-    place = Text("layer {} bead {}", int(motion.layer[last[0]]), int(motion.bead[last[0]]))
+    """Reject a linear move to the last of rapid `rows`, at a bead, that deviates from the checked path.
+
+    Raises InputError SCHEDULE, or TRIGGER for a program without the `arc` instruction. arriving: the
+    start of the first row is not known.
+    """
+    last_row = rows[-1:]
+    bead_name = Text(
+        "layer {} bead {}", int(motion.layer[last_row[0]]), int(motion.bead[last_row[0]])
+    )
     code, key = ("SCHEDULE", "program.schedule.by") if arc else ("TRIGGER", "program.trigger.lead")
     if arriving and len(rows) == 1:
         raise InputError(
             code,
-            place,
+            bead_name,
             "the deposit begins with a linear move onto the bead, and the program begins at the bead itself; "
             "give a retract distance, or another {}",
             key,
         )
-    off, tilt = apart(motion, cell, last)
+    off, tilt = linear_deviations(motion, cell, last_row)
     if not (off[0] <= OFF_WAY_MM and tilt[0] <= OFF_WAY_RAD):
         raise InputError(
             code,
-            place,
+            bead_name,
             "the deposit begins with a linear move onto the bead, which would leave the checked way "
             "by {:.2g} mm; give a shorter retract distance, or another {}",
             off[0],

@@ -15,7 +15,9 @@ from ...types import Array
 
 
 def frames_of(cell: Cell, parameters: ProgramParameters) -> tuple[Array, Array]:
-    """(4, 4) what stands in base_link and what the flange carries, whichever is the part taken at the program's origin."""
+    """Return the fixed frame in base_link and the load of the flange (4, 4); the one that is the part is
+    taken at the program's origin.
+    """
     if isinstance(parameters.origin, str):
         return cell.station, cell.carried
     origin = frames.inverse(cell.mount) @ frames.bryant(parameters.origin)
@@ -64,7 +66,9 @@ def remarks_of(
 
 
 def _ranges(moves: Sequence[Moves]) -> list[str]:
-    """What the program itself tells: the speeds of its beads and, where it tells them, of their wire."""
+    """Return the figures of the program itself: the speeds of its beads and, if it states them, of their
+    wire.
+    """
     beads = [run for run in moves if run.kind == DEPOSIT]
     if not beads:
         return []

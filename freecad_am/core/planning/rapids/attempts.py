@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Other retracts that are tried in turn where something is met on the way asked for."""
+"""Other retracts, tried in turn if the requested one meets an obstacle."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from .retract_ways import DIRECTIONS
 from .retracts import STRAY_MM
 
 # how many times the retract distance is tried where the nozzle would meet something, and further, beyond everything there is
-HIGHER = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
-FURTHER = 1.5
+RETRACT_FACTORS = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
+EXTENSION_FACTOR = 1.5
 # of a retract distance of nothing, mm
 FIRST_RETRACT = 2.0
 # how near to the straight line a retract is held that meets something on its way, mm
 FINE_MM = 0.02
 # retract distances in directions other than the tool axis, as shares of the one asked for
-ASIDE = (1.0, 4.0)
+SIDE_SHARES = (1.0, 4.0)
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,9 @@ class Attempt:
 def attempts(
     cell: Cell, retract: float, beads: Sequence[Bead], bodies: Sequence[Body]
 ) -> list[Attempt]:
-    """What is tried in turn after the way asked for, up to where the nozzle is beyond the sphere about all that is there."""
+    """Return the retracts to try after the requested one, up to where the nozzle is beyond the sphere
+    about all obstacles.
+    """
     radius = 0.5 * cell.platform_diameter
     x, y, origin = cell.mount[:3, 0], cell.mount[:3, 1], cell.mount[:3, 3]
     platform = [origin + radius * (a * x + b * y) for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
@@ -48,11 +50,11 @@ def attempts(
     # from anywhere inside, a way of the diameter along any direction leads out of it
     furthest = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
     base = retract or FIRST_RETRACT
-    heights = [*([] if retract else [base]), *(factor * base for factor in HIGHER)]
+    heights = [*([] if retract else [base]), *(factor * base for factor in RETRACT_FACTORS)]
     while heights[-1] < furthest:
-        heights.append(min(FURTHER * heights[-1], furthest))
+        heights.append(min(EXTENSION_FACTOR * heights[-1], furthest))
     return [
         *([Attempt(retract, 0, FINE_MM)] if retract else []),
         *(Attempt(height) for height in heights),
-        *(Attempt(share * base, direction) for direction in DIRECTIONS for share in ASIDE),
+        *(Attempt(share * base, direction) for direction in DIRECTIONS for share in SIDE_SHARES),
     ]

@@ -31,7 +31,7 @@ SLIDE = 5.0
 # anything, with the nozzle itself
 COARSE = 5.0
 FINE = 0.5
-STRIDE = 8  # one look in so many is enough to find that most moves meet something
+STRIDE = 8  # one position in STRIDE is enough to find most collisions
 # moves driven at once, so that large jobs need no more memory than small ones
 MOVES = 4096
 
@@ -45,7 +45,7 @@ class Moves(NamedTuple):
     deposited: Index
 
     def of(self, rows: Index) -> Moves:
-        """Those of the rows."""
+        """Return the moves of the rows."""
         return Moves(self.start[rows], self.end[rows], self.deposited[rows])
 
 
@@ -58,7 +58,7 @@ class Looks(NamedTuple):
     share: Array
 
     def of(self, rows: Index) -> Looks:
-        """Those of the rows."""
+        """Return the nozzle positions of the rows."""
         return Looks(self.tip[rows], self.axis[rows], self.move[rows], self.share[rows])
 
 
@@ -84,18 +84,24 @@ class RapidObstacles:
         self._box = np.array([[np.inf] * 3, [-np.inf] * 3])
         self._bodies = scene((), deposit.points, 0.0).bodies
 
-    def met(self, moves: Moves) -> Mask:
-        """(k,) whether the nozzle meets anything on each of the moves; not on those whose joints are NaN."""
-        met = np.zeros(len(moves.start), dtype=bool)
+    def find_collisions(self, moves: Moves) -> Mask:
+        """Return whether (k,) the nozzle meets an obstacle on each of the moves; False for moves whose joints
+        are NaN.
+        """
+        collides = np.zeros(len(moves.start), dtype=bool)
         reachable = np.flatnonzero(np.isfinite(moves.start + moves.end).all(axis=1))
         for begin in range(0, len(reachable), MOVES):
             rows = reachable[begin : begin + MOVES]
             batch = moves.of(rows)
-            met[rows] = self._met(batch, functools.partial(self._touched, moves=batch))
-        return met
+            collides[rows] = self._find_collisions(
+                batch, functools.partial(self._test_contact, moves=batch)
+            )
+        return collides
 
     def names(self, moves: Moves) -> list[str]:
-        """What is met on any of the moves but those whose joints are NaN: deposit, bodies by their names, the platform."""
+        """Return the obstacles met on the moves, except moves whose joints are NaN: deposit, bodies by their
+        names, the platform.
+        """
         moves = moves.of(np.flatnonzero(np.isfinite(moves.start + moves.end).all(axis=1)))
         if not len(moves.start):
             return []
@@ -108,20 +114,24 @@ class RapidObstacles:
             touching[body.name] = functools.partial(
                 _body_touched, scene((body,), tip, reach).bodies
             )
-        return [name for name, touched in touching.items() if self._met(moves, touched).any()]
+        return [
+            name
+            for name, touched in touching.items()
+            if self._find_collisions(moves, touched).any()
+        ]
 
-    def _met(self, moves: Moves, touching: Touching) -> Mask:
-        """(k,) whether anything is met on each of the moves: `touching` tells of what, and at which looks."""
-        met = np.zeros(len(moves.start), dtype=bool)
+    def _find_collisions(self, moves: Moves, touching: Touching) -> Mask:
+        """Return whether (k,) each of the moves meets an obstacle, by the test `touching` of nozzle positions."""
+        collides = np.zeros(len(moves.start), dtype=bool)
         looks = _evaluate_looks(self.cell, moves, COARSE)
         nozzle = self._nozzle(moves, looks)
 
         def mark(rows: Index) -> None:
-            met[looks.move[rows[touching(nozzle.rows(rows), looks.of(rows))]]] = True
+            collides[looks.move[rows[touching(nozzle.rows(rows), looks.of(rows))]]] = True
 
-        # most moves on which anything is met run deep into it: few looks tell that
+        # most moves that meet an obstacle run deep into it: few positions suffice to find that
         mark(np.arange(0, len(looks.move), STRIDE))
-        pending = np.flatnonzero(~met[looks.move])
+        pending = np.flatnonzero(~collides[looks.move])
         close_looks = np.zeros(len(looks.move), dtype=bool)
         close_looks[pending] = touching(
             _thicker(nozzle, 0.5 * COARSE).rows(pending), looks.of(pending)
@@ -130,7 +140,7 @@ class RapidObstacles:
         segments = np.flatnonzero(
             (looks.move[1:] == looks.move[:-1])
             & (close_looks[1:] | close_looks[:-1])
-            & ~met[looks.move[:-1]]
+            & ~collides[looks.move[:-1]]
         )
         pieces_per_step = int(np.ceil(COARSE / FINE))
         step = np.linspace(0.0, 1.0, pieces_per_step + 1)
@@ -142,14 +152,14 @@ class RapidObstacles:
             self.cell, moves, np.repeat(looks.move[segments], pieces_per_step + 1), share.ravel()
         )
         touched = touching(self._nozzle(moves, close), close)
-        return met | (np.bincount(close.move, touched, minlength=len(moves.start)) > 0)
+        return collides | (np.bincount(close.move, touched, minlength=len(moves.start)) > 0)
 
-    def _touched(self, nozzle: Nozzle, looks: Looks, moves: Moves) -> Mask:
+    def _test_contact(self, nozzle: Nozzle, looks: Looks, moves: Moves) -> Mask:
         touched = self._deposit_touched(nozzle, looks, moves)
         rows = np.flatnonzero(~touched)
         if len(rows):
             tip = looks.tip[rows]
-            touched[rows] = self._around(tip).find_touching(
+            touched[rows] = self._nearby_bodies(tip).find_touching(
                 nozzle.bodies.rows(rows), tip, looks.axis[rows]
             )
         return touched
@@ -166,7 +176,7 @@ class RapidObstacles:
         radius, slope, length = self._size
         return float(np.hypot(length, radius + slope * length))
 
-    def _around(self, tip: Array) -> Bodies:
+    def _nearby_bodies(self, tip: Array) -> Bodies:
         """The bodies that nozzles at the tips (k, 3) may meet. Trees of bodies take long and are kept for the next moves."""
         low, high = tip.min(axis=0), tip.max(axis=0)
         if (low < self._box[0]).any() or (high > self._box[1]).any():
@@ -211,7 +221,9 @@ def _evenly(cell: Cell, moves: Moves, count: Index) -> Looks:
 
 
 def evenly(count: Index) -> tuple[Index, Array]:
-    """The move (l,), and the share of it, of one look more along each move than the count (k,), both ends among them."""
+    """Return the move (l,) and the share of it for evenly spread positions, one more along each move than
+    the count (k,), both ends included.
+    """
     move = np.repeat(np.arange(len(count)), count + 1)
     step = np.arange(len(move)) - np.repeat(np.cumsum(count + 1) - count - 1, count + 1)
     return move, step / count[move]
@@ -228,7 +240,7 @@ def _body_touched(bodies: Bodies, nozzle: Nozzle, looks: Looks) -> Mask:
 
 
 def _thicker(nozzle: Nozzle, thickness: float) -> Nozzle:
-    """A nozzle that holds all that is no farther than so many mm from the nozzle."""
+    """Return a nozzle that contains every point within `thickness` mm of the nozzle."""
     return Nozzle(
         *(
             replace(

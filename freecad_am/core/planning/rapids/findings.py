@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is wrong with the rapid ways of a job, and where others than asked for were taken."""
+"""Errors of the rapids of a job, and notes on rapids that differ from the requested ones."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ from .ways import RapidWays
 
 
 def findings(rapids: RapidWays) -> tuple[Issue, ...]:
-    """An error for each bead that cannot be come to or left, and notes about what was taken in place of what was asked."""
+    """Return an error for each bead that cannot be reached or left, and notes about rapids that replace
+    the requested ones.
+    """
     met: list[Issue] = []
     for k in rapids.met:
         names, arm = rapids.reasons(k), rapids.arm_issue(k)
@@ -25,7 +27,7 @@ def findings(rapids: RapidWays) -> tuple[Issue, ...]:
 
 
 def _collision(names: Sequence[str], layer: int, bead: int) -> Issue:
-    """About a bead on the rapid way to which the nozzle would meet what the names tell."""
+    """Return the error of a bead on whose rapid the nozzle would meet the obstacles `names`."""
     return Issue(
         ERROR,
         "RAPID_COLLISION",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rapid ways that are led round what is met however far the tool is retracted: by places between, found by sampling."""
+"""Rapids around an obstacle that no retract distance avoids: through via points, found by sampling."""
 
 from __future__ import annotations
 
@@ -35,21 +35,23 @@ class LedRound:
             Array
         ] = []  # places of the last ways found, there and back: the next one often leads the same way
 
-    def found(
+    def find_detour(
         self,
         ends: Mapping[int, Array],
         legs: Mapping[int, Leg | None],
         attempts: Sequence[Attempt],
         deposited: int,
     ) -> tuple[Legs, Array] | None:
-        """Legs off the ends of beads, with the joints (axes,) at the ends by their number, and the places (m, axes) by which
-        a way leads from one to the other, so many points being laid; None where there is none. legs: those tried before."""
+        """Return legs off the ends of beads, with the joints (axes,) at the ends by their number, and the via
+        points (m, axes) of a path between them, with `deposited` points printed; None without one. legs:
+        the legs tried before.
+        """
         if not ends or self._lost >= MAX_FAILED_DETOURS:
             return None
         new_legs: Legs = {}
         far_ends: list[Array] = []
         for end, joints in ends.items():
-            off = self._off(end, joints, legs[end], attempts, deposited)
+            off = self._find_leg(end, joints, legs[end], attempts, deposited)
             if off is not None:
                 new_legs[end] = off[0]
                 far_ends.append(off[1])
@@ -64,7 +66,7 @@ class LedRound:
         self._known = [via_points, via_points[::-1], *self._known][:KNOWN]
         return new_legs, via_points
 
-    def _off(
+    def _find_leg(
         self,
         end: int,
         joints: Array,
@@ -72,7 +74,9 @@ class LedRound:
         attempts: Sequence[Attempt],
         deposited: int,
     ) -> tuple[Leg | None, Array] | None:
-        """A clear way off the end of a bead, none where it needs none, and where that leads to; None without any."""
+        """Return a clear leg off the end of a bead, None where it needs none, and its far joints; None without
+        any.
+        """
         if tried_leg is None and self._clear(joints[None], joints[None], deposited)[0]:
             return None, joints
         for leg in self._others(end, tried_leg, attempts):
@@ -88,7 +92,7 @@ class LedRound:
         if tried_leg is not None:
             yield tried_leg
         for attempt in attempts:
-            legs, _ = self.retracts.found(
+            legs, _ = self.retracts.find_legs(
                 np.array([end]),
                 np.array([attempt.height]),
                 attempt.direction,
@@ -127,7 +131,7 @@ class LedRound:
         further than from one to the other."""
         limits, robot_axes = self.cell.limits, self.cell.robot.chain.axes
         lowest, highest = np.minimum(start, goal), np.maximum(start, goal)
-        reserve = self.retracts.kept(RESERVE)[: limits.axes]
+        reserve = self.retracts.reserve_of_limits(RESERVE)[: limits.axes]
         low = np.where(limits.continuous, lowest - np.pi, limits.lower + reserve)
         high = np.where(limits.continuous, highest + np.pi, limits.upper - reserve)
         low[robot_axes:], high[robot_axes:] = lowest[robot_axes:], highest[robot_axes:]
@@ -135,7 +139,7 @@ class LedRound:
 
     def _fits(self, joints: Array) -> Mask:
         """(k,) whether joints keep limits and condition, and are of the configuration of the beads."""
-        fits = self.retracts.fits(joints[:, None], self.retracts.kept(RESERVE))
+        fits = self.retracts.fits(joints[:, None], self.retracts.reserve_of_limits(RESERVE))
         arm, branch = self.cell.robot.arm, self.retracts.branch
         rows = np.flatnonzero(fits)
         if branch is not None and arm is not None and len(rows):

@@ -42,7 +42,7 @@ DEFAULT_CHOICE = Choice()
 
 
 def groups(direction: int, thorough: bool) -> tuple[tuple[Choice, ...], ...]:
-    """The ways in their order of preference; those of a group are looked at together."""
+    """Return the retracts in their order of preference; the retracts of a group are checked together."""
     if not thorough:
         return (
             (Choice(1.0, direction),),
@@ -88,7 +88,7 @@ class Ways(NamedTuple):
     lean: Array
 
     def of(self, rows: Index) -> Ways:
-        """Those of the rows."""
+        """Return the retracts of the rows."""
         return Ways(*(column[rows] for column in self))  # type: ignore[arg-type]
 
 

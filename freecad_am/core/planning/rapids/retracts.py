@@ -95,7 +95,7 @@ class Retracts:
         return across, np.cross(tool, across)
 
     def _sides(self, angle: float) -> Array:
-        """(n, 3) unit vectors across the tool axes, at an angle (rad) about them from the first of these."""
+        """Return unit vectors (n, 3) across the tool axes, at an angle (rad) about them from the first side."""
         across, across_both = self._across
         side: Array = math.cos(angle) * across + math.sin(angle) * across_both
         return side
@@ -124,7 +124,7 @@ class Retracts:
         requested = self.parameters.min_condition
         return CONDITION_FLOOR if isinstance(requested, str) else float(requested)
 
-    def found(
+    def find_legs(
         self,
         end_numbers: Index,
         height: Array,
@@ -132,8 +132,10 @@ class Retracts:
         tolerance: float = STRAY_MM,
         thorough: bool = True,
     ) -> tuple[list[Leg | None], list[Failure | None]]:
-        """The ways off the ends `end_numbers` (k,) by the heights (k,) mm along a direction, or what comes nearest to that; and
-        where there is none at all, None and why the one asked for is none. Not `thorough`: by other rotations alone."""
+        """Return the legs off the ends `end_numbers` (k,) by the heights (k,) mm along a direction, or the
+        nearest alternatives; where there is none at all, None and the failure of the requested leg. Not
+        `thorough`: only by other rotations.
+        """
         legs: list[Leg | None] = [None] * len(end_numbers)
         failures: list[Failure | None] = [None] * len(end_numbers)
         # the way asked for is left as it is wherever it can be gone
@@ -143,7 +145,7 @@ class Retracts:
                 rows = np.array([k for k, leg in enumerate(legs) if leg is None], dtype=np.intp)
                 if not len(rows):
                     return legs, failures
-                reserved = self.kept(LAST_DIGIT_RAD if is_default else reserve)
+                reserved = self.reserve_of_limits(LAST_DIGIT_RAD if is_default else reserve)
                 for k, leg in zip(
                     rows.tolist(),
                     self._first(end_numbers[rows], height[rows], group, tolerance, reserved),
@@ -152,7 +154,10 @@ class Retracts:
                 if is_default:
                     failed = [k for k in rows.tolist() if legs[k] is None]
                     for k, why in zip(
-                        failed, self._why(end_numbers[failed], height[failed], direction, reserved)
+                        failed,
+                        self._explain_failures(
+                            end_numbers[failed], height[failed], direction, reserved
+                        ),
                     ):
                         failures[k] = why
                 is_default = False
@@ -182,7 +187,7 @@ class Retracts:
         pending = np.flatnonzero(self._possible(candidates))
         moves = 1
         while len(pending) and moves <= MOST_MOVES:
-            # no more is looked at of a way than it takes to see that it is none, and of none after one that is found
+            # a retract is checked only until it fails, and none after the first that serves
             ready = pending[(np.abs(candidates.turn[pending]) <= MOVE_TURN_RAD * moves)]
             pending = pending[np.abs(candidates.turn[pending]) > MOVE_TURN_RAD * moves]
             joints, position = self._courses(candidates.of(ready), moves)
@@ -202,7 +207,7 @@ class Retracts:
         return legs
 
     def _ways(self, end_numbers: Index, height: Array, group: Sequence[Choice]) -> Ways:
-        """All ways of a group of all ends, those of an end together."""
+        """Return all retracts of a group for all ends, grouped by end."""
         count = len(group)
         end = np.repeat(end_numbers, count)
         column = {
@@ -230,8 +235,9 @@ class Retracts:
         return np.asarray(possible & (~turned | (phi >= low) & (phi <= high)))
 
     def _courses(self, candidates: Ways, moves: int) -> tuple[Array, Array]:
-        """Joints (k, moves, axes) at the ends of so many equal moves, each in the turns of the one before, and the tip there
-        (k, moves, 3); joints NaN where the machine does not reach."""
+        """Return joints (k, moves, axes) at the ends of `moves` equal moves, each in the turns of the previous
+        one, and the tip there (k, moves, 3); joints NaN out of reach.
+        """
         share = np.arange(1, moves + 1) / moves
         point, tool, joints = (
             column[candidates.end] for column in (self.ends.point, self.ends.tool, self.ends.joints)
@@ -325,13 +331,13 @@ class Retracts:
         )
         return np.where(sliding, RESERVE, 0.0)
 
-    def kept(self, reserve: float) -> Array:
+    def reserve_of_limits(self, reserve: float) -> Array:
         return np.maximum(self._least, reserve)
 
-    def _why(
+    def _explain_failures(
         self, end_numbers: Index, height: Array, direction: int, reserved: Array
     ) -> list[Failure]:
-        """What is wrong with the ways asked for."""
+        """Return the failures of the requested legs."""
         failures = []
         joints = self._courses(self._ways(end_numbers, height, (Choice(1.0, direction),)), 1)[0][
             :, 0
@@ -345,7 +351,7 @@ class Retracts:
             worst = int(margin.argmin())
             if margin[worst] >= 0.0:
                 value = float(self.condition(row[None])[0])
-                # the way there may be what is wrong, not its end
+                # the path there may be infeasible, not its end
                 failures.append(
                     Failure(SINGULAR, 0, value, self.floor)
                     if value < self.floor

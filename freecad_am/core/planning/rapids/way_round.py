@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A way from one place to another in the joints, round what is in the way, by sampling.
+"""A path from one position to another in the joints, around obstacles, by sampling.
 
-Two trees of clear moves grow towards the same samples, one from each end, until a clear move joins them (RRT-Connect, after
-Kuffner and LaValle 2000); here they grow by many samples at once. What joins both ends is made shorter: of all clear moves
-between its places those that take the least time are kept, and these are pulled towards each other as far as that stays
-clear. The samples are the same each time and know no chance, so that the same job has the same ways.
+Two trees of clear moves grow towards the same samples, one from each end, until a clear move joins
+them (RRT-Connect, after Kuffner and LaValle 2000); here they grow by many samples at once. The
+joined path is then shortened: of all clear moves between its points those with the least time are
+kept, and these points are pulled towards each other as far as the path stays clear. The samples
+are always the same, without randomness, so that the same job has the same rapids.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from ...types import Array, Index, Mask
 Free = Callable[
     [Array, Array], Mask
 ]  # (k,) whether moves straight in the joints from (k, axes) to (k, axes) are clear
-Fits = Callable[[Array], Mask]  # (k,) whether the machine may stand with joints (k, axes)
+Fits = Callable[[Array], Mask]  # (k,) whether joints (k, axes) are allowed
 
 BATCH, ROUNDS = 32, 30  # samples that trees grow by at once, and how often
 FULL_RANGE_ROUND = (
@@ -52,13 +53,13 @@ class _Tree:
     def __init__(self, root: Array) -> None:
         self.place, self.parent, self.lasts = root[None], np.array([-1]), np.zeros(1)
 
-    def nearest(self, ranges: Ranges, place: Array) -> Index:
-        """(k,) which of its places is nearest to each of the places (k, axes)."""
-        return np.asarray(ranges.lasts(self.place[None], place[:, None]).argmin(axis=1))
+    def nearest(self, ranges: Ranges, position: Array) -> Index:
+        """Return the indices (k,) of the nodes nearest to the positions (k, axes)."""
+        return np.asarray(ranges.lasts(self.place[None], position[:, None]).argmin(axis=1))
 
-    def grown(self, place: Array, parent: Index, lasts: Array) -> None:
-        """Adds places that moves of `lasts` s lead to from their parents."""
-        self.place = np.concatenate([self.place, place])
+    def add_nodes(self, position: Array, parent: Index, lasts: Array) -> None:
+        """Add positions that moves of `lasts` s lead to from their parents."""
+        self.place = np.concatenate([self.place, position])
         self.lasts = np.concatenate([self.lasts, self.lasts[parent] + lasts])
         self.parent = np.concatenate([self.parent, parent])
 
@@ -72,7 +73,7 @@ class _Tree:
 
 
 def way_round(start: Array, end: Array, ranges: Ranges, free: Free, fits: Fits) -> Array | None:
-    """The places (m, axes) between two others by which clear moves lead from one to the other; None where none are found."""
+    """Return the positions (m, axes) of a clear path between two others; None if none is found."""
     route = _connect(start, end, ranges, free, fits)
     if route is None:
         return None
@@ -113,7 +114,7 @@ def _grow(tree: _Tree, samples: Array, ranges: Ranges, free: Free, fits: Fits) -
     rows = np.flatnonzero(fits(target))
     rows = rows[free(tree.place[parent[rows]], target[rows])]
     old_count = len(tree.place)
-    tree.grown(target[rows], parent[rows], ranges.lasts(tree.place[parent[rows]], target[rows]))
+    tree.add_nodes(target[rows], parent[rows], ranges.lasts(tree.place[parent[rows]], target[rows]))
     return np.arange(old_count, len(tree.place))
 
 
@@ -160,26 +161,32 @@ def _shortest(route: Array, ranges: Ranges, free: Free) -> Array:
 
 
 def _shorten_by_pulling(route: Array, ranges: Ranges, free: Free, fits: Fits) -> Array:
-    """A way (m, axes) with each place between both ends where it is, or nearer to halfway between its neighbours, so that
-    all of it takes the least time; its moves are clear."""
+    """Return a path (m, axes) with each inner point at its position or pulled towards halfway between its
+    neighbours, so that it takes the least time; its moves are clear.
+    """
     inner, halfway = route[1:-1], 0.5 * (route[:-2] + route[2:])
     pulled = inner[:, None] + PULLS[:, None] * (halfway - inner)[:, None]
     stands = fits(pulled.reshape(-1, route.shape[1])).reshape(len(inner), len(PULLS))
     stands[:, 0] = True
-    layers = [route[:1], *(some[here] for some, here in zip(pulled, stands)), route[-1:]]
-    starts = [np.repeat(some, len(then), axis=0) for some, then in zip(layers[:-1], layers[1:])]
-    stops = [np.tile(then, (len(some), 1)) for some, then in zip(layers[:-1], layers[1:])]
+    layers = [route[:1], *(layer[allowed] for layer, allowed in zip(pulled, stands)), route[-1:]]
+    starts = [
+        np.repeat(layer, len(next_layer), axis=0)
+        for layer, next_layer in zip(layers[:-1], layers[1:])
+    ]
+    stops = [
+        np.tile(next_layer, (len(layer), 1)) for layer, next_layer in zip(layers[:-1], layers[1:])
+    ]
     a, b = np.concatenate(starts), np.concatenate(stops)
     lasts = np.where(free(a, b), np.maximum(ranges.lasts(a, b), SHORTEST_RAPID), np.inf)
     soonest, choices, offset = np.zeros(1), [], 0
-    for some, then in zip(layers[:-1], layers[1:]):
-        total = soonest[:, None] + lasts[offset : offset + len(some) * len(then)].reshape(
-            len(some), len(then)
+    for layer, next_layer in zip(layers[:-1], layers[1:]):
+        total = soonest[:, None] + lasts[offset : offset + len(layer) * len(next_layer)].reshape(
+            len(layer), len(next_layer)
         )
         choices.append(total.argmin(axis=0))
-        soonest, offset = total.min(axis=0), offset + len(some) * len(then)
+        soonest, offset = total.min(axis=0), offset + len(layer) * len(next_layer)
     position, pulled_route = 0, []
-    for some, choice in zip(layers[::-1], [*choices[::-1], None]):
-        pulled_route.append(some[position])
+    for layer, choice in zip(layers[::-1], [*choices[::-1], None]):
+        pulled_route.append(layer[position])
         position = 0 if choice is None else int(choice[position])
     return np.array(pulled_route[::-1])

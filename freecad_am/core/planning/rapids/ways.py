@@ -54,7 +54,7 @@ class RapidWays:
         height: float = 0.0,
         cylinders: Cylinders = (),
     ) -> None:
-        """width, height: mm, of beads that do not tell theirs."""
+        """width, height: mm, for beads without their own."""
         self.beads, self.cell, self.retract = joint_path.beads, cell, retract
         self.retracts = Retracts(
             cell, Ends.of(self.beads), branch_of(joint_path.branch), parameters
@@ -76,9 +76,9 @@ class RapidWays:
         self.met = sorted({*self._lead_round(met), *hopeless})
 
     def _ask(self) -> None:
-        """The legs as asked for, or what comes nearest where the machine cannot go them."""
+        """Find the requested legs, or the nearest alternatives that the machine can move."""
         sound = np.flatnonzero(self.retracts.sound)
-        legs, failures = self.retracts.found(sound, np.full(len(sound), self.retract))
+        legs, failures = self.retracts.find_legs(sound, np.full(len(sound), self.retract))
         for end, leg, failure in zip(sound.tolist(), legs, failures):
             self.legs[end] = leg
             if leg is None and failure is not None:
@@ -161,14 +161,14 @@ class RapidWays:
         return subdivisions[0], lowest_conditions[0]
 
     def _moves(self, k: int, rapid: Way) -> Moves:
-        """The moves of way k as they are looked at."""
+        """Return the moves of rapid k as they are checked."""
         joints = rapid.joints if rapid.start is None else np.vstack([rapid.start, rapid.joints])
         return Moves(
             joints[:-1], joints[1:], np.full(max(len(joints) - 1, 0), self.rows[k], dtype=np.intp)
         )
 
     def _find_collisions(self, numbers: Sequence[int], rapids: Sequence[Way]) -> list[int]:
-        """The ways, of those numbered, on which anything is met."""
+        """Return the rapids among `numbers` that meet an obstacle."""
         moves = [self._moves(k, rapid) for k, rapid in zip(numbers, rapids)]
         if not moves:
             return []
@@ -181,7 +181,7 @@ class RapidWays:
 
     def _clear_moves(self, moves: Moves) -> Mask:
         """(k,) whether nothing is met on moves."""
-        met = self.obstacles.met(moves)
+        met = self.obstacles.find_collisions(moves)
         if self.cell.part_moves or self.cell.external_links:
             met |= nozzle_obstacles.find_contacts(self.cell, moves.start, moves.end).any(axis=0)
         remaining = np.flatnonzero(~met)
@@ -205,7 +205,7 @@ class RapidWays:
         return list(met), hopeless
 
     def _lead_round(self, met: Sequence[int]) -> list[int]:
-        """Leads ways round what is met on them; those where none was found."""
+        """Lead rapids around their obstacles; return the rapids without a detour."""
         unsolved = []
         for k in met:
             ends = (
@@ -213,7 +213,7 @@ class RapidWays:
                 if k in (0, len(self.beads))
                 else {2 * k - 1: self.beads[k - 1].joints[-1], 2 * k: self.beads[k].joints[0]}
             )
-            detour = self.led.found(ends, self.legs, self.attempts, self.rows[k])
+            detour = self.led.find_detour(ends, self.legs, self.attempts, self.rows[k])
             if detour is None:
                 unsolved.append(k)
                 continue
@@ -226,7 +226,9 @@ class RapidWays:
         return unsolved
 
     def _standing_too_near(self, numbers: Sequence[int]) -> set[int]:
-        """The ways, of those numbered, at whose beginning or end on a bead a link of the arm is too near to something."""
+        """Return the rapids among `numbers` that start or end on a bead with a link of the arm too near to an
+        obstacle.
+        """
         if self.arm is None or not numbers:
             return set()
         ends = [(k, self.beads[k - 1].joints[-1]) for k in numbers if k > 0]
@@ -241,7 +243,7 @@ class RapidWays:
         # without a retract distance the machine stays where the last bead ends
         candidates = [k for k in met if self.retract > 0.0 or k < len(self.beads)]
         ends = np.array(sorted({end for k in candidates for end in self.ends(k)}), dtype=np.intp)
-        legs_found, _ = self.retracts.found(
+        legs_found, _ = self.retracts.find_legs(
             ends,
             np.full(len(ends), attempt.height),
             attempt.direction,
@@ -264,7 +266,7 @@ class RapidWays:
         return [k for k in met if k not in attempts_by_number or k in still]
 
     def place(self, k: int) -> BeadPath:
-        """The bead that way k is told of: that which it leads to, or the last one."""
+        """Return the bead to which issues of rapid k refer: its target, or the last one."""
         return self.beads[min(k, len(self.beads) - 1)]
 
     def reasons(self, k: int) -> list[str]:

@@ -13,7 +13,7 @@ from ...kinematics.cell import Cell
 from ...toolpath import Bead
 from ...types import Array
 from ..task import Task
-from .map import Columns, Picture, alone, planned_external
+from .map import Columns, Picture, planned_external, single_points
 
 
 def across(
@@ -70,7 +70,7 @@ def _columns_with_external(
     return Columns(
         np.full(count, bead),
         np.full(count, point),
-        alone(cell, position, tool, parameter, external),
+        single_points(cell, position, tool, parameter, external),
     )
 
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A curve of the free rotation along a path: what the machine makes of it at once, and handles to change it by."""
+"""A curve of the free rotation along a path: its immediate effect on the machine, and handles to
+change it.
+"""
 
 from __future__ import annotations
 
@@ -193,8 +195,10 @@ def compared(
             task, parameters=replace(task.parameters, method=method, given=(), rz="auto")
         )
 
-        def part(fraction: float, text: str, done: int = number, name: str = method) -> None:
-            progress((done + fraction) / len(METHODS), f"{name}: {text}")
+        def part(
+            fraction: float, text: str, finished_count: int = number, name: str = method
+        ) -> None:
+            progress((finished_count + fraction) / len(METHODS), f"{name}: {text}")
 
         part(0.0, "planning")
         paths, issues = plan(method_task, beads, bead_ids, part)

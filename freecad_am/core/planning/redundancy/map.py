@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The free rotation as a map: points of a path against the whole turn, and what the machine makes of each cell.
+"""The free rotation as a map: points of a path against the whole turn, with the state of the machine
+in each cell.
 
-Every cell is judged as the planner judges a point that stands for itself: the closed form of all branches at once, limited
-axes in the turn nearest to the middle of their range. What a curve on the map means besides, such as an axis that runs out
-of turns along a bead, is told by `curve`.
+Every cell is judged as the planner judges an independent point: the closed form of all branches at
+once, limited axes in the turn nearest to the middle of their range. Further effects of a curve on
+the map, such as an axis that runs out of turns along a bead, are in `curve`.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from ...types import Array, Index, Mask
 from ..findings import ROUNDING
 from ..limit_rows import UNREACHABLE, LimitRows
 from ..points import Points
-from ..task import Task, with_external
+from ..task import Task, append_external
 
 RZ, ROTATION = "rz", "rotation"
 ROWS, MAX_COLUMNS = 181, 300
@@ -89,7 +90,7 @@ class Picture:
         return np.asarray(self.margin > UNREACHABLE)
 
     @property
-    def beyond(self) -> Mask:
+    def past_limit(self) -> Mask:
         """(R, C) cells past a limit."""
         return self.reachable & (self.margin < -ROUNDING)
 
@@ -101,7 +102,7 @@ class Picture:
     @property
     def feasible(self) -> Mask:
         """(R, C) cells in which the planner has nothing to say against a point."""
-        return self.reachable & ~self.beyond & ~self.singular & ~self.outside
+        return self.reachable & ~self.past_limit & ~self.singular & ~self.outside
 
 
 def columns(beads: Sequence[Bead], cell: Cell, max_columns: int = MAX_COLUMNS) -> Columns:
@@ -137,7 +138,7 @@ def columns(beads: Sequence[Bead], cell: Cell, max_columns: int = MAX_COLUMNS) -
     return Columns(
         np.repeat(np.array(bead_numbers), [len(index) for index in point_indices]),
         np.concatenate(point_indices),
-        alone(
+        single_points(
             cell,
             position,
             tool,
@@ -148,7 +149,7 @@ def columns(beads: Sequence[Bead], cell: Cell, max_columns: int = MAX_COLUMNS) -
 
 
 def external_of(cell: Cell, beads: Sequence[Bead], point_indices: Sequence[Index]) -> Array | None:
-    """(T, k) values of the external axes at so many points of beads, None of a cell without."""
+    """Return the values (T, k) of the external axes at selected points of beads, None for a cell without."""
     if cell.external is None:
         return None
     external_values: Array = np.concatenate(
@@ -159,14 +160,14 @@ def external_of(cell: Cell, beads: Sequence[Bead], point_indices: Sequence[Index
 
 def planned_external(bead: Bead) -> Array:
     """(n, k) values of the external axes at the points of a bead of a plan that has some."""
-    assert bead.external is not None  # beads of a plan with external axes tell where these are
+    assert bead.external is not None  # beads of a plan with external axes have their values
     return bead.external
 
 
-def alone(
+def single_points(
     cell: Cell, position: Array, tool: Array, parameter: Array, external: Array | None
 ) -> Points:
-    """Points each standing for itself."""
+    """Return the points, each as a bead of one point."""
     number, slides = np.arange(len(position)), cell.machine.chain.sliding
     return Points(
         position,
@@ -194,7 +195,7 @@ def redundancy_map(
     """
     values = np.linspace(-np.pi, np.pi, ROWS) if values is None else values
     phi = rotation_of(task.cell, map_columns.points.tool, values[:, None], axis)
-    joints = _of_all_branches(task, map_columns.points, phi)
+    joints = _joints_of_branches(task, map_columns.points, phi)
     margin = _margin(task, task.given_rows, joints)
     low, high = task.parameters.rotation_range
     outside = np.zeros(phi.shape, dtype=bool)
@@ -237,10 +238,12 @@ def arm_touched(
     moment: Index,
     row_stride: int = 1,
 ) -> Mask:
-    """(R, C) the cells of a branch in which a link of the robot touches nozzle, platform, a body or the deposit there is.
+    """Return the cells (R, C) of a branch in which a link of the robot touches nozzle, platform, a body or
+    the deposit of that moment.
 
-    moment: (C,) how many points of the deposit are there at a column. row_stride: one of so many rows is looked at and stands for
-    those about it. Cells past a limit, or not allowed for another reason, are not looked at.
+    moment: (C,) number of points of the deposit at a column. row_stride: one of `row_stride` rows is
+    checked and represents its neighbours. Cells past a limit, or not allowed for another reason, are
+    not checked.
     """
     count = len(redundancy.values)
     rows = np.arange(min(row_stride // 2, count - 1), count, row_stride)
@@ -250,7 +253,7 @@ def arm_touched(
         points.frames.flange_poses(redundancy.phi[rows]).reshape(-1, 4, 4), branch
     )
     if points.external is not None:
-        joints = with_external(joints, np.tile(points.external, (len(rows), 1)))
+        joints = append_external(joints, np.tile(points.external, (len(rows), 1)))
     considered = (
         (redundancy.margin[branch] >= -ROUNDING) & ~redundancy.outside & ~redundancy.touching
     )
@@ -295,7 +298,7 @@ def in_turns(values: Array, starts: Mask) -> Array:
 
 def joints_at(task: Task, map_columns: Columns, column: int, phi: float) -> Array:
     """(8, axes) joints of all branches at one cell, in the turn that the map counts with; NaN out of reach."""
-    joints = _of_all_branches(
+    joints = _joints_of_branches(
         task, map_columns.points.select_points(np.array([column])), np.array([[phi]])
     )[:, 0, 0]
     turns = np.where(task.continuous, 0.0, np.round((task.middle - joints) / TURN))
@@ -303,13 +306,13 @@ def joints_at(task: Task, map_columns: Columns, column: int, phi: float) -> Arra
     return np.asarray(joints + TURN * turns)
 
 
-def _of_all_branches(task: Task, points: Points, phi: Array) -> Array:
+def _joints_of_branches(task: Task, points: Points, phi: Array) -> Array:
     """(8, R, C, axes) joints of all branches for rotations phi (R, C) of C points; NaN out of reach."""
     arm = task.cell.machine.arm
     assert arm is not None  # resolve() refuses other machines
     joints = arm.inverse(points.frames.flange_poses(phi).reshape(-1, 4, 4))[:8]
     joints = joints.reshape(len(joints), *phi.shape, -1)
-    return joints if points.external is None else with_external(joints, points.external)
+    return joints if points.external is None else append_external(joints, points.external)
 
 
 def _margin(task: Task, rows: LimitRows, joints: Array) -> Array:

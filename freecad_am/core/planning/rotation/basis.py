@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the optimiser may change of a polynomial: all of it, or what leaves a closed bead joined.
+"""The polynomials that the optimiser may add: all, or those that keep a closed bead joined.
 
-A closed bead whose polynomial takes the same value at both ends, but for whole turns, comes back to the pose it started
-with. The turns are chosen by the search; what is left to vary are polynomials that are alike at both ends.
+A closed bead whose polynomial takes the same value at both ends, up to whole turns, comes back to
+its starting pose. The search chooses the turns; polynomials equal at both ends remain free.
 """
 
 from __future__ import annotations

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rotations of beads for which those that seemed best do not serve: the search looks at few points, and between them, or
-between the points of the bead, it may come out of its limits or too near to a singularity."""
+"""Other rotations for beads whose best candidates fail: the search samples few points, and between
+them, or between the points of the bead, a candidate may exceed limits or come too near to a
+singularity.
+"""
 
 from __future__ import annotations
 
@@ -14,27 +16,28 @@ from ...types import Array
 from ..joint_path import BeadPath
 from ..limit_rows import UNREACHABLE
 from ..points import Points, gather
-from ..task import FITS, Task, condition_margin
+from ..task import MIN_MARGIN, Task, condition_margin
 from . import refine, search
-from .evaluation import judged
+from .evaluation import evaluate_paths
 
 Place = tuple[int, int]
 
 LOW_CONDITION_RATIO = (
     3.0  # times the condition asked for; from there it may fall short between two points
 )
-HALVINGS = 2  # of each segment, where it is looked at between
-CANDIDATES = 12  # rotations of a bead that are looked at there
+HALVINGS = 2  # halvings of each segment to check between its points
+CANDIDATES = 12  # rotations of a bead that are checked there
 BEADS_PER_BATCH = 64  # beads; bounds the memory
 
 
-def lost(task: Task, beads: Sequence[Bead], paths: Sequence[BeadPath]) -> list[int]:
-    """Which of the beads do not keep all limits with their rotation, at their points or between them."""
-    infeasible = [k for k, path in enumerate(paths) if path.margin < FITS]
+def find_infeasible(task: Task, beads: Sequence[Bead], paths: Sequence[BeadPath]) -> list[int]:
+    """Return which of the beads exceed a limit with their rotation, at their points or between them."""
+    infeasible = [k for k, path in enumerate(paths) if path.margin < MIN_MARGIN]
     low = [
         k
         for k, path in enumerate(paths)
-        if path.margin >= FITS and (path.condition < LOW_CONDITION_RATIO * path.threshold).any()
+        if path.margin >= MIN_MARGIN
+        and (path.condition < LOW_CONDITION_RATIO * path.threshold).any()
     ]
     if low:
         finer = [_finer(beads[k]) for k in low]
@@ -49,11 +52,11 @@ def lost(task: Task, beads: Sequence[Bead], paths: Sequence[BeadPath]) -> list[i
         joints = task.joints(points, phi)
         condition = condition_margin(task.condition(points, phi, joints), task.thresholds(points))
         margin = points.worst(np.minimum(task.rows.margin(joints), condition))
-        infeasible += [k for k, lowest_margin in zip(low, margin) if lowest_margin < FITS]
+        infeasible += [k for k, lowest_margin in zip(low, margin) if lowest_margin < MIN_MARGIN]
     return sorted(infeasible)
 
 
-def where_lost(
+def replace_infeasible(
     task: Task,
     beads: Sequence[Bead],
     bead_ids: Sequence[Place],
@@ -61,27 +64,33 @@ def where_lost(
     candidates_found: search.Found,
     report: Callable[[float], None],
 ) -> dict[int, BeadPath | None]:
-    """What `of_beads` finds for the beads that do not keep all limits though a candidate did at few of their points. report:
-    takes the share that is done; it may raise to cancel."""
+    """Return the results of `find_rotations` for beads that exceed limits though a candidate did not at
+    few of their points. report: takes the finished share; it may raise to cancel.
+    """
     promising = candidates_found.margin.max(axis=0) >= 0.0
-    rows = [k for k in lost(task, beads, paths) if promising[k]]
+    rows = [k for k in find_infeasible(task, beads, paths) if promising[k]]
     replacements: dict[int, BeadPath | None] = {}
     for start in range(0, len(rows), BEADS_PER_BATCH):
         report(start / len(rows))
         batch = rows[start : start + BEADS_PER_BATCH]
-        candidates = candidates_found.of_beads(np.array(batch, dtype=np.intp))
+        candidates = candidates_found.select_beads(np.array(batch, dtype=np.intp))
         replacements |= zip(
             batch,
-            of_beads(task, [beads[k] for k in batch], [bead_ids[k] for k in batch], candidates),
+            find_rotations(
+                task, [beads[k] for k in batch], [bead_ids[k] for k in batch], candidates
+            ),
         )
     return replacements
 
 
-def of_beads(
+def find_rotations(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[Place], candidates_found: search.Found
 ) -> list[BeadPath | None]:
-    """For each bead the path of the rotation that suits all its points, and those between them, best, refined from there
-    where that keeps all limits too; None where none does. candidates_found: the candidates of these beads, judged at few points."""
+    """Return for each bead the path of the rotation best at all its points and between them, refined from
+    there if that keeps all limits too; None if no rotation serves.
+
+    candidates_found: the candidates of these beads, judged at few points.
+    """
     points, between = gather(beads, task.cell), gather([_finer(bead) for bead in beads], task.cell)
     thresholds = task.thresholds(points)
     judged_candidates = _judged_at(
@@ -99,10 +108,10 @@ def of_beads(
     as_found = dataclasses.replace(refined, coefficients=start)
     paths: list[BeadPath | None] = [None] * len(beads)
     for solution in (refined, as_found):
-        attempted = judged(
+        attempted = evaluate_paths(
             task, beads, bead_ids, points, thresholds, solution.coefficients, solution
         )
-        short = lost(task, beads, attempted)
+        short = find_infeasible(task, beads, attempted)
         paths = [
             path or (attempt if good and k not in short else None)
             for k, (path, attempt, good) in enumerate(zip(paths, attempted, serves))

@@ -18,7 +18,7 @@ from . import refine
 Place = tuple[int, int]
 
 
-def judged(
+def evaluate_paths(
     task: Task,
     beads: Sequence[Bead],
     bead_ids: Sequence[Place],
@@ -27,7 +27,7 @@ def judged(
     coefficients: Array,
     refined: refine.Refined,
 ) -> list[BeadPath]:
-    """The paths of all beads for given coefficients (B, degree + 1), evaluated at all their points."""
+    """Return the paths of all beads for given coefficients (B, degree + 1), evaluated at all their points."""
     phi, _ = task.rotation(points, points.polynomial(coefficients))
     joints = task.joints(points, phi)
     condition = task.condition(points, phi, joints)
@@ -43,7 +43,7 @@ def judged(
         np.minimum(task.rows.margin(joints), condition_margin(condition, threshold))
     )
     ends = np.append(points.first, len(points))
-    # as joints go: of a bead of few points a steep polynomial makes whole turns between two of them, the same at both
+    # like the joints: on a bead of few points a steep polynomial makes whole turns between two points, the same at both
     turned = phi - whole_turns(np.diff(phi), points)
     return [
         BeadPath(

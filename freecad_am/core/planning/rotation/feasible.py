@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Brings a polynomial within the limits, or as near to them as it comes.
+"""Bring a polynomial within the limits, or as near to them as possible.
 
-The worst violation over all points is a maximum of many smooth functions: a descent along the worst one alone zigzags
-from point to point. Each step here is a linear program over all points at once in a region where their derivatives are
-trusted.
+The worst violation over all points is a maximum of many smooth functions: a descent along the worst
+one only zigzags from point to point. Each step here is a linear program over all points at once in
+a region where their derivatives are trusted.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from ..joint_path import BeadPath
 from ..points import gather
 from ..task import Task
 from . import refine
-from .evaluation import judged
+from .evaluation import evaluate_paths
 
 Place = tuple[int, int]
 
@@ -50,7 +50,7 @@ def paths(
     )
     count = len(numbers)
     none = refine.Refined(rows, np.zeros(count), (GIVEN,) * count, (0,) * count)
-    bead_paths = judged(
+    bead_paths = evaluate_paths(
         task,
         given_beads,
         [bead_ids[k] for k in numbers],
@@ -63,7 +63,7 @@ def paths(
 
 
 def not_used(parameters: JointParameters, bead_ids: Sequence[Place]) -> list[Issue]:
-    """A warning of polynomials given for beads that are not there, or to a method that takes none."""
+    """Return a warning for polynomials given for missing beads, or to a method that takes none."""
     if parameters.given and parameters.method != METHOD:
         return [
             Issue(

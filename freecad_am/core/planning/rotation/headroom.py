@@ -37,8 +37,10 @@ class Judgement:
     worst_ratio: Worst | None
 
 
-def judged(paths: Sequence[BeadPath], limits: Limits, max_speed: Array) -> Judgement:
-    """What planned beads leave of limits, condition and joint speeds (axes,), rad/s or mm/s; rapid moves do not count."""
+def judge_paths(paths: Sequence[BeadPath], limits: Limits, max_speed: Array) -> Judgement:
+    """Return the margins of planned beads to limits, condition and joint speeds (axes,), rad/s or mm/s;
+    rapids do not count.
+    """
     joints = np.concatenate([path.joints for path in paths])
     layer = np.repeat([path.layer for path in paths], [len(path.joints) for path in paths])
     reached = np.isfinite(joints).all(axis=1)

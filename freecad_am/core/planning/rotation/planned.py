@@ -37,7 +37,7 @@ def rotation_along(
             bead_paths = [path for path in bead_paths if path.index == index]
         else:
             bead_paths = [path for path in bead_paths if _cut_from(bead, path.bead)]
-        rotations[number] = _along(bead_paths, bead, parameter)
+        rotations[number] = _rotation_along(bead_paths, bead, parameter)
     return rotations
 
 
@@ -47,7 +47,7 @@ def _cut_from(bead: Bead, section: Bead) -> bool:
     )
 
 
-def _along(bead_paths: Sequence[BeadPath], bead: Bead, parameter: Array) -> Array:
+def _rotation_along(bead_paths: Sequence[BeadPath], bead: Bead, parameter: Array) -> Array:
     span = float(bead.parameter[-1] - bead.parameter[0])
     sense = np.sign(span)
     rotation = np.full(len(parameter), np.nan)

@@ -25,7 +25,7 @@ from .refine_state import State, slopes_of, state_of, values_of
 CONSTRAINT_TOLERANCE = 4e-7
 # runs of the optimiser, each with the constraints added that the one before came close to
 ROUNDS = 4
-FAR_OFF = 1.0  # of a constraint that does not matter; those of limits and condition are less
+INACTIVE_VALUE = 1.0  # of a constraint that does not matter; those of limits and condition are less
 MIN_OBJECTIVE_SCALE = 1e-9  # objective that an objective is set against
 STATIONARY = "stationary at the start found by the search"
 OUT_OF_LIMITS = "no polynomial found that keeps all limits"
@@ -79,7 +79,7 @@ def refine(
         report(number / len(pending))
         bead_points, rows = points.only(int(bead))
         results = [
-            _climbed(_Bead(task, bead_points, thresholds[rows]), start, directions[bead])
+            _optimise_by_degree(_Bead(task, bead_points, thresholds[rows]), start, directions[bead])
             for start in starts[:, bead]
             if np.isfinite(start).all()
         ]
@@ -124,7 +124,7 @@ class _Bead:
     task: Task
     points: Points
     thresholds: Array
-    more: Linear | None = None
+    extra_constraints: Linear | None = None
 
     def state(self, coefficients: Array) -> State:
         return state_of(self.task, self.points, self.thresholds, coefficients[None])
@@ -134,16 +134,20 @@ class _Bead:
         values_and_rates = _at_all_points(
             self.task, self.points, self.thresholds, coefficients[None], free
         )
-        if self.more is None or values_and_rates is None:
+        if self.extra_constraints is None or values_and_rates is None:
             return values_and_rates
         shape = self.points.powers(len(coefficients) - 1)
-        value = self.more.value + self.more.slope * (shape @ coefficients - self.more.at)
-        rate = (self.more.slope[:, :, None] * (shape @ free)).reshape(-1, free.shape[1])
+        value = self.extra_constraints.value + self.extra_constraints.slope * (
+            shape @ coefficients - self.extra_constraints.at
+        )
+        rate = (self.extra_constraints.slope[:, :, None] * (shape @ free)).reshape(
+            -1, free.shape[1]
+        )
         return np.append(values_and_rates[0], value.ravel()), np.concatenate(
             [values_and_rates[1], rate]
         )
 
-    def worth(self, coefficients: Array) -> tuple[float, float]:
+    def rank_solution(self, coefficients: Array) -> tuple[float, float]:
         """By how much the constraints are violated at worst, and the objective: the less the better."""
         state = self.state(coefficients)
         worst = float(np.nan_to_num(state.constraints, nan=-1.0).min())
@@ -158,13 +162,18 @@ def _better(result: tuple[Any, ...], reference: tuple[Any, ...]) -> bool:
     return not bool(is_tied(reference[1], result[1]))
 
 
-def _climbed(bead: _Bead, start: Array, directions: Array) -> tuple[float, float, Array, str, int]:
-    """Optimised degree by degree, so that a higher one is never worse: violation, objective, coefficients, why and after
-    how many iterations the last degree stopped."""
-    current, worth, reason, iterations = start, bead.worth(start), STATIONARY, 0
+def _optimise_by_degree(
+    bead: _Bead, start: Array, directions: Array
+) -> tuple[float, float, Array, str, int]:
+    """Optimise degree by degree, so that a higher degree is never worse.
+
+    Returns violation, objective, coefficients, why and after how many iterations the last degree
+    stopped.
+    """
+    current, worth, reason, iterations = start, bead.rank_solution(start), STATIONARY, 0
     used = np.flatnonzero(np.abs(directions).any(axis=0))
     for count in range(1, len(used) + 1):
-        # an open bead of the first degree has been looked at in the search for slope and offset at once
+        # the search has covered slope and offset of an open bead of the first degree together
         if count == 1 and len(used) > 1 and used[1] == 1:
             continue
         free = directions[:, used[:count]]
@@ -174,26 +183,27 @@ def _climbed(bead: _Bead, start: Array, directions: Array) -> tuple[float, float
                 reason = OUT_OF_LIMITS
                 continue
         optimised, reason, iterations = _slsqp(bead, current, free)
-        better = bead.worth(optimised)
+        better = bead.rank_solution(optimised)
         if better <= worth:
             current, worth = optimised, better
     return (*worth, current, reason, iterations)
 
 
 def _brought_in(
-    bead: _Bead, here: Array, free: Array, worth: tuple[float, float]
+    bead: _Bead, current: Array, free: Array, worth: tuple[float, float]
 ) -> tuple[Array, tuple[float, float]]:
-    """Coefficients that violate the limits less than those here, where there are any, and their worth."""
-    nearer = here + free @ feasible.approached(
-        lambda x: bead.constraints(here + free @ x, free), np.zeros(free.shape[1])
+    """Return coefficients that violate the limits less than `current`, if there are any, and their worth."""
+    nearer = current + free @ feasible.approached(
+        lambda x: bead.constraints(current + free @ x, free), np.zeros(free.shape[1])
     )
-    other = bead.worth(nearer)
-    return (nearer, other) if _better(other, worth) else (here, worth)
+    new_worth = bead.rank_solution(nearer)
+    return (nearer, new_worth) if _better(new_worth, worth) else (current, worth)
 
 
 def _slsqp(bead: _Bead, start: Array, directions: Array) -> tuple[Array, str, int]:
-    """Coefficients, why the optimiser stopped and after how many iterations; run again where it came upon constraints that
-    it had not been told of."""
+    """Return coefficients, why the optimiser stopped and after how many iterations; run again if it
+    violates constraints that it was not given.
+    """
     x, reason, iterations = np.zeros(directions.shape[1]), STATIONARY, 0
     rows = np.zeros(0, dtype=np.int64)
     for _ in range(ROUNDS):
@@ -240,7 +250,11 @@ def _run(bead: _Bead, start: Array, directions: Array, x: Array, rows: Integers)
         return everywhere[key]
 
     # first steps are as long as the gradient: where constraints turn it aside, one of an objective much below 1 is none
-    scale = 1.0 if bead.more is None else max(float(state(x).objective[0]), MIN_OBJECTIVE_SCALE)
+    scale = (
+        1.0
+        if bead.extra_constraints is None
+        else max(float(state(x).objective[0]), MIN_OBJECTIVE_SCALE)
+    )
 
     def objective(x: Array) -> float:
         value = float(state(x).objective[0]) / scale
@@ -250,9 +264,9 @@ def _run(bead: _Bead, start: Array, directions: Array, x: Array, rows: Integers)
         {"type": "ineq", "fun": lambda x: constraints(x)[0], "jac": lambda x: constraints(x)[1]}
     ]
     if (
-        bead.more is not None
+        bead.extra_constraints is not None
     ):  # changes are of the size of a rotation, so that together they stay within reach
-        max_change, unit_matrix = bead.more.reach / len(x), np.eye(len(x))
+        max_change, unit_matrix = bead.extra_constraints.reach / len(x), np.eye(len(x))
         both_signs = np.concatenate([unit_matrix, -unit_matrix])
         constraint_list.append(
             {
@@ -284,7 +298,7 @@ def _tightest(values: Array, points: int) -> Integers:
     reported = lowest.copy()
     reported[:, 1:] |= lowest[:, :-1]
     reported[:, :-1] |= lowest[:, 1:]
-    return np.flatnonzero((reported & (value < FAR_OFF)).ravel())
+    return np.flatnonzero((reported & (value < INACTIVE_VALUE)).ravel())
 
 
 def _at_all_points(

@@ -59,7 +59,7 @@ def state_of(
         )
     slope = slopes_of(task, phi, phi_rate, joints, rates, matrix)
     worst_points = np.stack(
-        [_where_worst(points, row, lowest) for row, lowest in zip(value, worst)]
+        [_find_worst_points(points, row, lowest) for row, lowest in zip(value, worst)]
     )
     rows = np.arange(len(value))[:, None]
     constraint_rates = (slope[rows, worst_points][:, :, None] * powers[worst_points]).transpose(
@@ -166,7 +166,7 @@ def _share(task: Task, phi: Array) -> Array:
     return (phi - 0.5 * (low + high)) / (0.5 * (high - low))
 
 
-def _where_worst(points: Points, values: Array, worst: Array) -> Integers:
+def _find_worst_points(points: Points, values: Array, worst: Array) -> Integers:
     """(B,) index of the first point of each bead that has the bead's smallest value."""
     hits = np.flatnonzero(values <= worst[points.bead])
     _, position = np.unique(points.bead[hits], return_index=True)
@@ -176,10 +176,11 @@ def _where_worst(points: Points, values: Array, worst: Array) -> Integers:
 def _predicted(
     task: Task, points: Points, joints: Array, rates: Array, powers: Array, gradient: Array
 ) -> Array:
-    """(B,) how much the objective would still fall by its second-order model, joined beads staying joined.
+    """Return the predicted fall (B,) of the objective by its second-order model, joined beads staying
+    joined.
 
-    Eq. 17 is a sum of squares, so its curvature is known (Gauss-Newton); of other objectives the
-    gradient alone is taken.
+    Eq. 17 is a sum of squares, so its curvature is known (Gauss-Newton); for other objectives only the
+    gradient is used.
     """
     free = basis.changes(task, points, powers.shape[1] - 1)
     gradient = (gradient[:, None] @ free)[:, 0]

@@ -30,7 +30,7 @@ CLOSING_SLOPES = np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
 TIE = 1e-6
 # poses handled at once, so that they stay in the processor's cache and a long job does not fill the memory
 CHUNK = 30_000
-# times that conditions are looked at, the last time all that are not known of beads of which more are asked for
+# passes of condition checks; the last one covers all unknown candidates of beads that need more
 MAX_CONDITION_PASSES = 5
 # sigma_min / sigma_max lies between the bound 1 / kappa_F and its 6-fold: kappa_2 <= kappa_F <= 6 kappa_2
 BOUND_SPREAD = 6.0
@@ -48,8 +48,8 @@ class Found:
     objective: Array
     margin: Array
 
-    def of_slope(self, slope: float) -> Found:
-        """The candidates of one slope alone."""
+    def select_slope(self, slope: float) -> Found:
+        """Return only the candidates of one slope."""
         candidate_rows = np.abs(self.coefficients[:, 0, 1] - slope) < 1e-9
         return Found(
             self.coefficients[candidate_rows],
@@ -57,8 +57,8 @@ class Found:
             self.margin[candidate_rows],
         )
 
-    def of_beads(self, beads: Index) -> Found:
-        """The candidates of some beads (k,) alone."""
+    def select_beads(self, beads: Index) -> Found:
+        """Return only the candidates of some beads (k,)."""
         return Found(self.coefficients[:, beads], self.objective[:, beads], self.margin[:, beads])
 
     def best(self) -> Integers:
@@ -108,43 +108,59 @@ def everywhere(
     if best_alone:
         candidates = replace(
             candidates,
-            margin=with_conditions(task, points, thresholds, candidates, candidates.is_best),
+            margin=add_conditions(task, points, thresholds, candidates, candidates.is_best),
         )
     return candidates
 
 
-def with_conditions(
-    task: Task, points: Points, thresholds: Array, found: Found, asked: Callable[[Array], Mask]
+def add_conditions(
+    task: Task,
+    points: Points,
+    thresholds: Array,
+    candidates: Found,
+    select_needed: Callable[[Array], Mask],
 ) -> Array:
-    """(C, B) margins of candidates that were judged by limits alone, with their condition, which only takes from it, where
-    that matters: whatever of the margins is `asked` for, (C, B), until all of that is known."""
-    margin, known, each = found.margin.copy(), found.margin < 0.0, np.arange(points.beads)
+    """Return the margins (C, B) of candidates that were judged by limits only, lowered by their condition
+    where that matters: wherever `select_needed` of the margins, (C, B), says so, until all needed ones
+    are known.
+    """
+    margin, is_known, bead_ids = (
+        candidates.margin.copy(),
+        candidates.margin < 0.0,
+        np.arange(points.beads),
+    )
     for look in range(MAX_CONDITION_PASSES):
-        new = asked(margin) & ~known
+        new = select_needed(margin) & ~is_known
         if not new.any():
             break
         if look == MAX_CONDITION_PASSES - 1:
-            new = ~known & new.any(axis=0)
-        some = np.argsort(~new, axis=0, kind="stable")[: new.sum(axis=0).max()]
-        looked = judge(task, points, thresholds, found.coefficients[some, each]).margin
-        margin[some, each] = np.where(known[some, each], margin[some, each], looked)
-        known[some, each] = True
+            new = ~is_known & new.any(axis=0)
+        candidate_ids = np.argsort(~new, axis=0, kind="stable")[: new.sum(axis=0).max()]
+        new_margin = judge(
+            task, points, thresholds, candidates.coefficients[candidate_ids, bead_ids]
+        ).margin
+        margin[candidate_ids, bead_ids] = np.where(
+            is_known[candidate_ids, bead_ids], margin[candidate_ids, bead_ids], new_margin
+        )
+        is_known[candidate_ids, bead_ids] = True
     return margin
 
 
 def judge(
     task: Task, points: Points, thresholds: Array, coefficients: Array, conditions: bool = True
 ) -> Found:
-    """Objective and margin of given candidates (C, B, degree + 1), that of limits alone without `conditions`."""
+    """Return objective and margin of given candidates (C, B, degree + 1); without `conditions` the margin
+    of the limits only.
+    """
     size = max(1, CHUNK // len(points))
-    parts = [
+    results = [
         _judge(task, points, thresholds, coefficients[start : start + size], conditions)
         for start in range(0, len(coefficients), size)
     ]
     return Found(
         coefficients,
-        np.concatenate([objective for objective, _ in parts]),
-        np.concatenate([margin for _, margin in parts]),
+        np.concatenate([objective for objective, _ in results]),
+        np.concatenate([margin for _, margin in results]),
     )
 
 
@@ -168,14 +184,14 @@ def _judge(
         return objective, margin
     open_beads = (margin >= 0.0)[:, points.bead]
     condition = np.full(len(coefficients) * len(points), UNREACHABLE)
-    chosen = np.flatnonzero(open_beads.ravel())
-    if len(chosen):
-        condition[chosen] = _screened_condition_margin(
+    open_rows = np.flatnonzero(open_beads.ravel())
+    if len(open_rows):
+        condition[open_rows] = _screened_condition_margin(
             task,
             points,
-            phi.ravel()[chosen],
-            joints.reshape(-1, joints.shape[-1])[chosen],
-            chosen % len(points),
+            phi.ravel()[open_rows],
+            joints.reshape(-1, joints.shape[-1])[open_rows],
+            open_rows % len(points),
             thresholds,
         )
     worst = points.worst(condition.reshape(phi.shape))
@@ -195,7 +211,9 @@ def _objective(task: Task, points: Points, phi: Array, joints: Array) -> Array:
     name = task.parameters.objective
     if name in criteria.JOINT_ONLY:
         value = criteria.JOINT_ONLY[name](task, points, joints)
-        return value if name == "displacement" else value + TIE * _turned(points, joints)
+        return (
+            value if name == "displacement" else value + TIE * _total_joint_motion(points, joints)
+        )
     flat = joints.reshape(-1, joints.shape[-1])
     good = np.flatnonzero(np.isfinite(flat).all(axis=1))
     worth = np.full(len(flat), np.nan)
@@ -204,11 +222,11 @@ def _objective(task: Task, points: Points, phi: Array, joints: Array) -> Array:
     measure = jac.manipulability if name == "manipulability" else jac.condition
     worth[good] = 1.0 / np.maximum(measure(matrix, length), 1e-300)
     mean: Array = points.total(worth.reshape(phi.shape)) / np.bincount(points.bead)
-    return mean + TIE * _turned(points, joints)
+    return mean + TIE * _total_joint_motion(points, joints)
 
 
-def _turned(points: Points, joints: Array) -> Array:
-    """(..., B) sum of the squared steps of all axes alike, rad^2."""
+def _total_joint_motion(points: Points, joints: Array) -> Array:
+    """Return the sum (..., B) of the squared steps of all axes with equal weights, rad^2."""
     step = steps(joints, points)
     return points.total((step * step).sum(axis=-1))
 
@@ -220,12 +238,12 @@ def _screened_condition_margin(
     length, threshold = task.parameters.characteristic_length, thresholds[index]
     condition, undecided = np.empty(len(index)), np.empty(len(index), dtype=bool)
     matrices: list[Array] = []
-    for some in in_pieces(len(index)):
-        matrix = task.jacobian_at(points.frames.of(index[some]), phi[some], joints[some])
-        bound = condition[some] = jac.condition_bound(matrix, length)
-        near = undecided[some] = (bound < threshold[some]) & (
-            BOUND_SPREAD * bound >= threshold[some]
+    for rows in in_pieces(len(index)):
+        matrix = task.jacobian_at(points.frames.of(index[rows]), phi[rows], joints[rows])
+        bound = condition[rows] = jac.condition_bound(matrix, length)
+        is_close = undecided[rows] = (bound < threshold[rows]) & (
+            BOUND_SPREAD * bound >= threshold[rows]
         )
-        matrices.append(matrix[near])
+        matrices.append(matrix[is_close])
     condition[undecided] = jac.condition(np.concatenate(matrices), length)
     return condition_margin(condition, threshold)

@@ -15,8 +15,8 @@ from ...types import Array
 from ..joint_path import BeadPath, numbered
 from ..points import gather
 from ..rotation import refine, search, ties
-from ..rotation.evaluation import judged
-from ..task import FITS, Task
+from ..rotation.evaluation import evaluate_paths
+from ..task import MIN_MARGIN, Task
 from . import unwrap as turns
 
 Place = tuple[int, int]
@@ -69,7 +69,7 @@ def put_in(
     issues: list[Issue] = []
     for k, path in enumerate(paths):
         result += helped.get(k, [path])
-        lost = k not in helped and path.margin < FITS and turns.is_spiral(path.bead)
+        lost = k not in helped and path.margin < MIN_MARGIN and turns.is_spiral(path.bead)
         if lost and _would_fit_continuous(task, path):
             issues.append(
                 Issue(
@@ -107,14 +107,14 @@ def _fitted(
     started, index = turns.moved_seam(task, bead, whole.joints)
     if index:
         moved = _one(task, started, place, coefficients, MOVED)
-        if moved.margin >= FITS:
+        if moved.margin >= MIN_MARGIN:
             return [moved]
     for more in range(MORE_PIECES):
         parts = turns.pieces(task, bead, whole.joints, more)
         if len(parts) == 1:
             return None
         cuts = [_piece(task, bead.part(part), place, coefficients) for part in parts]
-        if all(piece.margin >= FITS for piece in cuts):
+        if all(piece.margin >= MIN_MARGIN for piece in cuts):
             return cuts
     return None
 
@@ -122,19 +122,21 @@ def _fitted(
 def _piece(task: Task, bead: Bead, place: Place, coefficients: Array) -> BeadPath:
     """A piece with the rotation of the whole bead, or where that does not serve with one of its own."""
     path = _one(task, bead, place, coefficients, SPLIT)
-    if path.margin >= FITS:
+    if path.margin >= MIN_MARGIN:
         return path
     coarse, full = gather([bead], task.cell, search.POINTS_PER_BEAD), gather([bead], task.cell)
     found = search.everywhere(task, coarse, task.thresholds(coarse), best_alone=True)
     threshold = task.thresholds(full)
     refined = refine.refine(task, full, threshold, found.coefficients[None, found.best()[0]])
-    return judged(task, [bead], [place], full, threshold, refined.coefficients, refined)[0]
+    return evaluate_paths(task, [bead], [place], full, threshold, refined.coefficients, refined)[0]
 
 
 def _one(task: Task, bead: Bead, place: Place, coefficients: Array, reason: str) -> BeadPath:
     points = gather([bead], task.cell)
     given = refine.Refined(coefficients, np.zeros(1), (reason,), (0,))
-    return judged(task, [bead], [place], points, task.thresholds(points), coefficients, given)[0]
+    return evaluate_paths(
+        task, [bead], [place], points, task.thresholds(points), coefficients, given
+    )[0]
 
 
 def _last_continuous(cell: Cell) -> Cell:

@@ -31,7 +31,7 @@ class Painted:
 
 def painted(of: Picture, kind: str) -> Painted:
     """A picture by margin (percent of half a range) or by condition; what cannot be is in colours of its own."""
-    reachable, beyond = of.reachable, of.beyond
+    reachable, beyond = of.reachable, of.past_limit
     singular = of.singular & ~beyond
     good = reachable & ~beyond & ~singular
     values = np.where(reachable, 100.0 * of.margin if kind == MARGIN else of.condition, 0.0)
