@@ -95,10 +95,10 @@ def _is_bend(wall: PatchWall, patch: int, triangles: tuple[int, int]) -> bool:
     if closed.sum() != 1:
         return bool(closed.all())
     along = wall.uv[..., int(np.argmin(closed))]
-    positions = along[list(triangles)].mean(axis=1)
-    return bool(
-        abs(positions[0] - positions[1]) > MIN_BEND_SHARE * np.ptp(along[wall.patch == patch])
-    )
+    # the triangles of a skin that crosses itself overlap along it, those of a bend are far apart
+    low, high = along[list(triangles)].min(axis=1), along[list(triangles)].max(axis=1)
+    gap = low.max() - high.min()
+    return bool(gap > MIN_BEND_SHARE * np.ptp(along[wall.patch == patch]))
 
 
 def refuse_crossing(wall: PatchWall, label: str) -> None:
