@@ -303,6 +303,10 @@ def run():
         for theme, sheet in themes():
             QtGui.QApplication.instance().setStyleSheet(sheet)
             idle(0.5)
+            window.setGeometry(
+                whole
+            )  # bars grow while a sheet is set; a window keeps such a height
+            idle(0.2)
             if "docks" in PARTS:
                 look_at_docks(theme, wrong)
             if "panels" in PARTS:
