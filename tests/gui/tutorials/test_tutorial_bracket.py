@@ -12,7 +12,7 @@ def test_the_bracket(person, hand, lesson):
     document, part = lesson.parts("bracket.step")
     lesson.picture("bracket-part")
 
-    lesson.step("2. See what leans out")
+    lesson.step("2. See the overhangs")
     hand.click_face(part, "Face1")
     lesson.tool("Solid")
     panel = person.panel("RoboticAM_SolidFeature")

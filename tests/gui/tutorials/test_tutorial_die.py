@@ -13,7 +13,7 @@ def test_the_die(person, hand, lesson):
     document, part = lesson.parts("die.step")
     lesson.picture("die-part")
 
-    lesson.step("2. Choose what is covered")
+    lesson.step("2. Choose the face")
     hand.click_face(part, TOP)
     lesson.tool("Cladding")
     panel = person.panel("RoboticAM_CladdingFeature")
@@ -46,7 +46,7 @@ def test_the_die(person, hand, lesson):
     lesson.see_all()
     lesson.picture("die-toolpath", path=True, legend=True)
 
-    lesson.step("5. See how the torch stands")
+    lesson.step("5. Check the torch directions")
     hand.click_tree("Toolpath")
     lesson.tool("Path")
     dock = person.panel("RoboticAM_PathDock")

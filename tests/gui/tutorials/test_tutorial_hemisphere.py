@@ -27,7 +27,7 @@ def test_the_hemisphere(person, hand, lesson, tmp_path):
     lesson.keys("ctrl+shift+z")
     assert [stage.Status for stage in api.stages_of(document)] == ["up to date"] * 5
 
-    lesson.step("3. Tell what your robot can do, and choose thicker layers")
+    lesson.step("3. Set the robot's limits, and choose thicker layers")
     lesson.unfold("Job hemisphere")
     lesson.double_click("Cell")
     panel = person.panel("RoboticAM_Cell")
@@ -41,7 +41,7 @@ def test_the_hemisphere(person, hand, lesson, tmp_path):
     assert document.Toolpath.Layers == 15
     assert [stage.Status for stage in api.stages_of(document)] == ["up to date"] * 5
 
-    lesson.step("4. Look at the path")
+    lesson.step("4. View the path")
     hand.click_tree("Joint path")
     lesson.tool("Path")
     dock = person.panel("RoboticAM_PathDock")

@@ -74,7 +74,7 @@ def test_the_dome_on_a_positioner(person, hand, lesson):
     lesson.picture("positioner-simulation", machine=True)
     lesson.close("RoboticAM_Simulation")
 
-    lesson.step("7. Look at what else the table could do")
+    lesson.step("7. Map the table's axes")
     _map(person, hand, lesson)
     lesson.picture("positioner-map", path=True)
     lesson.close("RoboticAM_SpinMap")

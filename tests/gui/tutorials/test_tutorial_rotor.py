@@ -14,7 +14,7 @@ def test_the_rotor(person, hand, lesson, tmp_path):
     document, hub, _ = lesson.parts("rotor/hub.step", "rotor/blades.brep")
     lesson.picture("rotor-parts")
 
-    lesson.step("2. Say what stands on what")
+    lesson.step("2. Choose blades and hub")
     hand.click_tree("blades")
     hand.click_face(hub, "Face1", "ctrl")
     lesson.tool("SolidsOnHub")

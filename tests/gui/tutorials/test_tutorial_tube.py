@@ -14,7 +14,7 @@ def test_the_tube(person, hand, lesson, tmp_path):
     document, tube, _ = lesson.parts("tube-on-pipe.step", "pipe.step")
     lesson.picture("tube-parts")
 
-    lesson.step("2. Say what grows on what")
+    lesson.step("2. Choose wall and pipe")
     hand.click_face(tube, "Face1")
     hand.click_tree("pipe", "ctrl")
     lesson.tool("WallOnPart")
@@ -26,7 +26,7 @@ def test_the_tube(person, hand, lesson, tmp_path):
     first_layer(person, panel)
     lesson.picture("tube-wall", path=True)
 
-    lesson.step("3. See what is wrong with an entry")
+    lesson.step("3. Correct an invalid entry")
     lesson.hand.enter(panel, "LayerHeight", "0 mm")
     note = person.field(panel, "LayerHeightNote")
     person.until(lambda: note.isVisible() and "more than 0 mm" in note.text(), "the note", 10)
@@ -72,7 +72,7 @@ def test_the_tube(person, hand, lesson, tmp_path):
     lesson.see_all()
     lesson.picture("tube-joints", path=True, legend=True)
 
-    lesson.step("7. Look at joints and speeds")
+    lesson.step("7. View joints and speeds")
     hand.click_tree("Joint path")
     lesson.tool("Plots")
     dock = person.panel("RoboticAM_Plots")

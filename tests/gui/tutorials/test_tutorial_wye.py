@@ -12,7 +12,7 @@ def test_the_wye(person, hand, lesson):
     document, part = lesson.parts("wye.step")
     lesson.picture("wye-part")
 
-    lesson.step("2. See what would need support")
+    lesson.step("2. See the overhangs")
     hand.click_face(part, "Face1")
     lesson.tool("Solid")
     panel = person.panel("RoboticAM_SolidFeature")
@@ -46,7 +46,7 @@ def test_the_wye(person, hand, lesson):
     lesson.see_all()
     lesson.picture("wye-layers", path=True, legend=True)
 
-    lesson.step("4. Look at the layers one by one")
+    lesson.step("4. View the layers one by one")
     hand.click_tree("Toolpath")
     lesson.tool("Path")
     dock = person.panel("RoboticAM_PathDock")
