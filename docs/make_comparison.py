@@ -70,13 +70,14 @@ def tables(report: dict[str, Any]) -> str:
         )
     lines += [
         "",
-        f"| largest | method | {' | '.join(axes)} |",
-        f"| --- | --- |{' --- |' * len(axes)}",
+        f"| largest | method | {axes[0]} to {axes[-2]} | {axes[-1]} |",
+        "| --- | --- | --- | --- |",
     ]
     for key, what in PER_AXIS.items():
         for method, name in METHODS.items():
-            values = found[method][key] or [None] * len(axes)
-            lines.append(f"| {what} | {name} | {' | '.join(angle(value) for value in values)} |")
+            *others, last = found[method][key] or [None, None]
+            largest = None if None in others else max(others)
+            lines.append(f"| {what} | {name} | {angle(largest)} | {angle(last)} |")
     return "\n".join(lines)
 
 
