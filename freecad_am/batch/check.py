@@ -98,7 +98,7 @@ def check(
             Issue(
                 ERROR,
                 code,
-                Text("{} - it does not: {}", entry.promise, entry.figure),
+                Text("{} - fails: {}", entry.promise, entry.figure),
                 *(entry.place or (None, None, None)),
             ),
             entry.row,
@@ -162,13 +162,13 @@ def _files(programs: Sequence[str]) -> dict[str, bytes]:
         raise InputError(
             "NO_FILE",
             where,
-            "the folder holds no program; name its files, or the folder they are in",
+            "the folder holds no program; pass its files, or the folder that holds them",
         )
     if len(paths) > MOST_FILES:
         raise InputError(
             "BAD_FILE",
             where,
-            "the folder holds more than {} files; name those of the program",
+            "the folder holds more than {} files; pass the program files by name",
             MOST_FILES,
         )
     contents, remaining = {}, LARGEST_MB * MB
@@ -178,14 +178,14 @@ def _files(programs: Sequence[str]) -> dict[str, bytes]:
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or str(error)
             raise InputError(
-                "NO_FILE", name, "it cannot be read ({}); name the program's files", reason
+                "NO_FILE", name, "it cannot be read ({}); pass the files of the program", reason
             ) from None
         remaining -= len(contents[name])
         if remaining < 0:
             raise InputError(
                 "BAD_FILE",
                 where,
-                "its files are larger than {} MB together; name those of the program alone",
+                "the files are larger than {} MB in total; pass only the program files",
                 LARGEST_MB,
             )
     return contents
@@ -204,7 +204,7 @@ def _known(path: str) -> Known:
         raise InputError(
             "NO_CELL",
             f"{os.path.basename(path)}: cell",
-            "the job has no cell to drive a program in; add one",
+            "the job has no cell to run a program in; add the section `cell`",
         )
     heights = max(feature.strategy.layer_height for feature in job_read.features)
     return Known(
@@ -234,7 +234,7 @@ def _read(files: dict[str, bytes], posts: Sequence[str]) -> tuple[str, ReadMoves
         raise InputError(
             "UNKNOWN_POST",
             "cell.machine",
-            "no post reads programs of this machine; name one with --post",
+            "no post reads programs for the machine of the cell; choose a post with --post",
         )
     raise refusals[0]
 

@@ -76,7 +76,7 @@ def _run(argv: list[str], session: Any) -> int:
             if close_matches
             else f"use one of {', '.join(parsers)}"
         )
-        raise InputError("USAGE", "command line", "there is no command {!r}; {}", command, hint)
+        raise InputError("USAGE", "command line", "unknown command {!r}; {}", command, hint)
     parser = parsers[command]
     if "-h" in words or "--help" in words:
         session.out(parser.format_help())
@@ -147,8 +147,8 @@ def _batch(options: Any, session: Any) -> int:
         raise InputError(
             "USAGE",
             "freecad-am batch",
-            "-j is of rows on this machine, and --scheduler of those on a "
-            "cluster, whose workers have their own number; leave one of them out",
+            "-j sets the number of local rows, and --scheduler plans on a cluster, whose workers "
+            "set their own number; remove one option",
         )
     how = rows.How(options.jobs or 1, options.scheduler or "", options.resume, options.dry_run)
     return rows.run(options.table, options.job, options.output, how, session)
@@ -196,12 +196,12 @@ def _machines(options: Any, session: Any) -> int:
         raise InputError(
             "USAGE",
             "freecad-am machines",
-            "in what form is {!r} to be written? Use --urdf, --dh or --modified-dh",
+            "the output format for {!r} is missing; use --urdf, --dh or --modified-dh",
             options.machine,
         )
     if options.form is not None and options.machine is None:
         raise InputError(
-            "USAGE", "freecad-am machines", "--{} of what machine? Give its name", options.form
+            "USAGE", "freecad-am machines", "--{} needs the name of a machine", options.form
         )
     criteria = (options.maker, options.reach, options.payload, options.post)
     filtered = any(criterion is not None for criterion in criteria)
@@ -209,7 +209,7 @@ def _machines(options: Any, session: Any) -> int:
         raise InputError(
             "USAGE",
             "freecad-am machines",
-            "--maker, --reach, --payload and --post choose from the list; leave {!r} out, or them",
+            "--maker, --reach, --payload and --post filter the list; remove {!r} or these options",
             options.machine,
         )
     if options.machine is not None:

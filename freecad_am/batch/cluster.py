@@ -198,8 +198,7 @@ class Cluster:
             raise InputError(
                 CODE,
                 WHERE,
-                "{} gave up row {}: {}; rows that were done are whole: give --resume to plan the "
-                "others",
+                "{} gave up row {}: {}; finished rows are complete: use --resume to plan the rest",
                 self._address,
                 row.number,
                 _failure_text(future),
@@ -235,7 +234,7 @@ class Cluster:
         return InputError(
             CODE,
             WHERE,
-            "{}: {}; rows that were done are whole: give --resume to plan the others",
+            "{}: {}; finished rows are complete: use --resume to plan the rest",
             self._address,
             Word(what),
         )
@@ -255,8 +254,8 @@ def _connected(address: str) -> Any:
         raise InputError(
             "NO_DASK",
             WHERE,
-            "rows are planned on a cluster by Dask, which is not there ({}); install "
-            "python3-distributed, or leave the option out",
+            "planning on a cluster needs Dask, which is not installed ({}); install "
+            "python3-distributed, or remove the option",
             error,
         ) from None
     try:
@@ -266,8 +265,8 @@ def _connected(address: str) -> Any:
         raise InputError(
             CODE,
             WHERE,
-            "no scheduler answers at {!r} ({}); start one with: dask scheduler, give its address "
-            "such as tcp://host:8786, and use the same version of Dask everywhere",
+            "no scheduler answers at {!r} ({}); start one with: dask scheduler, pass its "
+            "address, such as tcp://host:8786, and use the same version of Dask everywhere",
             address,
             why,
         ) from None

@@ -75,7 +75,7 @@ def _chosen(
     candidates = [obj for objects in of_kinds for obj in objects]
     if not candidates:
         raise InputError(
-            code, label, "the document has no {}s; make one with the workbench", kinds[0]
+            code, label, "the document has no {}s; create one with the workbench", kinds[0]
         )
     labels = ", ".join(obj.Label for obj in candidates)
     selected = []
@@ -108,7 +108,7 @@ def _write_wires(paths: list[Any], kind: str, files: outputs.Outputs, session: A
         name = Text("{}/{}.{}", outputs.WIRES, obj.Label.replace(os.sep, "-"), kind)
         if name in written:
             raise InputError(
-                "SAME_NAME", obj.Label, "two paths write {}; give one another label", Word(name)
+                "SAME_NAME", obj.Label, "two paths write {}; change one label", Word(name)
             )
         written.add(name)
         api.export_wires(obj, files.path(name), rapids=True)
@@ -132,7 +132,7 @@ def _files(programs: list[Any], session: Any) -> dict[str, bytes]:
         for name, content in api.result(program).files.items():
             if files.setdefault(name, content) != content:
                 raise InputError(
-                    "SAME_NAME", program.Label, "two programs write {}; give one another name", name
+                    "SAME_NAME", program.Label, "two programs write {}; change one name", name
                 )
     return files
 

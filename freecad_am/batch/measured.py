@@ -75,7 +75,7 @@ def _values(settings: tuple[str, ...]) -> dict[str, str]:
             raise InputError(
                 "USAGE",
                 "freecad-am inspect",
-                "{!r} is not a setting; give such as --set tolerance=0.3",
+                "{!r} is not a setting; use the form --set tolerance=0.3",
                 text,
             )
         values[key.strip()] = value.strip()
@@ -102,7 +102,7 @@ def _opened(source: str, name: str, session: Any) -> tuple[Any, Any]:
         raise InputError(
             "USAGE",
             "freecad-am inspect",
-            "--object is for FCStd documents; leave it out of a job, whose part is compared",
+            "--object selects from FCStd documents; a job compares its own part: remove it",
         )
     import FreeCAD
 
@@ -146,11 +146,11 @@ def _open_document(path: str, name: str) -> tuple[Any, Any]:
     if len(matches) != 1:
         FreeCAD.closeDocument(document.Name)
         text = (
-            Text("{} objects are called {!r}", len(matches), name)
+            Text("{} objects have the label {!r}", len(matches), name)
             if name
-            else Text("it has {} features; choose with --object", len(matches))
+            else Text("it has {} features; choose one with --object", len(matches))
         )
-        raise InputError("NO_OBJECT", label, "{}; name what was measured", Word(text))
+        raise InputError("NO_OBJECT", label, "{}; choose the measured object", Word(text))
     return document, matches[0]
 
 

@@ -103,12 +103,12 @@ def _check_remedy(job: Job, stages: Any, plan: Plan, close: Callable[[Any], None
     feasible = not has_errors(alternative.issues)
     close(alternative)
     note = (
-        Issue(NOTE, REMEDY, Text("with {} this job is feasible; tried, not applied", what))
+        Issue(NOTE, REMEDY, Text("the job is feasible with {}; tested, not applied", what))
         if feasible
         else Issue(
             NOTE,
             NO_REMEDY,
-            Text("with {} the nozzle is clear, but the job is not feasible, which was tried", what),
+            Text("with {} the nozzle is clear, but the job is still infeasible (tested)", what),
         )
     )
     stages.issues = [note if issue is text else issue for issue in stages.issues]

@@ -35,7 +35,7 @@ def place(job: Job, folder: str | None, session: Any) -> Result:
     """
     if job.cell is None:
         raise InputError(
-            "NO_CELL", "cell", "there is no cell to place the part in; add the section cell"
+            "NO_CELL", "cell", "the job has no cell to place the part in; add the section `cell`"
         )
     paths.require_freecad()
     import FreeCAD
@@ -84,8 +84,8 @@ def _write_results(job: Job, stages: Any, files: outputs.Outputs, session: Any) 
         best_share = max(pose_result.share for pose_result in placement.judged)
         wrong = placement.judged[max(range(count), key=lambda k: placement.judged[k].share)]
         text = Text(
-            "none of {} poses serves, as far as {} tell: at most {:.3g} % of them are within reach and limits ({}); "
-            "give a larger box in place, or another cell.branch",
+            "none of {} poses works at {}: at most {:.3g} % of the points are within reach and "
+            "limits ({}); enlarge the box in `place`, or try another cell.branch",
             count,
             Word(extent),
             100.0 * best_share,
@@ -93,7 +93,7 @@ def _write_results(job: Job, stages: Any, files: outputs.Outputs, session: Any) 
         )
         if serve:
             text = Text(
-                "none of the {} best of {} poses is feasible with all points, though some points of each are; raise "
+                "none of the {} best of {} poses is feasible at all points, only at some; raise "
                 "place.points or place.proven",
                 len(placement.proven),
                 serve,
@@ -104,8 +104,8 @@ def _write_results(job: Job, stages: Any, files: outputs.Outputs, session: Any) 
         NOTE,
         "PLACED",
         Text(
-            "{} of {} poses are feasible, as far as {} tell; the best one was planned with all points: "
-            "margin {:.3g} %, {:.0f} s; {} and {} are in {}",
+            "{} of {} poses are feasible at {}; the best one is verified at all points: margin "
+            "{:.3g} %, {:.0f} s; {} and {} are in {}",
             serve,
             count,
             Word(extent),

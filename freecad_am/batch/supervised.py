@@ -108,7 +108,7 @@ def crash(where: str, status: int) -> AmError:
     return InputError(
         "CRASHED",
         where,
-        "FreeCAD crashed ({}): a shape is damaged, or more than its geometry kernel can do; check the "
+        "FreeCAD crashed ({}): the shape is damaged or exceeds its geometry kernel; check the "
         "part in FreeCAD (Part > Check geometry), repair it or export it again",
         name,
     )

@@ -48,8 +48,8 @@ def clad_faces(
             raise InputError(
                 "NO_FACES",
                 label,
-                "it is a solid with {} face(s), and none is chosen; name those to cover: part.faces of a "
-                "job, or select them",
+                "it is a solid with {} face(s), and none is selected; select the faces to cover, "
+                "or name them in part.faces of a job",
                 len(faces_of_names),
             )
         named = [(name, faces_of_names[name]) for name in dict.fromkeys(names or faces_of_names)]
@@ -75,7 +75,7 @@ def _refuse_several(shape: Any, named: Sequence[tuple[str, Any]], back: bool, la
         raise InputError(
             "SEVERAL_BODIES",
             label,
-            "{} and {} are faces of different solids; cover each solid as a feature of its own, or "
+            "{} and {} are faces of different solids; cover each solid as a separate feature, or "
             "fuse them first",
             face_name,
             other_name,
@@ -84,7 +84,7 @@ def _refuse_several(shape: Any, named: Sequence[tuple[str, Any]], back: bool, la
         raise InputError(
             "BACK_OF_SOLID",
             "strategy.side",
-            "behind {} is the material of {}; use front, which is outside of it",
+            "behind {} is the material of {}; use front, the outside",
             next(iter(owners)),
             label,
         )
@@ -111,8 +111,8 @@ def _smooth(
         raise InputError(
             "BRANCHING_FACES",
             label,
-            "more than two faces meet in one edge at {}; leave one of them out, or cover it as a "
-            "feature of its own",
+            "more than two faces meet in one edge at {}; remove one of the faces, or cover it as "
+            "a separate feature",
             place(point),
         )
     two = np.flatnonzero(edges.count == 2)
@@ -187,8 +187,9 @@ def _crease_issues(
                 WARNING,
                 "CREASE",
                 Text(
-                    "{} and {} meet at an angle of {:.3g} deg at {}: layers above the first grow {}, up to "
-                    "{:.3g} mm above the faces; round the edge, or cover the faces one after the other",
+                    "{} and {} meet at an angle of {:.3g} deg at {}: layers above the first grow "
+                    "{}, up to {:.3g} mm above the faces; round the edge, or cover the faces one "
+                    "after the other",
                     face,
                     other_face,
                     np.degrees(angles[sharpest]),

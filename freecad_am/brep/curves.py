@@ -35,7 +35,7 @@ def curves_of(
             raise InputError(
                 f"UNKNOWN_{kind.upper()}",
                 label,
-                "it has no {}, but {} {}(s); name others, from {}1 on",
+                "it has no {}, only {} {}(s); choose others, starting with {}1",
                 ", ".join(wrong),
                 len(available),
                 kind.lower(),
@@ -48,7 +48,9 @@ def curves_of(
     ]
     if not selected_edges:
         raise InputError(
-            "NO_CURVES", label, "it has no edges to lay as beads; choose edges, a wire or a sketch"
+            "NO_CURVES",
+            label,
+            "it has no edges to deposit as beads; choose edges, a wire or a sketch",
         )
     polylines = [
         _polyline(chain, chord_error, bool(faces)) for chain in Part.sortEdges(selected_edges)
@@ -100,8 +102,8 @@ def _normals(points: Array, faces: Sequence[Any], label: str) -> Array:
             raise InputError(
                 "OFF_FACE",
                 label,
-                "a curve is {:.3g} mm off the faces whose normals it is to have, at {}; choose the faces "
-                "that it lies on, or give strategy.direction",
+                "a curve is {:.3g} mm off the selected faces, at {}; choose the faces that carry "
+                "the curve, or set strategy.direction",
                 distances[nearest],
                 place(point),
             )

@@ -34,7 +34,7 @@ def edges_of(shape: Any, names: Sequence[str], label: str) -> list[tuple[Array, 
         raise InputError(
             "GUIDE_OPEN",
             label,
-            "it has {} edges, of which a guide takes some; name them, as in edges: [Edge1]",
+            "it has {} edges, and a guide uses only some; choose them, as in edges: [Edge1]",
             len(edges_by_name),
         )
     edges = [edges_by_name[name] for name in dict.fromkeys(names)] or list(shape.Edges)

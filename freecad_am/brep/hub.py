@@ -101,7 +101,7 @@ def _loose(source: Any, label: str) -> tuple[Issue, ...]:
     if not faces and not edges:
         return ()
     text = Text(
-        "{}: {} face(s) and {} edge(s) belong to none of its solids and are left out",
+        "{}: {} face(s) and {} edge(s) belong to no solid and are ignored",
         label,
         faces,
         edges,
@@ -137,8 +137,8 @@ def _meshed(
         raise InputError(
             unsound.code,
             label,
-            "{}; up to strategy.mend, {:g} mm, what is open is closed, and the widest place is {:.4g} "
-            "mm across",
+            "{}; openings up to strategy.mend = {:g} mm are closed automatically, but the widest "
+            "is {:.4g} mm across",
             unsound.message,
             mend,
             widest,
@@ -213,7 +213,7 @@ def _seat(name: str, face: Any, selected: bool) -> Seat | None:
             raise InputError(
                 "NOT_DEVELOPABLE",
                 name,
-                "it is not a cylinder and no cone; choose another face, or give strategy.base",
+                "it is neither a cylinder nor a cone; choose another face, or set strategy.base",
             )
         return None
     origin, z, radius, taper = round_one
@@ -228,7 +228,7 @@ def _seat(name: str, face: Any, selected: bool) -> Seat | None:
             raise InputError(
                 "INNER_FACE",
                 name,
-                "it is the inside of a bore; choose the outside of a hub, on which solids grow",
+                "it is the inside of a bore; choose the outer face of a hub",
             )
         return None
     low, high = float(along.min()), float(along.max())

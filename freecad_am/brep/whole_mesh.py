@@ -39,8 +39,8 @@ def complete_mesh(solid: Any, chord: float, label: str) -> tuple[Tessellation, t
         return tessellation, ()  # it is the kernel's integral of the volume that is off
     volume, tessellation = min(attempts, key=lambda attempt: abs(attempt[0] - exact))
     message = Text(
-        "{}: its triangles enclose {:.4g} cm3 and its faces {:.4g} cm3; check and export the part again, or "
-        "deposit it from a mesh",
+        "{}: its triangles enclose {:.4g} cm3 but its faces {:.4g} cm3; check the part and "
+        "export it again, or deposit it from a mesh",
         label,
         1e-3 * volume,
         1e-3 * exact,

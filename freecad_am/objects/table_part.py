@@ -92,7 +92,7 @@ def _read(path: str, name: str, form: str) -> Points:
         ) from None
     except OSError as error:
         raise InputError(
-            "NO_FILE", name, "it cannot be read: {}; choose a file that can", error.strerror
+            "NO_FILE", name, "it cannot be read: {}; choose another file", error.strerror
         ) from None
 
 

@@ -161,7 +161,7 @@ def _shape(value: Any) -> str:
         raise InputError(
             "NO_FILE",
             key,
-            "there is no file {}; check the path, relative to the file with it",
+            "file {} does not exist; check the path, which is relative to the file that names it",
             file,
         )
     return file
@@ -237,7 +237,8 @@ def _obstacle(value: Any, key: str, number: int) -> obstacles.Obstacle:
             raise InputError(
                 "NO_FILE",
                 f"{key}.file",
-                "there is no file {}; check the path, relative to the file with it",
+                "file {} does not exist; check the path, which is relative to the file that "
+                "names it",
                 file,
             )
     edges = section.get("box")

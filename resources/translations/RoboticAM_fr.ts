@@ -1403,8 +1403,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>, for what it holds is not part ({0})</source>
-        <translation>, car son contenu n&apos;est pas la pièce ({0})</translation>
+        <source>, as its content is not part of the shape ({0})</source>
+        <translation>, car son contenu ne fait pas partie de la forme ({0})</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/predicted.py"/>
@@ -1503,23 +1503,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
-        <source>; between the edges of its triangles it runs smoothly, up to {0} mm off them, about as far as they are off what they stand for</source>
-        <translation>; entre les arêtes de ses triangles elle court régulièrement, à {0} mm d&apos;eux au plus, à peu près autant qu&apos;ils s&apos;écartent de ce qu&apos;ils représentent</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>; it was taken as it was measured, in the part&apos;s coordinates</source>
-        <translation>; il a été pris tel que mesuré, dans les coordonnées de la pièce</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>; it was turned by {0} deg and its origin moved by {1} mm onto the plan</source>
-        <translation>; il a été tourné de {0} deg et son origine déplacée de {1} mm pour venir sur le plan</translation>
+        <source>; between the mesh edges it is smoothed, by up to {0} mm, about the error of the mesh itself</source>
+        <translation>; entre les arêtes du maillage elle est lissée, de {0} mm au plus, à peu près l&apos;erreur du maillage lui-même</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/kernel/limits.py"/>
-        <source>; its {0} face(s), about {1}, are each sound</source>
+        <source>; each of its {0} face(s), about {1}, is valid</source>
         <translation>; ses {0} face(s), autour de {1}, sont saines une à une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
+        <source>; it was rotated by {0} deg and its origin moved by {1} mm to match the plan</source>
+        <translation>; il a été tourné de {0} deg et son origine déplacée de {1} mm pour venir sur le plan</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
+        <source>; it was used as measured, in part coordinates</source>
+        <translation>; il a été pris tel que mesuré, dans les coordonnées de la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/kernel/limits.py"/>
@@ -1533,7 +1533,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/collision.py"/>
-        <source>&lt;{0}&gt; has a size that is not larger than 0; give its sizes in m</source>
+        <source>&lt;{0}&gt; has a size that is not positive; give its sizes in m</source>
         <translation>&lt;{0}&gt; a une taille qui n’est pas supérieure à 0 ; donnez ses dimensions en m</translation>
     </message>
     <message>
@@ -1550,11 +1550,6 @@
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
         <source>&lt;{0}&gt; has no {1}; add it</source>
         <translation>&lt;{0}&gt; n&apos;a pas de {1} ; ajoutez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>&lt;{0}&gt; in the joint {1} is not known and may change where links are; remove it</source>
-        <translation>&lt;{0}&gt; dans l&apos;articulation {1} est inconnu et peut déplacer les corps ; supprimez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
@@ -3033,7 +3028,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>G92 has no word {0}; give X, Y, Z or E with a number</source>
+        <source>G92 lacks the word {0}; add X, Y, Z or E with a number</source>
         <translation>G92 n&apos;a pas de mot {0} ; donnez X, Y, Z ou E avec un nombre</translation>
     </message>
     <message>
@@ -6427,6 +6422,11 @@
         <translation>Fichier URDF</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
+        <source>URDF {0} does not exist; check the path</source>
+        <translation>il n’y a pas d’URDF {0} ; vérifiez le chemin</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>URScript has no arc instructions</source>
         <translation>URScript n&apos;a pas d&apos;instructions d&apos;arc</translation>
@@ -6957,11 +6957,6 @@
         <translation>une bande de {0} % est trop étroite pour {1} points sur le tour : prenez-en davantage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
-        <source>a bead of one point has no way to go; give it two points or more</source>
-        <translation>un cordon d&apos;un seul point n&apos;a pas de chemin ; donnez-lui deux points ou plus</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/strategies/curves.py"/>
         <source>a bead runs along the direction in which it is laid, at {0}: the nozzle would be in its own way; give another strategy.direction, faces, or directions in the table</source>
         <translation>un cordon suit la direction dans laquelle il est déposé, en {0} : la buse se gênerait elle-même ; donnez une autre strategy.direction, des faces, ou des directions dans le tableau</translation>
@@ -7002,34 +6997,19 @@
         <translation>une commande de ce type a de la place pour environ {0} Mo en tout</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
-        <source>a coordinate of its vertices is not a number; export it again</source>
-        <translation>une coordonnée de ses sommets n&apos;est pas un nombre ; exportez-le de nouveau</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
         <source>a corner has no end from which the time of a trigger counts</source>
         <translation>un coin n&apos;a pas de fin d&apos;où compterait le temps d&apos;un déclencheur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
-        <source>a corner of a face is not a number; export the part again</source>
-        <translation>un sommet d&apos;une face n&apos;est pas un nombre ; exportez la pièce de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/stl_check.py"/>
-        <source>a corner of a triangle is not a number; export the part again</source>
-        <translation>un sommet d&apos;un triangle n&apos;est pas un nombre ; exportez la pièce de nouveau</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/curves.py"/>
-        <source>a curve is {0} mm off the faces whose normals it is to have, at {1}; choose the faces that it lies on, or give strategy.direction</source>
-        <translation>une courbe est à {0} mm des faces dont elle doit avoir les normales, en {1} ; choisissez les faces sur lesquelles elle repose, ou donnez strategy.direction</translation>
+        <source>a curve is {0} mm off the selected faces, at {1}; choose the faces that carry the curve, or set strategy.direction</source>
+        <translation>une courbe est à {0} mm des faces choisies, en {1} ; choisissez les faces qui portent la courbe, ou fixez strategy.direction</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/curved/field.py"/>
-        <source>a curved layer cannot be laid flat without distortion: beads are up to {0} % nearer together or farther apart than the bead spacing</source>
-        <translation>une couche courbe ne se met pas à plat sans distorsion : des cordons sont jusqu&apos;à {0} % plus proches ou plus éloignés que le pas des cordons</translation>
+        <source>a curved layer cannot be flattened without distortion: the bead spacing varies by up to {0} %</source>
+        <translation>une couche courbe ne peut pas être mise à plat sans distorsion : l&apos;écart entre cordons varie jusqu&apos;à {0} %</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
@@ -7038,7 +7018,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
-        <source>a face has the corner {0}, and there are {1} points; export the part again</source>
+        <source>a face refers to vertex {0}, but the file has {1} vertices; export the part again</source>
         <translation>une face a le sommet {0} et il y a {1} points ; exportez la pièce de nouveau</translation>
     </message>
     <message>
@@ -7057,8 +7037,13 @@
         <translation>un front se divise en {0} à la couche {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
+        <source>a full ring has no end to start from; cut it at the substrate</source>
+        <translation>un anneau entier n&apos;a pas de bout d&apos;où partir ; coupez-le au substrat</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>a gap of {0} mm between faces of {1} is bridged</source>
+        <source>a gap of {0} mm between faces of {1} was bridged</source>
         <translation>un jour de {0} mm entre des faces de {1} est comblé</translation>
     </message>
     <message>
@@ -7087,13 +7072,18 @@
         <translation>une longueur comme 1 mm</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>a low-resolution mesh that accompanies slices</source>
+        <translation>un maillage de basse résolution qui accompagne des tranches</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
         <source>a mesh has no cylinders and cones; give strategy.base, or a solid part as substrate</source>
         <translation>un maillage n&apos;a ni cylindres ni cônes ; donnez strategy.base, ou une pièce solide comme substrat</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>a mesh has no exact surfaces; give a part of revolution as STEP, IGES or BREP</source>
+        <source>a mesh has no exact surfaces; export the part of revolution as STEP, IGES or BREP</source>
         <translation>un maillage n&apos;a pas de surfaces exactes ; donnez une pièce de révolution en STEP, IGES ou BREP</translation>
     </message>
     <message>
@@ -7103,12 +7093,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>a mesh of low resolution beside its slices</source>
-        <translation>un maillage de basse résolution à côté de ses tranches</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>a model of the resolution {0} alone</source>
+        <source>a model with only the resolution {0}</source>
         <translation>un modèle de la seule résolution {0}</translation>
     </message>
     <message>
@@ -7208,7 +7193,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
-        <source>a position is not a number of at most {0} mm; export it again</source>
+        <source>a position is not a number up to {0} mm; export it again</source>
         <translation>une position n&apos;est pas un nombre d&apos;au plus {0} mm ; exportez-le à nouveau</translation>
     </message>
     <message>
@@ -7243,7 +7228,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>a radius of {0} mm makes no arc between points {1} mm apart; give {2} and {3}</source>
+        <source>a radius of {0} mm cannot join points {1} mm apart; use {2} and {3}</source>
         <translation>un rayon de {0} mm ne fait pas d&apos;arc entre des points distants de {1} mm ; donnez {2} et {3}</translation>
     </message>
     <message>
@@ -7268,7 +7253,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/filling/strips.py"/>
-        <source>a region round the hub is nowhere as wide as a bead ({0} mm); choose thin = single, a narrower bead or a margin</source>
+        <source>a region around the hub is narrower than a bead ({0} mm) everywhere; use thin = single, a narrower bead or a margin</source>
         <translation>une région autour du moyeu n&apos;est nulle part aussi large qu&apos;un cordon ({0} mm) ; choisissez thin = single, un cordon plus étroit ou une marge</translation>
     </message>
     <message>
@@ -7397,6 +7382,21 @@
         <translation>une valeur de {0} est fixée, mais {1} n&apos;en dépend pas ; vérifiez les noms</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
+        <source>a vertex coordinate is not a number; export it again</source>
+        <translation>une coordonnée de ses sommets n&apos;est pas un nombre ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
+        <source>a vertex index of a face is not a number; export the part again</source>
+        <translation>un sommet d&apos;une face n&apos;est pas un nombre ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/stl_check.py"/>
+        <source>a vertex of a triangle is not a number; export the part again</source>
+        <translation>un sommet d&apos;un triangle n&apos;est pas un nombre ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
         <source>a weave is an argument of ArcL, which a dry run does not have; block weld and weave on the controller instead</source>
         <translation>un balayage est un argument de ArcL, qu&apos;une marche à vide n&apos;a pas ; bloquez plutôt soudage et balayage sur la commande</translation>
@@ -7407,13 +7407,8 @@
         <translation>un balayage est un argument de ArcL, que program.schedule.by: arc écrit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>a whole ring has no end to start from; cut it where it stands on the substrate</source>
-        <translation>un anneau entier n&apos;a pas d&apos;extrémité d&apos;où partir ; coupez-le là où il repose sur le substrat</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>a wire or sketch needs an axis to turn about; give one</source>
+        <source>a wire or sketch needs an axis of revolution; choose one</source>
         <translation>un fil ou une esquisse demande un axe de rotation ; donnez-en un</translation>
     </message>
     <message>
@@ -7430,6 +7425,11 @@
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>a {0} in {1} lacks {2}</source>
         <translation>il manque {2} à un élément {0} de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>a {0} {1} already exists, in line {2}; rename one</source>
+        <translation>il y a déjà un {0} {1}, à la ligne {2} ; renommez l&apos;un des deux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
@@ -7518,42 +7518,37 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>all its faces are flat; choose a part, or faces, of revolution</source>
+        <source>all its faces are flat and across the axis; select the faces of the wall</source>
+        <translation>il n&apos;a que des faces planes en travers de l&apos;axe ; nommez les faces de la paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
+        <source>all its faces are flat; choose a part or faces of revolution</source>
         <translation>toutes ses faces sont planes ; choisissez une pièce, ou des faces, de révolution</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
-        <source>all of the wall lies on the surface of {0}, as if it were a part of it; give the part that is there before the wall, or none where the wall starts on the platform or from edges</source>
-        <translation>toute la paroi est sur la surface de {0}, comme si elle en faisait partie ; donnez la pièce qui est là avant la paroi, ou aucune si la paroi commence sur la plateforme ou à des arêtes</translation>
+        <location filename="../../freecad_am/core/inspection/roundness.py"/>
+        <source>all points are in one line, and no circle fits; measure over a wider arc</source>
+        <translation>tous les points sont sur une ligne, à laquelle aucun cercle ne convient ; mesurez sur un arc plus large</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/roundness.py"/>
-        <source>all points lie in one line, which no circle fits; measure further round</source>
-        <translation>tous les points sont sur une ligne, à laquelle aucun cercle ne convient ; mesurez plus loin sur le tour</translation>
+        <source>all points are in one line, and no sphere fits; measure over a wider arc</source>
+        <translation>tous les points sont sur une ligne, à laquelle aucune sphère ne convient ; mesurez sur un arc plus large</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/roundness.py"/>
-        <source>all points lie in one line, which no sphere fits; measure further round</source>
-        <translation>tous les points sont sur une ligne, à laquelle aucune sphère ne convient ; mesurez plus loin sur le tour</translation>
+        <source>all points are in one plane, and no circle fits; measure over a wider arc</source>
+        <translation>tous les points sont dans un plan, auquel aucun cercle ne convient ; mesurez sur un arc plus large</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/roundness.py"/>
-        <source>all points lie in one plane, which no circle fits; measure further round</source>
-        <translation>tous les points sont dans un plan, auquel aucun cercle ne convient ; mesurez plus loin sur le tour</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/roundness.py"/>
-        <source>all points lie in one plane, which no sphere fits; measure further round</source>
-        <translation>tous les points sont dans un plan, auquel aucune sphère ne convient ; mesurez plus loin sur le tour</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>all that it holds is marked as invisible, which is not read; show the part and export it again</source>
-        <translation>tout son contenu est marqué invisible et n&apos;est pas lu ; affichez la pièce et exportez-la de nouveau</translation>
+        <source>all points are in one plane, and no sphere fits; measure over a wider arc</source>
+        <translation>tous les points sont dans un plan, auquel aucune sphère ne convient ; mesurez sur un arc plus large</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>all triangles of the mesh cancel one another; export it again</source>
+        <source>all triangles of the mesh cancel each other; export it again</source>
         <translation>tous les triangles du maillage s&apos;annulent ; exportez-le à nouveau</translation>
     </message>
     <message>
@@ -7608,7 +7603,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/kernel/limits.py"/>
-        <source>an edge of the face crosses itself at {0}; draw it without crossings, or divide it there and deposit its parts one after the other</source>
+        <source>an edge of the face crosses itself at {0}; redraw it without crossings, or divide the face there and deposit its parts in turn</source>
         <translation>une arête de la face se croise elle-même en {0} ; dessinez-la sans croisement, ou divisez-la à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
     <message>
@@ -7625,6 +7620,11 @@
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>an input changed while it was computed; recompute</source>
         <translation>une entrée a changé pendant le calcul ; recalculez</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>an object has the type {0}, which 3MF does not define</source>
+        <translation>il a un objet du type {0}, inconnu de 3MF</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
@@ -7758,13 +7758,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/surface_patch.py"/>
-        <source>at ({0}) it is {1} mm off the spline that stands for it, more than {2} mm; rebuild the face, for instance as a loft or a sweep</source>
-        <translation>en ({0}) elle est à {1} mm de la spline qui la représente, plus que {2} mm ; reconstruisez la face, par exemple par lissage ou balayage</translation>
+        <source>at ({0}) the face has an inner crease of {1} deg; round it, or divide the face there and deposit its parts in turn</source>
+        <translation>en ({0}) la face a une arête en son sein, de {1} deg ; arrondissez-la, ou divisez la face à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/surface_patch.py"/>
-        <source>at ({0}) the face has an edge within itself, of {1} deg; round it, or divide the face there and deposit its parts one after the other</source>
-        <translation>en ({0}) la face a une arête en son sein, de {1} deg ; arrondissez-la, ou divisez la face à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
+        <source>at ({0}) the spline that approximates it is {1} mm off, more than {2} mm; rebuild the face, for instance as a loft or a sweep</source>
+        <translation>en ({0}) la spline qui l&apos;approche s&apos;écarte de {1} mm, plus que {2} mm ; reconstruisez la face, par exemple par un lissage ou un balayage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
@@ -7783,7 +7783,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>at {0} of {1} places of layer {2} there are no points of the scan around, the first at {3}; it reaches over {4} mm, the layer over {5} mm: scan all that the layer lies on, or check its unit and fit</source>
+        <source>at {0} of {1} places in layer {2} the scan has no nearby points, first at {3}; the scan extends over {4} mm, the layer over {5} mm: scan the whole area below the layer, or check unit and fit</source>
         <translation>à {0} des {1} endroits de la couche {2} il n&apos;y a pas de points de la numérisation autour, le premier en {3} ; elle s&apos;étend sur {4} mm, la couche sur {5} mm : numérisez tout ce sur quoi la couche repose, ou vérifiez son unité et son ajustement</translation>
     </message>
     <message>
@@ -7798,8 +7798,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
-        <source>auto finds no centre line of {0} from where it stands: {1}; choose an edge, a wire or a sketch as guide, or set strategy.direction so that the part stands on one of its ends</source>
-        <translation>auto ne trouve pas de ligne médiane de {0} à partir de son appui : {1} ; choisissez une arête, un fil ou une esquisse comme guide, ou réglez strategy.direction pour que la pièce repose sur l&apos;une de ses extrémités</translation>
+        <source>auto finds no centre line of {0} from its support: {1}; choose an edge, a wire or a sketch as guide, or set strategy.direction along the part from one of its ends</source>
+        <translation>auto ne trouve pas de ligne médiane de {0} à partir de son appui : {1} ; choisissez une arête, un fil ou une esquisse comme guide, ou fixez strategy.direction le long de la pièce à partir d&apos;un de ses bouts</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
@@ -7927,14 +7927,14 @@
         <translation>largeur de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
-        <source>bead {0} begins again; keep the lines of a bead together</source>
-        <translation>le cordon {0} recommence ; gardez ensemble les lignes d&apos;un cordon</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/planning/methods/closed_form.py"/>
         <source>bead {0} of {1}</source>
         <translation>cordon {0} de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
+        <source>bead {0} starts a second time; keep the lines of a bead together</source>
+        <translation>le cordon {0} recommence ; gardez ensemble les lignes d&apos;un cordon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
@@ -8038,8 +8038,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/clad_faces.py"/>
-        <source>behind {0} is the material of {1}; use front, which is outside of it</source>
-        <translation>derrière {0} se trouve la matière de {1} ; utilisez front, qui est à l&apos;extérieur</translation>
+        <source>behind {0} is the material of {1}; use front, the outside</source>
+        <translation>derrière {0} se trouve la matière de {1} ; utilisez front, l&apos;extérieur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
+        <source>besides the robot the file has {0} chains ({1}), and only one can carry the part; name it in `{2}`, with base and tip</source>
+        <translation>outre le robot le fichier a {0} chaînes ({1}), et une seule peut porter la pièce ; nommez-la dans `{2}`, avec base et bout</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -8088,8 +8093,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/first_layer.py"/>
-        <source>both ends of the wall lie in {0}; let one of them end outside of it</source>
-        <translation>les deux extrémités de la paroi sont dans {0} ; faites finir l&apos;une d&apos;elles en dehors</translation>
+        <source>both ends of the wall are inside {0}; extend one end outside</source>
+        <translation>les deux bouts de la paroi sont à l&apos;intérieur de {0} ; prolongez l&apos;un d&apos;eux à l&apos;extérieur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -8143,17 +8148,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
-        <source>cannot be read as a calibration: {0}; give the file as ur_calibration wrote it</source>
+        <source>cannot be read as a calibration: {0}; use the file as ur_calibration wrote it</source>
         <translation>ne peut pas être lu comme étalonnage : {0} ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>cannot be read as a machine file: {0}; mend that place, or choose another file</source>
+        <source>cannot be read as a machine file: {0}; correct it, or choose another file</source>
         <translation>ne peut pas être lu comme un fichier machine : {0} ; corrigez cet endroit, ou choisissez un autre fichier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>cannot be read: {0}; choose a file that can</source>
+        <source>cannot be read: {0}; choose another file</source>
         <translation>ne peut pas être lu : {0} ; choisissez un fichier qui peut l&apos;être</translation>
     </message>
     <message>
@@ -8193,7 +8198,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/substrate.py"/>
-        <source>choose a solid part or a closed mesh for the wall to grow on</source>
+        <source>choose a solid part or a closed mesh as substrate of the wall</source>
         <translation>choisissez une pièce solide ou un maillage fermé sur lequel la paroi s&apos;élève</translation>
     </message>
     <message>
@@ -8268,8 +8273,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>commas stand between columns and before decimals alike; export it with points as decimal signs, or semicolons between columns</source>
-        <translation>des virgules séparent à la fois les colonnes et les décimales ; exportez-le avec des points décimaux, ou des points-virgules entre les colonnes</translation>
+        <source>commas separate both columns and decimals; export it with decimal points, or with semicolons between columns</source>
+        <translation>les virgules séparent à la fois les colonnes et les décimales ; exportez-le avec des points décimaux, ou des points-virgules entre les colonnes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
@@ -8348,7 +8353,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/regions/region.py"/>
-        <source>contours that cross or touch were mended; {0} mm^2 changed</source>
+        <source>contours that cross or touch were repaired; {0} mm^2 changed</source>
         <translation>des contours qui se croisent ou se touchent ont été réparés ; {0} mm^2 ont changé</translation>
     </message>
     <message>
@@ -8383,7 +8388,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/surfaces.py"/>
-        <source>curves and cladding plan no surface; compare the points with the part</source>
+        <source>curves and cladding have no planned surface; compare the points with the part</source>
         <translation>les courbes et le rechargement ne planifient pas de surface ; comparez les points à la pièce</translation>
     </message>
     <message>
@@ -8558,8 +8563,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>entities such as {0} are not read; write out what they stand for</source>
-        <translation>les entités comme {0} ne sont pas lues ; écrivez ce qu&apos;elles représentent</translation>
+        <source>entities such as {0} are not supported; write out their content</source>
+        <translation>les entités telles que {0} ne sont pas prises en charge ; écrivez leur contenu</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
@@ -8570,6 +8575,11 @@
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>every point of the motion, rapids included, against the machine file</source>
         <translation>chaque point du mouvement, rapides compris, comparé au fichier machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>everything in it is marked as invisible and therefore not read; show the part and export it again</source>
+        <translation>tout son contenu est marqué invisible et n&apos;est pas lu ; affichez la pièce et exportez-la de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
@@ -8598,7 +8608,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/triangle_mesh.py"/>
-        <source>faces of the wall&apos;s mesh turn opposite ways: orient the faces alike</source>
+        <source>faces of the wall mesh have opposite orientations; orient them consistently</source>
         <translation>des faces du maillage de la paroi sont tournées en sens opposés : orientez-les pareillement</translation>
     </message>
     <message>
@@ -8642,6 +8652,11 @@
         <translation>élément à déposer</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/cell.py"/>
+        <source>file {0} does not exist; check the path, which is relative to the file that names it</source>
+        <translation>il n&apos;y a pas de fichier {0} ; vérifiez le chemin, relatif au fichier qui le contient</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>fill holes (Mesh, Close holes) or export it again</source>
         <translation>bouchez les trous (Mesh, Fermer les trous) ou exportez-le de nouveau</translation>
@@ -8650,6 +8665,11 @@
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>fill, or open</source>
         <translation>remplissage, ou ouvert</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/regions/region.py"/>
+        <source>filling solids needs the Python package shapely (1.8 or newer), which is not installed; on Debian: apt-get install python3-shapely, elsewhere: pip install shapely</source>
+        <translation>les solides sont remplis avec le paquet Python shapely (1.8 ou plus récent), qui n&apos;est pas installé ; sous Debian : apt-get install python3-shapely, ailleurs : pip install shapely</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/fronts/layers.py"/>
@@ -8737,6 +8757,11 @@
         <translation>à partir de la couche {0}, max_tilt tient les directions à {1} deg au plus</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>from {0} points {1} are kept, evenly</source>
+        <translation>de {0} points {1} sont gardés, également répartis</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/revolution/turn.py"/>
         <source>from {0} to {1} deg</source>
         <translation>de {0} à {1} deg</translation>
@@ -8812,11 +8837,6 @@
         <translation>donnez des déplacements absolus ou relatifs, G0 à G3 avec E, comme les écrit un trancheur pour filament ou granulés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/cuts.py"/>
-        <source>give bends a larger radius than the tube</source>
-        <translation>donnez aux coudes un rayon plus grand que celui du tube</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
         <source>give both ends of its range, or none for an endless axis</source>
         <translation>donnez les deux bouts de sa plage, ou aucun pour un axe sans fin</translation>
@@ -8825,11 +8845,6 @@
         <location filename="../../freecad_am/core/kinematics/links/bodies.py"/>
         <source>give sizes larger than 0: of a box along x, y and z, of a cylinder its diameter and length</source>
         <translation>donnez des dimensions supérieures à 0 : d&apos;un pavé selon x, y et z, d&apos;un cylindre son diamètre et sa longueur</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/cuts.py"/>
-        <source>give the bend a larger radius than the tube</source>
-        <translation>donnez au coude un rayon plus grand que celui du tube</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
@@ -8870,11 +8885,6 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>gyroid</source>
         <translation>gyroïde</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/sheet.py"/>
-        <source>halving the edges of the mesh of the wall down to {0} mm, by layer height and smallest radius, comes to no end, though about {1} triangles would do, as where a face is twisted like that of a coil; make it of shorter faces, or deposit the wall in parts or as a solid</source>
-        <translation>diviser par deux les arêtes du maillage de la paroi jusqu&apos;à {0} mm, d&apos;après la hauteur de couche et le plus petit rayon, n&apos;a pas de fin, alors qu&apos;environ {1} triangles suffiraient, comme là où une face est tordue, telle celle d&apos;un ressort ; faites-la de faces plus courtes, ou déposez la paroi par parties ou comme un solide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -9047,36 +9057,6 @@
         <translation>il commence par une position et ne nomme aucune configuration du bras ; indiquez-la dans la cellule, branch: [front, up, flip]</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it builds more than holds itself; simplify it</source>
-        <translation>il construit plus que ce qui se contient soi-même ; simplifiez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it builds more than is not in it; simplify it</source>
-        <translation>il construit plus que ce qui n&apos;y est pas ; simplifiez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it builds more than {0} objects, or objects nested {1} times; simplify it</source>
-        <translation>il construit plus de {0} objets, ou des objets imbriqués {1} fois ; simplifiez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it builds more than {0} points; simplify it</source>
-        <translation>il construit plus de {0} points ; simplifiez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it builds more than {0} triangles; simplify it</source>
-        <translation>il construit plus de {0} triangles ; simplifiez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it builds no triangles{0}; export the part again</source>
-        <translation>il ne construit aucun triangle{0} ; exportez la pièce de nouveau</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>it calls a subprogram; write its moves out</source>
         <translation>il appelle un sous-programme ; écrivez ses déplacements</translation>
@@ -9088,8 +9068,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/scan_motion.py"/>
-        <source>it cannot be laid onto {0}: {1}</source>
-        <translation>elle ne peut pas être ramenée sur {0} : {1}</translation>
+        <source>it cannot be aligned with {0}: {1}</source>
+        <translation>elle ne peut pas être alignée avec {0} : {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/document_file.py"/>
@@ -9098,7 +9078,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>it cannot be read: {0}; choose a file that can</source>
+        <source>it cannot be read: {0}; choose another file</source>
         <translation>il ne peut pas être lu : {0} ; choisissez un fichier qui peut l&apos;être</translation>
     </message>
     <message>
@@ -9117,9 +9097,39 @@
         <translation>elle se ferme sur elle-même dans les deux sens ; choisissez un tube fermé sur son tour</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
-        <source>it comes back to where it begins, at {0}: the last layer would lie on the first; leave an edge of it out</source>
-        <translation>il revient à son début, en {0} : la dernière couche reposerait sur la première ; enlevez-en une arête</translation>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>it contains more than holds itself; simplify it</source>
+        <translation>il construit plus que ce qui se contient soi-même ; simplifiez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>it contains more than is not in it; simplify it</source>
+        <translation>il construit plus que ce qui n&apos;y est pas ; simplifiez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>it contains more than {0} objects, or objects nested {1} times; simplify it</source>
+        <translation>il construit plus de {0} objets, ou des objets imbriqués {1} fois ; simplifiez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>it contains more than {0} points; simplify it</source>
+        <translation>il construit plus de {0} points ; simplifiez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>it contains more than {0} triangles; simplify it</source>
+        <translation>il construit plus de {0} triangles ; simplifiez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>it contains no model ({0})</source>
+        <translation>il n&apos;y a pas de modèle dedans ({0})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>it contains no triangles{0}; export the part again</source>
+        <translation>il ne construit aucun triangle{0} ; exportez la pièce de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
@@ -9130,11 +9140,6 @@
         <location filename="../../freecad_am/brep/revolution/wire.py"/>
         <source>it crosses the axis by {0} mm; keep it on one side</source>
         <translation>il croise l&apos;axe de {0} mm ; gardez-le d&apos;un seul côté</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
-        <source>it cuts itself: {0} pairs of its triangles cross, for instance at {1}, so that what is inside is not known; fuse what overlaps where the part was drawn, or repair the mesh (Mesh, Analyze, Self-intersections)</source>
-        <translation>il se coupe lui-même : {0} paires de ses triangles se croisent, par exemple en {1}, de sorte que l&apos;intérieur n&apos;est pas connu ; fusionnez ce qui se recouvre là où la pièce a été dessinée, ou réparez le maillage (Mesh, Analyser, Auto-intersections)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/files.py"/>
@@ -9217,14 +9222,29 @@
         <translation>il finit dans une boucle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it extrudes after {0}, which ends the program; leave out what follows</source>
-        <translation>il extrude après {0}, qui termine le programme ; retirez la suite</translation>
+        <location filename="../../freecad_am/brep/files/read.py"/>
+        <source>it extends to {0} mm, farther than {1} mm; a coordinate is damaged or the unit is wrong; export the part again</source>
+        <translation>il s&apos;étend jusqu&apos;à {0} mm, plus loin que {1} mm ; une coordonnée est endommagée ou son unité est fausse ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/torch.py"/>
+        <source>it extends {0} mm beyond its origin along Z, into the deposit; point Z of the file out of the nozzle, away from the torch, with the origin at the tip</source>
+        <translation>elle dépasse de {0} mm son origine selon Z, là où est le dépôt ; faites pointer le Z du fichier hors de la buse, à l&apos;opposé de la torche, et mettez l&apos;origine à sa pointe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it extrudes before the program says where: X, Y and Z have to be given first; {0}</source>
+        <source>it extrudes after {0}, which ends the program; remove the lines after it</source>
+        <translation>il extrude après {0}, qui termine le programme ; retirez les lignes qui suivent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>it extrudes before its position is defined; set X, Y and Z first; {0}</source>
         <translation>il extrude avant que le programme ne dise où : X, Y et Z doivent être donnés d&apos;abord ; {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/scan_motion.py"/>
+        <source>it fits equally well on the part rotated by {0} deg, so its orientation is ambiguous; give three pairs of points as substrate.scan_pairs, or measure in part coordinates</source>
+        <translation>elle convient aussi bien à la pièce tournée de {0} deg, si bien que son orientation est ambiguë ; donnez trois paires de points comme substrate.scan_pairs, ou mesurez dans les coordonnées de la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>
@@ -9233,18 +9253,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
-        <source>it has a corner of {0} deg at {1}, where layers would have no height on the inside; round it with a radius, or choose guide: auto</source>
+        <source>it has a corner of {0} deg at {1}, where layers would have zero height on the inside; round it with a radius, or choose guide: auto</source>
         <translation>il a un angle vif de {0} deg en {1}, où les couches n&apos;auraient pas de hauteur à l&apos;intérieur ; arrondissez-le par un rayon, ou choisissez guide: auto</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
+        <source>it has a crease along its seam, which cannot be deposited yet; smooth it there</source>
+        <translation>elle a une arête le long de sa couture, ce qui ne peut pas encore être déposé ; rendez-la lisse à cet endroit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it has a document type, which 3MF does not allow</source>
         <translation>il a un type de document, ce que 3MF ne permet pas</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>it has an edge along its seam, which cannot be deposited yet; make it smooth there</source>
-        <translation>elle a une arête le long de sa couture, ce qui ne peut pas encore être déposé ; rendez-la lisse à cet endroit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
@@ -9253,13 +9273,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/first_layer.py"/>
-        <source>it has an edge that is neither straight across the tube at its end nor below the first layer, which cannot be deposited yet; fill openings, and cut ends straight</source>
+        <source>it has an edge that is neither a straight end of the tube nor below the first layer, which cannot be deposited yet; fill openings, and cut ends straight</source>
         <translation>elle a une arête qui n&apos;est ni droite en travers du tube à son extrémité ni sous la première couche, ce qui ne peut pas encore être déposé ; comblez les ouvertures, et coupez droit les extrémités</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it has an object of the type {0}, which 3MF does not know</source>
-        <translation>il a un objet du type {0}, inconnu de 3MF</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
@@ -9303,7 +9318,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/curves.py"/>
-        <source>it has no edges to lay as beads; choose edges, a wire or a sketch</source>
+        <source>it has no edges to deposit as beads; choose edges, a wire or a sketch</source>
         <translation>il n&apos;a pas d&apos;arêtes à déposer en cordons ; choisissez des arêtes, un fil ou une esquisse</translation>
     </message>
     <message>
@@ -9313,13 +9328,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>it has no face of any width; choose another object</source>
+        <source>it has no face of measurable width; choose another object</source>
         <translation>il n&apos;a aucune face de quelque largeur ; choisissez un autre objet</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>it has no face that turns about the axis; name the faces of the wall</source>
-        <translation>aucune de ses faces ne tourne autour de l&apos;axe ; nommez les faces de la paroi</translation>
+        <location filename="../../freecad_am/brep/shapes/tessellate.py"/>
+        <source>it has no faces for the clearance check; choose a solid or a mesh</source>
+        <translation>il n&apos;a pas de face dont tenir la buse éloignée ; choisissez un solide ou un maillage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/shapes/distance.py"/>
@@ -9327,13 +9342,8 @@
         <translation>il n&apos;a pas de face à laquelle comparer les points ; choisissez un solide ou une surface</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/shapes/tessellate.py"/>
-        <source>it has no faces to keep the nozzle clear of; choose a solid or a mesh</source>
-        <translation>il n&apos;a pas de face dont tenir la buse éloignée ; choisissez un solide ou un maillage</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>it has no faces; choose a part with the faces of the wall</source>
+        <source>it has no faces; choose a part with wall faces</source>
         <translation>il n&apos;a pas de faces ; choisissez une pièce avec les faces de la paroi</translation>
     </message>
     <message>
@@ -9363,7 +9373,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/curves.py"/>
-        <source>it has no {0}, but {1} {2}(s); name others, from {3}1 on</source>
+        <source>it has no {0}, only {1} {2}(s); choose others, starting with {3}1</source>
         <translation>il n&apos;a pas de {0}, mais {1} {2}(s) ; nommez-en d&apos;autres, à partir de {3}1</translation>
     </message>
     <message>
@@ -9378,13 +9388,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
-        <source>it has no {0}; choose from the open ends of the mesh, by height: {1}</source>
+        <source>it has no {0}; choose from the open ends of the mesh, sorted by height: {1}</source>
         <translation>il n&apos;a pas de {0} ; choisissez parmi les extrémités ouvertes du maillage, par hauteur : {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>it has only flat faces across the axis; name the faces of the wall</source>
-        <translation>il n&apos;a que des faces planes en travers de l&apos;axe ; nommez les faces de la paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
@@ -9393,7 +9398,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>it has solids by constructive geometry ({0}), which are not read; {1}</source>
+        <source>it has solids by constructive geometry ({0}), which are not supported; {1}</source>
         <translation>il a des solides par géométrie constructive ({0}), qui ne sont pas lus ; {1}</translation>
     </message>
     <message>
@@ -9403,8 +9408,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>it has {0} axes, {1} of which slide</source>
-        <translation>elle a {0} axes, dont {1} linéaires</translation>
+        <source>it has {0} axes, {1} prismatic</source>
+        <translation>il a {0} axes, dont {1} prismatiques</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
@@ -9413,17 +9418,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/guide.py"/>
-        <source>it has {0} edges, of which a guide takes some; name them, as in edges: [Edge1]</source>
-        <translation>il a {0} arêtes, dont un guide prend quelques-unes ; nommez-les, comme dans edges: [Edge1]</translation>
+        <source>it has {0} edges, and a guide uses only some; choose them, as in edges: [Edge1]</source>
+        <translation>il a {0} arêtes, et un guide n&apos;en utilise que quelques-unes ; choisissez-les, comme dans edges: [Edge1]</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>it has {0} faces that are not flat; name the wall&apos;s in part.faces</source>
+        <source>it has {0} faces that are not flat; name the wall faces in part.faces</source>
         <translation>il a {0} faces qui ne sont pas planes ; nommez celles de la paroi dans part.faces</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
-        <source>it has {0} numbers in place of {1}; fill the gap, or leave the line out</source>
+        <source>it has {0} numbers in place of {1}; fill the gap, or remove the line</source>
         <translation>elle a {0} nombres au lieu de {1} ; remplissez le vide, ou enlevez la ligne</translation>
     </message>
     <message>
@@ -9432,9 +9437,9 @@
         <translation>il a {0} lignes ; mesurez au moins {1} cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>it has {0} values, the first row {1}: commas may stand before decimals too; export it with decimal points</source>
-        <translation>elle a {0} valeurs, la première ligne {1} : des virgules peuvent aussi précéder des décimales ; exportez avec des points décimaux</translation>
+        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
+        <source>it has {0} separate pieces, and no layer starts on the piece at {1}, {2} mm from the start of the layers; choose its start edge too, or deposit it as a separate feature</source>
+        <translation>ce sont {0} morceaux qui ne tiennent pas ensemble, et aucune couche ne commence sur celui en {1}, à {2} mm du départ des couches ; choisissez aussi son arête comme départ, ou déposez-le seul</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -9468,12 +9473,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/walls/clad_mesh.py"/>
-        <source>it is a closed mesh, which has no faces to choose; cut out of it what is to be covered (Mesh, Cutting), or take the file that it was made of</source>
-        <translation>c&apos;est un maillage fermé, qui n&apos;a pas de faces à choisir ; découpez-en ce qui est à couvrir (Mesh, Découpe), ou prenez le fichier dont il est issu</translation>
+        <source>it is a closed mesh without selectable faces; cut out the surface to cover (Mesh, Cutting), or use the original CAD file</source>
+        <translation>c&apos;est un maillage fermé sans faces à choisir ; découpez la surface à couvrir (Mesh, Découper), ou prenez le fichier CAO d&apos;origine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>it is a folder; name the file of the part</source>
+        <source>it is a folder; choose the file of the part</source>
         <translation>c&apos;est un dossier ; nommez le fichier de la pièce</translation>
     </message>
     <message>
@@ -9483,17 +9488,22 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall_on.py"/>
-        <source>it is a solid whose faces that are not flat ({0}) are not one wall; name the faces of the wall: part.faces of a job, or select them</source>
+        <source>it is a solid whose curved faces ({0}) do not form one wall; select the wall faces, or name them in part.faces of a job</source>
         <translation>c&apos;est un solide dont les faces non planes ({0}) ne sont pas une seule paroi ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/clad_faces.py"/>
-        <source>it is a solid with {0} face(s), and none is chosen; name those to cover: part.faces of a job, or select them</source>
+        <source>it is a solid with {0} face(s), and none is selected; select the faces to cover, or name them in part.faces of a job</source>
         <translation>c&apos;est un solide de {0} face(s), et aucune n&apos;est choisie ; nommez celles à recouvrir : part.faces d&apos;une tâche, ou sélectionnez-les</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
+        <source>it is a solid without an {0} wall; use wall: outer</source>
+        <translation>il est plein et n&apos;a pas de paroi {0} ; utilisez wall: outer</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it is binary G-code; let the slicer export G-code as text</source>
+        <source>it is binary G-code; export G-code as text from the slicer</source>
         <translation>c&apos;est du G-code binaire ; faites exporter le G-code en texte par le trancheur</translation>
     </message>
     <message>
@@ -9502,28 +9512,13 @@
         <translation>il est comprimé d&apos;une façon que 3MF ne permet pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/stl_check.py"/>
-        <source>it is cut off, or is no STL file: it says that it has {0} triangles, and has room for {1}; export the part again</source>
-        <translation>il est tronqué ou n&apos;est pas un fichier STL : il annonce {0} triangles et n&apos;en contient que {1} ; exportez la pièce de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/stl_check.py"/>
-        <source>it is cut off: its last solid has no end; export the part again</source>
-        <translation>il est tronqué : son dernier solide n&apos;a pas de fin ; exportez la pièce de nouveau</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
         <source>it is cut out or slanted: an edge runs neither around nor along it</source>
         <translation>elle est découpée ou oblique : une arête n&apos;en fait pas le tour et ne court pas le long d&apos;elle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
-        <source>it is cut short after {0} of {1} vertices; export it again</source>
-        <translation>il est coupé après {0} de {1} sommets ; exportez-le de nouveau</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>it is damaged or not what its ending says; export the part again</source>
+        <source>it is damaged, or its extension does not match its content; export the part again</source>
         <translation>il est endommagé ou n&apos;est pas ce que dit son extension ; exportez la pièce de nouveau</translation>
     </message>
     <message>
@@ -9533,12 +9528,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/apart.py"/>
-        <source>it is damaged: it takes more than {0} MB of memory to read, the limit of a file of its size; export it again</source>
+        <source>it is damaged: reading it takes more than {0} MB of memory, the limit for a file of its size; export it again</source>
         <translation>il est endommagé : sa lecture demande plus de {0} Mo de mémoire, la limite pour un fichier de sa taille ; exportez-le de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/apart.py"/>
-        <source>it is damaged: it takes more than {0} s of the processor to read, the limit of a file of its size; export it again</source>
+        <source>it is damaged: reading it takes more than {0} s of processor time, the limit for a file of its size; export it again</source>
         <translation>il est endommagé : sa lecture demande plus de {0} s de processeur, la limite pour un fichier de sa taille ; exportez-le de nouveau</translation>
     </message>
     <message>
@@ -9557,18 +9552,8 @@
         <translation>il est vide ; un fichier de machine ne vaut pas plus que ses poses de contrôle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>it is empty; export the part again</source>
-        <translation>il est vide ; exportez la pièce de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>it is empty; export the points again</source>
-        <translation>il est vide ; exportez les points de nouveau</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
-        <source>it is empty; fill the gap, or leave the line out</source>
+        <source>it is empty; fill the gap, or remove the line</source>
         <translation>elle est vide ; remplissez le vide, ou enlevez la ligne</translation>
     </message>
     <message>
@@ -9582,11 +9567,6 @@
         <translation>c&apos;est vide ; donnez une grandeur en {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
-        <source>it is empty; give maker and model</source>
-        <translation>il est vide ; donnez le constructeur et le modèle</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it is encrypted; export it without protection</source>
         <translation>il est chiffré ; exportez-le sans protection</translation>
@@ -9597,14 +9577,14 @@
         <translation>c’est pour kind: solid, pas pour {0} ; omettez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/curved/field.py"/>
-        <source>it is for plane layers, not for curved ones; use {0}, or layers: planes</source>
-        <translation>c&apos;est pour les couches planes, pas pour les courbes ; utilisez {0}, ou layers: planes</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>it is for solids, not for cladding; use {0}</source>
         <translation>c&apos;est pour les solides, pas pour le rechargement ; utilisez {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/hub.py"/>
+        <source>it is neither a cylinder nor a cone; choose another face, or set strategy.base</source>
+        <translation>ce n&apos;est ni un cylindre ni un cône ; choisissez une autre face, ou donnez strategy.base</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/run.py"/>
@@ -9623,28 +9603,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>it is nested too deeply to be a machine file; choose another file</source>
+        <source>it is nested too deeply for a machine file; choose another file</source>
         <translation>ses niveaux sont trop nombreux pour un fichier de machine ; choisissez un autre fichier</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
-        <source>it is no PLY file that begins with its vertices; export it again</source>
-        <translation>ce n&apos;est pas un fichier PLY qui commence par ses sommets ; exportez-le de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
-        <source>it is no solid, but {0} closed shell(s) of {1} face(s); make solids of them (Part, Convert to solid), or {2}</source>
-        <translation>ce n&apos;est pas un solide, mais {0} coque(s) fermée(s) de {1} face(s) ; faites-en des solides (Part, Convertir en solide), ou {2}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
-        <source>it is no solid, but {0} face(s) that enclose nothing, as nothing is joined to the edge at {1} of {2}; {3}, or {4}</source>
-        <translation>ce n&apos;est pas un solide, mais {0} face(s) qui n&apos;enferment rien, car rien n&apos;est joint à l&apos;arête en {1} de {2} ; {3}, ou {4}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/draft.py"/>
-        <source>it is none of signs and a coupling of axes 2 and 3; copy the file itself</source>
-        <translation>elle n&apos;est pas faite de signes et d&apos;un couplage des axes 2 et 3 ; copiez le fichier lui-même</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
@@ -9652,9 +9612,9 @@
         <translation>ce n&apos;est aucune des lignes qu&apos;ArcTech a ici, ou elle nomme d&apos;autres données que celles d&apos;avant</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/hub.py"/>
-        <source>it is not a cylinder and no cone; choose another face, or give strategy.base</source>
-        <translation>ce n&apos;est ni un cylindre ni un cône ; choisissez une autre face, ou donnez strategy.base</translation>
+        <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
+        <source>it is not a PLY file with vertices first; export it again</source>
+        <translation>ce n&apos;est pas un fichier PLY qui commence par ses sommets ; exportez-le de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
@@ -9698,6 +9658,16 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
+        <source>it is not a solid, but {0} closed shell(s) of {1} face(s); convert them to solids (Part, Convert to solid), or {2}</source>
+        <translation>ce n&apos;est pas un solide, mais {0} coque(s) fermée(s) de {1} face(s) ; faites-en des solides (Part, Convertir en solide), ou {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
+        <source>it is not a solid, but {0} open face(s): nothing connects to the edge at {1} of {2}; {3}, or {4}</source>
+        <translation>ce n&apos;est pas un solide, mais {0} face(s) qui n&apos;enferment rien, car rien n&apos;est joint à l&apos;arête en {1} de {2} ; {3}, ou {4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
         <source>it is not a solid; {0}</source>
         <translation>ce n&apos;est pas un solide ; {0}</translation>
     </message>
@@ -9718,7 +9688,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
-        <source>it is not a toolpath of AdaOne, or it is damaged ({0}); export it again</source>
+        <source>it is not an AdaOne toolpath, or it is damaged ({0}); export it again</source>
         <translation>ce n&apos;est pas une trajectoire d&apos;AdaOne, ou elle est endommagée ({0}) ; exportez-la à nouveau</translation>
     </message>
     <message>
@@ -9727,14 +9697,14 @@
         <translation>la largeur que comptent ses cordons n&apos;est pas connue ; replanifiez-la</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/machines/draft.py"/>
+        <source>it is not made of signs and a coupling of axes 2 and 3; copy the original file</source>
+        <translation>elle n&apos;est pas faite de signes et d&apos;un couplage des axes 2 et 3 ; copiez le fichier lui-même</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
         <source>it is not of revolution</source>
         <translation>elle n&apos;est pas de révolution</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>it is not on the surface of {0} ({1} mm off); walls of several surfaces cannot be deposited yet: choose faces of one torus, cylinder or cone</source>
-        <translation>elle n&apos;est pas sur la surface de {0} (écart de {1} mm) ; les parois de plusieurs surfaces ne peuvent pas encore être déposées : choisissez des faces d&apos;un même tore, cylindre ou cône</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
@@ -9762,9 +9732,9 @@
         <translation>ce n&apos;est pas du XML bien formé ({0})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/torch.py"/>
-        <source>it is open, so that nobody knows what is inside of it; give closed solids</source>
-        <translation>elle est ouverte, si bien que nul ne sait ce qui est à l&apos;intérieur ; donnez des solides fermés</translation>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
+        <source>it is off the surface of {0} by {1} mm; walls of several surfaces cannot be deposited yet: choose faces of one torus, cylinder or cone</source>
+        <translation>elle n&apos;est pas sur la surface de {0} (écart de {1} mm) ; les parois de plusieurs surfaces ne peuvent pas encore être déposées : choisissez des faces d&apos;un même tore, cylindre ou cône</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
@@ -9782,19 +9752,29 @@
         <translation>il est affiché par plusieurs groupes de liens ({0}), chacun à sa place ; choisissez l&apos;un d&apos;eux ou créez un lien vers lui</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>it is solid and has no {0} wall; use wall: outer</source>
-        <translation>il est plein et n&apos;a pas de paroi {0} ; utilisez wall: outer</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/hub.py"/>
-        <source>it is the inside of a bore; choose the outside of a hub, on which solids grow</source>
+        <source>it is the inside of a bore; choose the outer face of a hub</source>
         <translation>c&apos;est l&apos;intérieur d&apos;un alésage ; choisissez l&apos;extérieur d&apos;un moyeu, sur lequel croissent les solides</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>it is the same in all poses, which proves nothing; add another pose</source>
         <translation>il est le même dans toutes les poses, ce qui ne prouve rien ; ajoutez une autre pose</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
+        <source>it is truncated after {0} of {1} vertices; export it again</source>
+        <translation>il est coupé après {0} de {1} sommets ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/stl_check.py"/>
+        <source>it is truncated, or not an STL file: its header counts {0} triangles, but its size holds {1}; export the part again</source>
+        <translation>il est tronqué ou n&apos;est pas un fichier STL : il annonce {0} triangles et n&apos;en contient que {1} ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/stl_check.py"/>
+        <source>it is truncated: the last solid has no end; export the part again</source>
+        <translation>il est tronqué : son dernier solide n&apos;a pas de fin ; exportez la pièce de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
@@ -9808,28 +9788,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
-        <source>it is {0} mm and {1} deg from where the machine file has this joint, which is more than a calibration corrects; name the machine that it is of</source>
+        <source>it is {0} mm and {1} deg from the joint in the machine file, more than a calibration corrects; choose the calibrated machine</source>
         <translation>elle est à {0} mm et {1} deg de l&apos;endroit où le fichier de machine place cette articulation, plus qu&apos;un étalonnage ne corrige ; nommez la machine dont il s&apos;agit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/torch.py"/>
-        <source>it is {0} mm from its origin, which is where the deposit comes out; put the tip of the wire or nozzle at the origin of the file, Z out of the nozzle, in mm</source>
+        <source>it is {0} mm away from its origin, the point where the material exits; put the tip of the wire or nozzle at the origin of the file, with Z pointing out of the nozzle, in mm</source>
         <translation>elle est à {0} mm de son origine, d&apos;où sort le dépôt ; placez la pointe du fil ou de la buse à l&apos;origine du fichier, Z sortant de la buse, en mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wire.py"/>
-        <source>it is {0} mm off the plane of the wire and its axis; draw the wire in a plane that holds the axis</source>
+        <source>it is {0} mm off the plane of the wire and the axis; draw the wire in a plane through the axis</source>
         <translation>il est à {0} mm hors du plan du fil et de son axe ; dessinez le fil dans un plan qui contient l&apos;axe</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
-        <source>it is {0} pieces that do not hang together, and no layer starts on the one at {1}, {2} mm from where layers start; choose its edge to start from too, or deposit it by itself</source>
-        <translation>ce sont {0} morceaux qui ne tiennent pas ensemble, et aucune couche ne commence sur celui en {1}, à {2} mm du départ des couches ; choisissez aussi son arête comme départ, ou déposez-le seul</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/scan_motion.py"/>
-        <source>it lies as well on the part turned by {0} deg: the scan does not show which; give three points of it and where they are on the part as substrate.scan_pairs, or measure it in the part&apos;s coordinates</source>
-        <translation>elle repose aussi bien sur la pièce tournée de {0} deg : la numérisation ne dit pas laquelle ; donnez trois de ses points et où ils sont sur la pièce par substrate.scan_pairs, ou mesurez-la dans les coordonnées de la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/names.py"/>
@@ -9863,8 +9833,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it needs an extension that is not read ({0}); export plain triangles</source>
-        <translation>il demande une extension qui n&apos;est pas lue ({0}) ; exportez des triangles simples</translation>
+        <source>it needs an unsupported extension ({0}); export plain triangles</source>
+        <translation>il demande une extension qui n&apos;est pas prise en charge ({0}) ; exportez des triangles simples</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/curved/field.py"/>
+        <source>it needs planar layers; use {0}, or layers: planes</source>
+        <translation>c&apos;est pour les couches planes, pas pour les courbes ; utilisez {0}, ou layers: planes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -9877,14 +9852,14 @@
         <translation>il imprime des copies côte à côte ; n&apos;en imprimez qu&apos;une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>it reaches to {0} mm, farther than {1} mm; a coordinate is damaged, or its unit is wrong; export the part again</source>
-        <translation>il s&apos;étend jusqu&apos;à {0} mm, plus loin que {1} mm ; une coordonnée est endommagée ou son unité est fausse ; exportez la pièce de nouveau</translation>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>it refers to other files (entity {0}), which are not read; export the assembly as one file</source>
+        <translation>des parties sont dans d&apos;autres fichiers (entité {0}), qui ne sont pas lus ; exportez l&apos;assemblage en un fichier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/torch.py"/>
-        <source>it reaches {0} mm beyond its origin along Z, where the deposit is; let Z of the file point out of the nozzle, away from the torch, and put the origin at its tip</source>
-        <translation>elle dépasse de {0} mm son origine selon Z, là où est le dépôt ; faites pointer le Z du fichier hors de la buse, à l&apos;opposé de la torche, et mettez l&apos;origine à sa pointe</translation>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>it refers to other files ({0}), which are not read; export the assembly as one file</source>
+        <translation>des parties sont dans d&apos;autres fichiers ({0}), qui ne sont pas lus ; exportez l&apos;assemblage en un fichier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -9900,6 +9875,11 @@
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>it returns to a stored position; write the move out</source>
         <translation>il revient à une position mémorisée ; écrivez le déplacement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
+        <source>it returns to its start, at {0}, so the last layer would overlap the first; remove one edge</source>
+        <translation>il revient à son départ, en {0}, si bien que la dernière couche recouvrirait la première ; retirez une arête</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/moves.py"/>
@@ -9922,11 +9902,6 @@
         <translation>elle se trouve parmi les lignes d&apos;une autre instruction</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
-        <source>it stands on a point and has no open end to start from; give a substrate that it grows on, or turn it so that an end lies on the platform</source>
-        <translation>il repose sur un point et n&apos;a pas d&apos;extrémité ouverte où commencer ; donnez un substrat, ou tournez-le pour qu&apos;une extrémité repose sur le plateau</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/strategies/clearance/helpful.py"/>
         <source>it still does with {0}, each of which was tried; {1}</source>
         <translation>elle le fait aussi avec {0}, qui ont été essayés un à un ; {1}</translation>
@@ -9943,8 +9918,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
-        <source>it turns back by {0} deg at {1}: layers would go through what was deposited; choose edges that lead on</source>
-        <translation>il fait demi-tour de {0} deg en {1} : les couches traverseraient ce qui est déposé ; choisissez des arêtes qui mènent plus loin</translation>
+        <source>it turns back by {0} deg at {1}: layers would cut through the deposit; choose edges that lead forward</source>
+        <translation>il rebrousse de {0} deg en {1} : des couches traverseraient le dépôt ; choisissez des arêtes qui mènent en avant</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/solids/unrolled.py"/>
@@ -9958,17 +9933,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
-        <source>its axes are up to {0} deg off right angles, and its solutions do not give back its poses</source>
+        <source>its axes are up to {0} deg off right angles, and its inverse solutions do not reproduce its poses</source>
         <translation>ses axes s&apos;écartent jusqu&apos;à {0}° de l&apos;angle droit, et ses solutions ne redonnent pas ses poses</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/machine.py"/>
-        <source>its axes are up to {0} deg off right angles: joint angles are solved for the axes as they are</source>
+        <source>its axes are up to {0} deg off right angles: joint angles are solved for the actual axes</source>
         <translation>ses axes s&apos;écartent jusqu&apos;à {0}° de l&apos;angle droit : les angles articulaires sont résolus pour les axes réels</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/surfaces.py"/>
-        <source>its beads fill solids, most are inside; compare the points with the feature</source>
+        <source>its beads fill solids, so most are inside; compare the points with the feature</source>
         <translation>ses cordons remplissent des solides, la plupart sont à l&apos;intérieur ; comparez les points à l&apos;élément à déposer</translation>
     </message>
     <message>
@@ -9983,7 +9958,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>its closed form is {0} mm and {1} (entries of the rotation) off</source>
+        <source>its closed form is off by {0} mm and {1} (rotation matrix entries)</source>
         <translation>sa forme explicite s&apos;écarte de {0} mm et {1} (termes de la rotation)</translation>
     </message>
     <message>
@@ -9993,7 +9968,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>its columns are called {0}; call those of the coordinates x, y and z</source>
+        <source>its columns are called {0}; name the coordinates x, y and z</source>
         <translation>ses colonnes s&apos;appellent {0} ; appelez celles des coordonnées x, y et z</translation>
     </message>
     <message>
@@ -10003,18 +9978,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>its columns have different units: {0}; export them in one</source>
+        <source>its columns have different units: {0}; export them in one unit</source>
         <translation>ses colonnes ont des unités différentes : {0} ; exportez-les dans une seule</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
-        <source>its edges are not one curve: {0} of {1} do not go on from where the others end, at {2} and {3}, and the nearest is {4} mm off; choose edges that meet end to end</source>
-        <translation>ses arêtes ne font pas une courbe : {0} sur {1} ne continuent pas là où les autres finissent, en {2} et {3}, et la plus proche en est à {4} mm ; choisissez des arêtes qui se touchent bout à bout</translation>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
+        <source>its curved faces are tangent to {0}, which is flat; select the wall faces, or name them in part.faces of a job</source>
+        <translation>ses faces non planes se prolongent sans cassure en {0}, qui l&apos;est ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wire.py"/>
-        <source>its edges lie on the axis; choose another axis</source>
-        <translation>ses arêtes sont sur l&apos;axe ; choisissez un autre axe</translation>
+        <source>its edges coincide with the axis; choose another axis</source>
+        <translation>ses arêtes coïncident avec l&apos;axe ; choisissez un autre axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
+        <source>its edges do not form one curve: {0} of {1} are disconnected, at {2} and {3}, and the smallest gap is {4} mm; choose edges that meet end to end</source>
+        <translation>ses arêtes ne font pas une courbe : {0} sur {1} ne continuent pas là où les autres finissent, en {2} et {3}, et la plus proche en est à {4} mm ; choisissez des arêtes qui se touchent bout à bout</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
@@ -10032,9 +10012,9 @@
         <translation>ses faces n&apos;ont pas de surfaces : il contient des triangles (géométrie tessellée AP242) ; {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
-        <source>its faces that are not flat run on smoothly into {0}, which is; name the faces of the wall: part.faces of a job, or select them</source>
-        <translation>ses faces non planes se prolongent sans cassure en {0}, qui l&apos;est ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
+        <source>its faces share no axis of revolution; choose an axis, or select the faces</source>
+        <translation>aucun axe de rotation de ses faces n&apos;a été trouvé ; donnez-le, ou nommez les faces</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
@@ -10072,6 +10052,11 @@
         <translation>sa trajectoire articulaire a disparu ; choisissez-en une</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
+        <source>its kinematics cannot be planned: {0}; {1}</source>
+        <translation>cette machine ne peut pas être planifiée : {0} ; {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/redundancy_map/source.py"/>
         <source>its machine has two rotary axes, which leave no rotation about the tool to choose; open the map of a robot</source>
         <translation>sa machine a deux axes rotatifs, qui ne laissent aucune rotation autour de l&apos;outil à choisir ; ouvrez la carte d&apos;un robot</translation>
@@ -10088,8 +10073,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
-        <source>its moves are {0}, and strategy.roles is {1}: nothing is left to deposit; name other roles</source>
+        <source>its moves are {0}, and strategy.roles is {1}, so nothing remains to deposit; choose other roles</source>
         <translation>ses déplacements sont {0} et strategy.roles vaut {1} : il ne reste rien à déposer ; nommez d&apos;autres rôles</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
+        <source>its operation {0} deposits nothing; export only the operations that deposit</source>
+        <translation>l&apos;une de ses opérations est {0}, qui ne dépose rien ; n&apos;exportez que les opérations qui déposent</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
@@ -10138,7 +10128,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
-        <source>its vertices have no plain x, y and z; export it again</source>
+        <source>its vertices lack plain x, y and z; export it again</source>
         <translation>ses sommets n&apos;ont pas de x, y et z simples ; exportez-le de nouveau</translation>
     </message>
     <message>
@@ -10293,8 +10283,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/curved/on_faces.py"/>
-        <source>layer {0} of {1} would lie {2} mm above the faces, as far as a hollow reaches at {3}, and fold there; lay at most {4} layer(s), or leave out what is so hollow</source>
-        <translation>la couche {0} de {1} se trouverait à {2} mm au-dessus des faces, aussi loin que va un creux en {3}, et s&apos;y replierait ; déposez au plus {4} couche(s), ou laissez de côté ce qui est si creux</translation>
+        <source>layer {0} of {1} is {2} mm above the faces, the depth of the hollow at {3}, and would fold there; deposit at most {4} layer(s), or exclude the hollow face</source>
+        <translation>la couche {0} de {1} est à {2} mm au-dessus des faces, la profondeur du creux en {3}, et s&apos;y replierait ; déposez au plus {4} couche(s), ou excluez la face creuse</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/issues.py"/>
@@ -10333,23 +10323,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>layers of the family {0} are not fitted to a scan yet; solids in plane layers and walls on a substrate are: leave the scan out</source>
+        <source>layers of the family {0} cannot be fitted to a scan yet; only solids in planar layers and walls on a substrate can: remove the scan</source>
         <translation>les couches de la famille {0} ne s&apos;ajustent pas encore à une numérisation ; les solides en couches planes et les parois sur un substrat le font : retirez la numérisation</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/along/guided.py"/>
+        <source>layers of {0} are normal to its centre line, {1} mm from {2} to {3}, turning by {4} deg in total</source>
+        <translation>les couches de {0} sont normales à sa ligne médiane, {1} mm de {2} à {3}, qui tourne de {4} deg en tout</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/walls/checks.py"/>
-        <source>layers of {0} mm are higher than the wall&apos;s smallest radius of curvature, {1} mm at {2}; use lower layers, or a larger radius there</source>
+        <source>layers of {0} mm exceed the smallest radius of curvature of the wall, {1} mm at {2}; use lower layers, or a larger radius there</source>
         <translation>des couches de {0} mm sont plus hautes que le plus petit rayon de courbure de la paroi, {1} mm en {2} ; prenez des couches plus basses, ou un plus grand rayon à cet endroit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
-        <source>layers of {0} mm ask for a mesh of the wall of about {1} triangles, and more than {2} cannot be worked with; give more than {3} mm, or deposit the wall in parts</source>
+        <source>layers of {0} mm need a mesh of about {1} triangles, but the limit is {2}; use layers above {3} mm, or deposit the wall in parts</source>
         <translation>des couches de {0} mm demandent un maillage de la paroi d&apos;environ {1} triangles, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez plus de {3} mm, ou déposez la paroi en plusieurs parties</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/layers/along/guided.py"/>
-        <source>layers of {0} stand normal to its centre line, {1} mm from {2} to {3}, which turns by {4} deg in all</source>
-        <translation>les couches de {0} sont normales à sa ligne médiane, {1} mm de {2} à {3}, qui tourne de {4} deg en tout</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
@@ -10428,7 +10418,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
-        <source>line {0} begins with {1}, which is no statement of OBJ; export the part again</source>
+        <source>line {0} begins with {1}, which is not an OBJ statement; export the part again</source>
         <translation>la ligne {0} commence par {1}, qui n&apos;est pas une instruction OBJ ; exportez la pièce de nouveau</translation>
     </message>
     <message>
@@ -10438,7 +10428,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
-        <source>line {0} takes content from another file, which is not read; export all in one file</source>
+        <source>line {0} refers to another file, which is not read; export everything in one file</source>
         <translation>la ligne {0} prend du contenu d&apos;un autre fichier, qui n&apos;est pas lu ; exportez tout dans un fichier</translation>
     </message>
     <message>
@@ -10448,12 +10438,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>line {0}: the limit has no {1}, which counts as 0</source>
+        <source>line {0}: the limit has no {1}; 0 is used</source>
         <translation>ligne {0} : la limite n&apos;a pas de {1}, qui compte pour 0</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>line {0}: {1} is read as a right angle</source>
+        <source>line {0}: {1} is treated as a right angle</source>
         <translation>ligne {0} : {1} est lu comme un angle droit</translation>
     </message>
     <message>
@@ -10602,6 +10592,11 @@
         <translation>machine et setup</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
+        <source>machine file {0} does not exist; check the path</source>
+        <translation>il n&apos;y a pas de fichier machine {0} ; vérifiez le chemin</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/interop/robot_trajectory.py"/>
         <source>make a CAM path</source>
         <translation>faites une trajectoire CAM</translation>
@@ -10677,14 +10672,14 @@
         <translation>plus d&apos;un axe est appelé le rail, ou il n&apos;a pas de valeur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/checks.py"/>
-        <source>more than two faces meet in one edge at {0}; a wall branches by smooth faces with openings: leave one of them out</source>
-        <translation>plus de deux faces se rencontrent en une arête en {0} ; une paroi se ramifie par des faces lisses à ouvertures : laissez l&apos;une d&apos;elles de côté</translation>
+        <location filename="../../freecad_am/brep/clad_faces.py"/>
+        <source>more than two faces meet in one edge at {0}; remove one of the faces, or cover it as a separate feature</source>
+        <translation>plus de deux faces se rejoignent sur une arête en {0} ; laissez-en une de côté, ou recouvrez-la comme un élément à part</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/clad_faces.py"/>
-        <source>more than two faces meet in one edge at {0}; leave one of them out, or cover it as a feature of its own</source>
-        <translation>plus de deux faces se rejoignent sur une arête en {0} ; laissez-en une de côté, ou recouvrez-la comme un élément à part</translation>
+        <location filename="../../freecad_am/brep/walls/checks.py"/>
+        <source>more than two faces meet in one edge at {0}; remove one of the faces: a wall can branch only through smooth faces with openings</source>
+        <translation>plus de deux faces se rencontrent dans une arête en {0} ; retirez l&apos;une des faces : une paroi ne peut se ramifier que par des faces lisses avec des ouvertures</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
@@ -10695,6 +10690,11 @@
         <location filename="../../freecad_am/core/slicing/backstop.py"/>
         <source>more than {0} layers of {1} mm: use a larger layer height</source>
         <translation>plus de {0} couches de {1} mm : utilisez une plus grande hauteur de couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>most lines, such as this one, are not points; give rows of x y z</source>
+        <translation>celle-ci et la plupart des autres lignes ne sont pas des points ; donnez des lignes de x y z</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
@@ -10728,7 +10728,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
-        <source>neighbouring triangles face opposite ways, for instance at {0}; turn them alike (Mesh, Harmonize normals)</source>
+        <source>neighbouring triangles face opposite ways, for instance at {0}; make their orientation consistent (Mesh, Harmonize normals)</source>
         <translation>des triangles voisins regardent en sens opposés, par exemple en {0} ; tournez-les pareillement (Mesh, Harmoniser les normales)</translation>
     </message>
     <message>
@@ -10745,11 +10745,6 @@
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>no axis has limits, or no point is reached</source>
         <translation>aucun axe n’a de limites, ou aucun point n’est atteint</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>no axis was found that its faces turn about; give it, or name the faces</source>
-        <translation>aucun axe de rotation de ses faces n&apos;a été trouvé ; donnez-le, ou nommez les faces</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
@@ -10773,18 +10768,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>no ending</source>
+        <source>no extension</source>
         <translation>aucune extension</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/curved/field.py"/>
-        <source>no face of it lies on the plane through its lowest place along strategy.direction, or on the substrate, so that there is nothing to begin on; turn the part, set strategy.direction, or give a substrate that it touches</source>
-        <translation>aucune de ses faces ne repose sur le plan de son point le plus bas suivant strategy.direction, ni sur le substrat : rien où commencer ; tournez la pièce, donnez strategy.direction, ou un substrat qu&apos;elle touche</translation>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
+        <source>no face is a surface of revolution about the axis; select the faces of the wall</source>
+        <translation>aucune de ses faces ne tourne autour de l&apos;axe ; nommez les faces de la paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/curved/field.py"/>
-        <source>no face of {0} lies on the faces chosen to start from, which are {1} mm away; choose faces that it touches, or none</source>
-        <translation>aucune face de {0} ne repose sur les faces de départ choisies, qui sont à {1} mm ; choisissez des faces qu&apos;il touche, ou aucune</translation>
+        <source>no face of {0} touches the start faces, which are {1} mm away; choose faces in contact, or none</source>
+        <translation>aucune face de {0} ne touche les faces de départ, qui sont à {1} mm ; choisissez des faces en contact, ou aucune</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -10808,13 +10803,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>no joint moves {0} against {1}; choose another link</source>
+        <source>no joint moves {0} relative to {1}; choose another link</source>
         <translation>aucune articulation ne déplace {0} par rapport à {1} ; choisissez un autre corps</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/machine.py"/>
-        <source>no joint of {0} moves anything against {1}; name another link as base</source>
+        <source>no joint of {0} moves relative to {1}; choose another link as base</source>
         <translation>aucune articulation de {0} ne meut quoi que ce soit par rapport à {1} ; nommer un autre corps comme base</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/catalogue.py"/>
+        <source>no known machine is from {0}; use one of {1}</source>
+        <translation>aucune machine connue n&apos;est de {0} ; utilisez l&apos;un de {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
@@ -10838,23 +10838,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>no line of it has three numbers; give rows of x y z</source>
+        <source>no line contains three numbers; give rows of x y z</source>
         <translation>aucune ligne n&apos;a trois nombres ; donnez des lignes de x y z</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>no link is carried by {}</source>
         <translation>aucun corps n&apos;est porté par {}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/catalogue.py"/>
-        <source>no machine known is of {0}; use one of {1}</source>
-        <translation>aucune machine connue n&apos;est de {0} ; utilisez l&apos;un de {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>no move of it extrudes, so there is no bead; {0}</source>
-        <translation>aucun de ses mouvements n&apos;extrude, il n&apos;y a donc pas de cordon ; {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
@@ -10897,11 +10887,6 @@
         <translation>aucune section là où il repose</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
-        <source>no segment of it deposits, so there is no bead; export a toolpath that deposits</source>
-        <translation>aucun de ses segments ne dépose, il n&apos;y a donc pas de cordon ; exportez une trajectoire qui dépose</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/api.py"/>
         <source>no source</source>
         <translation>pas de source</translation>
@@ -10922,13 +10907,23 @@
         <translation>aucun</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>none of its moves extrudes, so it has no bead; {0}</source>
+        <translation>aucun de ses mouvements n&apos;extrude, il n&apos;y a donc pas de cordon ; {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
+        <source>none of its segments deposits material; export a toolpath that deposits</source>
+        <translation>aucun de ses segments ne dépose, il n&apos;y a donc pas de cordon ; exportez une trajectoire qui dépose</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
         <source>none of its solids stands on a cylinder or cone of another: name the hub as substrate, choose a face of it, or give strategy.base; what stands on a flat base is deposited by kind: solid</source>
         <translation>aucun de ses solides ne repose sur un cylindre ou un cône d&apos;un autre : nommez le moyeu comme substrat, choisissez une face de celui-ci, ou donnez strategy.base ; ce qui repose sur une base plane est déposé par kind: solid</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>none of its {0} solids is of revolution; name the faces of the wall</source>
+        <source>none of its {0} solids is of revolution; select the faces of the wall</source>
         <translation>aucun de ses {0} solides n&apos;est de révolution ; nommez les faces de la paroi</translation>
     </message>
     <message>
@@ -10943,7 +10938,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/near_names.py"/>
-        <source>none of {0} machines has a name like it; use one that `freecad-am machines` lists, such as {1}, or the path of a machine file or URDF</source>
+        <source>none of {0} machines has a similar name; use a name that `freecad-am machines` lists, such as {1}, or the path of a machine file or URDF</source>
         <translation>aucune des {0} machines n’a un nom semblable ; utilisez l’une de celles que `freecad-am machines` énumère, comme {1}, ou le chemin d’un fichier de machine ou d’un URDF</translation>
     </message>
     <message>
@@ -11113,23 +11108,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>object {0} has {1}, which changes its shape and is not read; export it as plain triangles</source>
+        <source>object {0} has {1}, which changes its shape and is not supported; export it as plain triangles</source>
         <translation>l&apos;objet {0} a {1}, qui change sa forme et n&apos;est pas lu ; exportez-le en simples triangles</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>object {0} of {1} has triangles with points that it has not</source>
+        <source>object {0} of {1} has a transformation that flattens it</source>
+        <translation>l&apos;objet {0} de {1} est déplacé par une matrice qui l&apos;aplatit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>object {0} of {1} has triangles with missing vertices</source>
         <translation>l&apos;objet {0} de {1} a des triangles dont il n&apos;a pas les points</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>object {0} of {1} holds itself</source>
         <translation>l&apos;objet {0} de {1} se contient lui-même</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>object {0} of {1} is moved by a matrix that flattens it</source>
-        <translation>l&apos;objet {0} de {1} est déplacé par une matrice qui l&apos;aplatit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -11148,13 +11143,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>of its {0} solids only {1} turns about an axis, {2} of its surface; name the faces of that one to deposit it alone, and deposit the others as walls on a part or solids on a hub</source>
+        <source>of its {0} solids only {1} is a solid of revolution, with {2} of the surface; select its faces to deposit it, and deposit the others as walls on a part or solids on a hub</source>
         <translation>de ses {0} solides, seul {1} tourne autour d’un axe, {2} de sa surface ; nommez les faces de celui-ci pour le déposer seul, et déposez les autres comme parois sur une pièce ou solides sur un moyeu</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>of {0} points {1} are kept, evenly</source>
-        <translation>de {0} points {1} sont gardés, également répartis</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -11222,11 +11212,6 @@
         <translation>l&apos;un après l&apos;autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
-        <source>one of its operations is {0}, which deposits nothing; export the operations that deposit alone</source>
-        <translation>l&apos;une de ses opérations est {0}, qui ne dépose rien ; n&apos;exportez que les opérations qui déposent</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>one of its outputs switches the deposit</source>
         <translation>une de ses sorties commute le dépôt</translation>
@@ -11250,6 +11235,21 @@
         <location filename="../../freecad_am/objects/inspection.py"/>
         <source>only the deposit of a toolpath can be predicted; choose a toolpath under Planned, or a file of measured points</source>
         <translation>seul le dépôt d&apos;une trajectoire de dépôt peut être prédit ; choisissez-en une sous Planned, ou un fichier de points mesurés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>only {0} of its points match {1}; choose the measured object, its unit, or initial pairs of points</source>
+        <translation>seulement {0} de ses points correspondent à {1} ; choisissez l&apos;objet mesuré, son unité, ou des paires de points de départ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/scan_checks.py"/>
+        <source>only {0} of its {1} points are within {2} mm of {3}, at least {4} are needed; the median distance is {5} mm. The scan extends over {6} mm, {7} over {8} mm: scan the right part, crop the scan, check its unit, or raise substrate.scan_within</source>
+        <translation>seulement {0} de ses {1} points sont à moins de {2} mm de {3}, il en faut au moins {4} ; la distance médiane est de {5} mm. La numérisation s&apos;étend sur {6} mm, {7} sur {8} mm : numérisez la bonne pièce, recadrez la numérisation, vérifiez son unité, ou augmentez substrate.scan_within</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/figures.py"/>
+        <source>only {0} points are within {1} mm of the height {2} mm; measure more points there, choose other heights, or a wider band</source>
+        <translation>seulement {0} points sont à moins de {1} mm de la hauteur {2} mm ; mesurez-y plus de points, choisissez d&apos;autres hauteurs, ou une bande plus large</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
@@ -11337,16 +11337,6 @@
         <translation>pièce sur le robot</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>parts of it are in other files (entity {0}), which are not read; export the assembly as one file</source>
-        <translation>des parties sont dans d&apos;autres fichiers (entité {0}), qui ne sont pas lus ; exportez l&apos;assemblage en un fichier</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>parts of it are in other files ({0}), which are not read; export the assembly as one file</source>
-        <translation>des parties sont dans d&apos;autres fichiers ({0}), qui ne sont pas lus ; exportez l&apos;assemblage en un fichier</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/inspection/view.py"/>
         <source>past the edges</source>
         <translation>au-delà des bords</translation>
@@ -11398,8 +11388,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
-        <source>point {0} is {1} mm from where it was touched (of all: {2} mm), more than cell.touched_tolerance of {3} mm; touch it again, and see that the points stand in the same order, are of this part, and that the tip is calibrated</source>
-        <translation>le point {0} est à {1} mm d&apos;où il a été palpé (pour tous : {2} mm), plus que cell.touched_tolerance de {3} mm ; palpez-le de nouveau, et vérifiez que les points sont dans le même ordre, de cette pièce, et que la pointe est calibrée</translation>
+        <source>point {0} is {1} mm from its touched position (all points: {2} mm), more than cell.touched_tolerance = {3} mm; touch it again, and check the order of the points, the part, and the tip calibration</source>
+        <translation>le point {0} est à {1} mm de sa position touchée (tous les points : {2} mm), plus que cell.touched_tolerance = {3} mm ; touchez-le de nouveau, et vérifiez l&apos;ordre des points, la pièce, et l&apos;étalonnage de la pointe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
@@ -11417,18 +11407,13 @@
         <translation>point par point</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
-        <source>points are touched of a part that stands still under a tool on the robot; leave them out, and measure cell.platform or the pose of what carries the part</source>
-        <translation>on palpe les points d&apos;une pièce immobile sous un outil porté par le robot ; retirez-les, et mesurez cell.platform ou la pose de ce qui porte la pièce</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/redundancy_map/drawn/board.py"/>
         <source>points of layer {}</source>
         <translation>points de la couche {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>points up to {0} mm apart were made one</source>
+        <source>points up to {0} mm apart were merged</source>
         <translation>des points écartés de {0} mm au plus ont été confondus</translation>
     </message>
     <message>
@@ -11603,18 +11588,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/cuts.py"/>
-        <source>redraw it with a larger radius there, or divide it and deposit its parts one after the other</source>
+        <source>redraw it with a larger radius there, or divide it and deposit its parts in turn</source>
         <translation>redessinez-la avec un plus grand rayon à cet endroit, ou divisez-la et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/cuts.py"/>
-        <source>redraw the face so that it does not cross itself, or divide it and deposit its parts one after the other</source>
+        <source>redraw the face without self-intersection, or divide it and deposit its parts in turn</source>
         <translation>redessinez la face pour qu&apos;elle ne se coupe pas, ou divisez-la et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/methods/layer_by_layer.py"/>
         <source>refining layers</source>
         <translation>affinage des couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/sheet.py"/>
+        <source>refining the wall mesh to edges of {0} mm, from the layer height and the smallest radius, does not converge, though about {1} triangles should suffice; strongly twisted faces such as coils cause this: split the face, or deposit the wall in parts or as a solid</source>
+        <translation>diviser par deux les arêtes du maillage de la paroi jusqu&apos;à {0} mm, d&apos;après la hauteur de couche et le plus petit rayon, n&apos;a pas de fin, alors qu&apos;environ {1} triangles suffiraient, comme là où une face est tordue, telle celle d&apos;un ressort ; faites-la de faces plus courtes, ou déposez la paroi par parties ou comme un solide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -11758,7 +11748,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>several columns are {0}: {1}; keep the one that was measured</source>
+        <source>several columns are called {0}: {1}; keep the measured one</source>
         <translation>plusieurs colonnes sont {0} : {1} ; gardez celle qui a été mesurée</translation>
     </message>
     <message>
@@ -11853,7 +11843,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/regions/region.py"/>
-        <source>slivers of {0} mm^2 were dropped</source>
+        <source>slivers of {0} mm^2 were removed</source>
         <translation>des éclats de {0} mm^2 ont été écartés</translation>
     </message>
     <message>
@@ -11870,11 +11860,6 @@
         <location filename="../../freecad_am/brep/files/step_content.py"/>
         <source>solid of revolution</source>
         <translation>solide de révolution</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/regions/region.py"/>
-        <source>solids are filled with the Python package shapely (1.8 or newer), which is not installed; on Debian: apt-get install python3-shapely, elsewhere: pip install shapely</source>
-        <translation>les solides sont remplis avec le paquet Python shapely (1.8 ou plus récent), qui n&apos;est pas installé ; sous Debian : apt-get install python3-shapely, ailleurs : pip install shapely</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
@@ -12048,8 +12033,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the X of {0} points out of the flange, not its Z: it is turned there, as tool0 stands to flange</source>
-        <translation>le X de {0} sort de la bride, et non son Z : il y est tourné, comme tool0 se place par rapport à flange</translation>
+        <source>the X of {0} points out of the flange, not its Z; the flange frame is rotated, as tool0 is from flange</source>
+        <translation>sur {0} X sort de la bride, et non Z ; le repère de bride est tourné, comme tool0 par rapport à flange</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
@@ -12098,8 +12083,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>the arc has {0} or {1}, and R; give one of them</source>
-        <translation>l&apos;arc a {0} ou {1}, et R ; donnez l&apos;un des deux</translation>
+        <source>the arc has both {0} or {1} and R; use one form</source>
+        <translation>l&apos;arc a à la fois {0} ou {1} et R ; utilisez une seule forme</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
@@ -12182,6 +12167,11 @@
         <translation>la base touche {what}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
+        <source>the bead has only one point; give at least two</source>
+        <translation>un cordon d&apos;un seul point n&apos;a pas de chemin ; donnez-lui deux points ou plus</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/classes.py"/>
         <source>the bead model sets the travel speed of all beads; leave it out, or use bead_model: none</source>
         <translation>le modèle de cordon règle la vitesse d&apos;avance de tous les cordons ; omettez-la, ou prenez bead_model: none</translation>
@@ -12190,6 +12180,11 @@
         <location filename="../../freecad_am/core/process/model/bead_table.py"/>
         <source>the calibration table cannot be read ({0}); give none, csw or the path of one</source>
         <translation>le tableau d&apos;étalonnage ne peut pas être lu ({0}) ; donnez none, csw ou le chemin d&apos;un tableau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
+        <source>the calibration {0} does not exist; give the path of the YAML file that ur_calibration wrote for the arm</source>
+        <translation>il n&apos;y a pas d&apos;étalonnage {0} ; donner le chemin du fichier YAML que ur_calibration a écrit pour ce bras</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -12208,12 +12203,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/figures.py"/>
-        <source>the circle at {0} mm was not measured all round: {1} deg between neighbours</source>
+        <source>the circle at {0} mm was not measured all around: neighbouring points are {1} deg apart</source>
         <translation>le cercle à {0} mm n&apos;a pas été mesuré sur tout le tour : {1} deg entre voisins</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
-        <source>the closed form is for six joints, there are {0}; leave opw out</source>
+        <source>the closed form is for six joints, but the machine has {0}; remove opw</source>
         <translation>la forme explicite est pour six articulations, il y en a {0} ; omettez opw</translation>
     </message>
     <message>
@@ -12225,6 +12220,11 @@
         <location filename="../../freecad_am/core/process/model/bead_table.py"/>
         <source>the column {0} stands twice; keep one of them</source>
         <translation>la colonne {0} est là deux fois ; gardez-en une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
+        <source>the comment {0} has no end; close it with )</source>
+        <translation>{0} est un commentaire sans fin ; fermez-le par )</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/columns.py"/>
@@ -12313,7 +12313,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/start_edges.py"/>
-        <source>the edge is {0} mm off the wall at {1}; choose edges of the wall&apos;s own faces</source>
+        <source>the edge is {0} mm off the wall at {1}; choose edges of the wall faces</source>
         <translation>l&apos;arête est à {0} mm de la paroi en {1} ; choisissez des arêtes des faces mêmes de la paroi</translation>
     </message>
     <message>
@@ -12323,8 +12323,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>the ends of the arc are {0} and {1} mm from its middle; give {2} and {3} from its start to its middle</source>
+        <source>the ends of the arc are {0} and {1} mm from its centre; give {2} and {3} from its start to its centre</source>
         <translation>les extrémités de l&apos;arc sont à {0} et {1} mm de son centre ; donnez {2} et {3} de son début à son centre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/registration.py"/>
+        <source>the excluded share {0} is out of range; use 0 or more and less than 0.5</source>
+        <translation>une part de {0} des points ne peut pas être écartée ; donnez 0 ou plus et moins de 0.5</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
@@ -12338,7 +12343,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/cuts.py"/>
-        <source>the face folds back and cuts itself at {0}; {1}</source>
+        <source>the face folds back and intersects itself at {0}; {1}</source>
         <translation>la face se replie et se coupe en {0} ; {1}</translation>
     </message>
     <message>
@@ -12350,11 +12355,6 @@
         <location filename="../../freecad_am/brep/walls/checks.py"/>
         <source>the faces form {0} separate pieces: {1} and {2} are {3} mm apart at {4}; choose connected faces, edges meeting within {5} mm</source>
         <translation>les faces forment {0} morceaux séparés : {1} et {2} sont à {3} mm l&apos;une de l&apos;autre en {4} ; choisissez des faces jointes, dont les arêtes se rencontrent à {5} mm près</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>the faces of the wall do not close around; walls that are open (half shells) cannot be deposited yet: choose a full tube</source>
-        <translation>les faces de la paroi ne se ferment pas sur le tour ; les parois ouvertes (demi-coques) ne peuvent pas encore être déposées : choisissez un tube entier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/cladding_feature.py"/>
@@ -12372,9 +12372,54 @@
         <translation>l&apos;élément, la trajectoire d&apos;outil, ou l&apos;objet à forme ou maillage qui a été mesuré</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>the field is empty; give manufacturer and model</source>
+        <translation>il est vide ; donnez le constructeur et le modèle</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/sections/tree.py"/>
         <source>the file cannot be read: {0}; choose one that can</source>
         <translation>le fichier ne peut pas être lu : {0} ; choisissez-en un qui peut l&apos;être</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/read.py"/>
+        <source>the file does not exist; check its name and folder</source>
+        <translation>il n&apos;y a pas de tel fichier ; vérifiez le nom et le dossier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>the file has no &lt;{0}&gt;; choose a robot URDF</source>
+        <translation>il n&apos;y a pas de &lt;{0}&gt; ; choisissez l&apos;URDF d&apos;un robot</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>the file has no points; give rows of x y z</source>
+        <translation>il n&apos;y a pas de points dedans ; donnez des lignes de x y z</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
+        <source>the file has no robot: no chain has six revolute axes on a fixed base or prismatic axes; the longest is {0}</source>
+        <translation>il n&apos;y a pas de robot dedans : aucune chaîne n&apos;a six axes qui tournent portés par des axes qui glissent seulement ; la plus longue est {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
+        <source>the file has {0} robots, with the last axes {1}; name one in `cell.machine`, with base and tip, and its external axes in `{2}`</source>
+        <translation>le fichier a {0} robots, dont les derniers axes sont {1} ; nommez-en un dans `cell.machine`, avec base et bout, et ses axes externes dans `{2}`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
+        <source>the file has {0}; give at least 3 joint vectors with their flange poses</source>
+        <translation>il y en a {0} ; donnez au moins 3 vecteurs articulaires avec leurs poses de bride</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/read.py"/>
+        <source>the file is empty; export the part again</source>
+        <translation>il est vide ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>the file is empty; export the points again</source>
+        <translation>il est vide ; exportez les points de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
@@ -12382,14 +12427,9 @@
         <translation>le fichier est vide ; donnez au moins {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/file_content.py"/>
-        <source>the file is larger than {0} MB, the most that is read; check that it is the right one</source>
-        <translation>le fichier dépasse {0} Mo, le maximum qui est lu ; vérifiez que c&apos;est le bon</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/files/apart.py"/>
-        <source>the file is larger than {0} MB, the most that is read; is it the right one?</source>
-        <translation>le fichier dépasse {0} Mo, le maximum qui est lu ; est-ce le bon ?</translation>
+        <source>the file is larger than {0} MB, the maximum; check that it is the right one</source>
+        <translation>le fichier dépasse {0} Mo, le maximum qui est lu ; vérifiez que c&apos;est le bon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/files.py"/>
@@ -12403,33 +12443,38 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
-        <source>the first layer is the edge of {0} at {1}, which stands on the platform</source>
-        <translation>la première couche est l&apos;arête de {0} en {1}, qui repose sur le plateau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
-        <source>the first layer is the lowest open end of {0}, Edge1 at {1}, which does not lie on the platform</source>
-        <translation>la première couche est l&apos;extrémité ouverte la plus basse de {0}, Edge1 en {1}, qui ne repose pas sur le plateau</translation>
+        <source>the first layer follows the edge of {0} at {1}, on the platform</source>
+        <translation>la première couche suit le bord de {0} en {1}, sur le plateau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
-        <source>the first layer lies on the wall and on {0}</source>
-        <translation>la première couche repose sur la paroi et sur {0}</translation>
+        <source>the first layer follows the intersection of the wall and {0}</source>
+        <translation>la première couche suit l&apos;intersection de la paroi et de {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/first_layer.py"/>
-        <source>the first layer lies on the wall and on {0} within {1} mm</source>
-        <translation>la première couche repose sur la paroi et sur {0} à {1} mm près</translation>
+        <source>the first layer follows the intersection of the wall and {0} within {1} mm</source>
+        <translation>la première couche suit l&apos;intersection de la paroi et de {0} à {1} mm près</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
-        <source>the first layer runs {0} mm over the floor of {1}, which is not deposited</source>
+        <source>the first layer follows the lowest open end of {0}, Edge1 at {1}, which is not on the platform</source>
+        <translation>la première couche est l&apos;extrémité ouverte la plus basse de {0}, Edge1 en {1}, qui ne repose pas sur le plateau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
+        <source>the first layer starts {0} mm above the floor of {1}, which is not deposited</source>
         <translation>la première couche court à {0} mm au-dessus du fond de {1}, qui n&apos;est pas déposé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/times.py"/>
         <source>the first move, from wherever the machine stands, is not as slow as it has to be</source>
         <translation>le premier mouvement, d&apos;où que parte la machine, n&apos;est pas aussi lent qu&apos;il le doit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>the fit excludes the {0} farthest points; the results include them</source>
+        <translation>{0} points ont été laissés hors de l&apos;ajustement, les plus écartés ; les chiffres les contiennent</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
@@ -12448,22 +12493,22 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/kernel/limits.py"/>
-        <source>the geometry kernel cannot divide this face, about {0}, into triangles; repair it (Part, Check geometry), or redraw it</source>
-        <translation>le noyau géométrique ne peut pas diviser en triangles cette face, autour de {0} ; réparez-la (Part, Vérifier la géométrie), ou redessinez-la</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/kernel/limits.py"/>
-        <source>the geometry kernel cannot work with this shape ({0}{1}); repair it (Part, Check geometry), or redraw its faces</source>
+        <source>the geometry kernel cannot process this shape ({0}{1}); repair it (Part, Check geometry), or redraw its faces</source>
         <translation>le noyau géométrique ne peut pas travailler avec cette forme ({0}{1}) ; réparez-la (Part, Vérifier la géométrie), ou redessinez ses faces</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/kernel/limits.py"/>
+        <source>the geometry kernel cannot triangulate this face, about {0}; repair it (Part, Check geometry), or redraw it</source>
+        <translation>le noyau géométrique ne peut pas diviser en triangles cette face, autour de {0} ; réparez-la (Part, Vérifier la géométrie), ou redessinez-la</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/layers/along/field.py"/>
-        <source>the guide bends more tightly at {0} than the part is wide there: planes normal to it cross one another within the part, at {1}; choose a guide nearer to the inside of the bend or with a larger radius, or strategy.layers: geodesic</source>
+        <source>the guide bends more tightly at {0} than the part is wide there: planes normal to it intersect within the part, at {1}; choose a guide nearer to the inside of the bend or with a larger radius, or strategy.layers: geodesic</source>
         <translation>le guide est plus courbé en {0} que la pièce n&apos;y est étroite : ses plans normaux se croisent dans la pièce, en {1} ; choisissez un guide plus près de l&apos;intérieur du coude ou de plus grand rayon, ou strategy.layers: geodesic</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
-        <source>the guide has no edge with a length; choose edges, a wire or a sketch</source>
+        <source>the guide has no edge with any length; choose edges, a wire or a sketch</source>
         <translation>le guide n&apos;a aucune arête de longueur non nulle ; choisissez des arêtes, un fil ou une esquisse</translation>
     </message>
     <message>
@@ -12497,6 +12542,11 @@
         <translation>les instructions ne commencent pas comme celles d&apos;un job de robot</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/remedies.py"/>
+        <source>the job is feasible with {0}; tested, not applied</source>
+        <translation>avec {0}, ce travail est faisable ; essayé, non appliqué</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
         <source>the joint frames give</source>
         <translation>les repères articulaires donnent</translation>
@@ -12508,17 +12558,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the joint {0} follows another one, which a serial chain cannot</source>
-        <translation>l&apos;articulation {0} en suit une autre, ce qu&apos;une chaîne en série ne peut pas</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the joint {0} has no &lt;limit&gt;; one that turns without end is continuous</source>
+        <source>the joint {0} has no &lt;limit&gt;; add one, or make the joint continuous</source>
         <translation>l&apos;articulation {0} n&apos;a pas de &lt;limit&gt; ; une qui tourne sans fin est continuous</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the joint {0} has several &lt;{1}&gt;; keep one of them</source>
+        <source>the joint {0} has several &lt;{1}&gt;; keep one</source>
         <translation>l&apos;articulation {0} a plusieurs &lt;{1}&gt; ; gardez-en un</translation>
     </message>
     <message>
@@ -12527,9 +12572,24 @@
         <translation>l&apos;articulation {0} est {1} ; seules {2} et fixed sont lues</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>the joint {0} mimics another joint, which a serial chain cannot; remove the mimic tag</source>
+        <translation>l&apos;articulation {0} en suit une autre, ce qu&apos;une chaîne en série ne peut pas</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/sections/tree.py"/>
         <source>the key stands twice (lines {0} and {1}); remove one</source>
         <translation>la clé est là deux fois (lignes {0} et {1}) ; retirez-en une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
+        <source>the key {0} appears twice; remove one</source>
+        <translation>la clé {0} est là deux fois ; supprimez-en une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
+        <source>the key {0} is duplicated; use the file as ur_calibration wrote it</source>
+        <translation>la clé {0} s&apos;y trouve deux fois ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
@@ -12542,23 +12602,13 @@
         <translation>la clé {0} n&apos;est pas connue ; utilisez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
-        <source>the key {0} is there twice; give the file as ur_calibration wrote it</source>
-        <translation>la clé {0} s&apos;y trouve deux fois ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>the key {0} stands there twice; remove one</source>
-        <translation>la clé {0} est là deux fois ; supprimez-en une</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>the kinematics changes while the deposit is on</source>
         <translation>la cinématique change pendant que le dépôt est en marche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the limits of {0} run from {1} to {2} rad, which are many turns; a URDF is in radians: convert degrees, or make the joint continuous</source>
+        <source>the limits of {0} run from {1} to {2} rad, many turns; a URDF uses radians: convert degrees, or make the joint continuous</source>
         <translation>les limites de {0} vont de {1} à {2} rad, soit de nombreux tours ; un URDF est en radians : convertissez les degrés ou rendez l&apos;articulation continue</translation>
     </message>
     <message>
@@ -12568,8 +12618,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
-        <source>the line of {0} mm leads through {1} % of the volume</source>
-        <translation>la ligne de {0} mm traverse {1} % du volume</translation>
+        <source>the line of {0} mm covers only {1} % of the volume</source>
+        <translation>la ligne de {0} mm traverse {1} % du volume</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -12588,6 +12638,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>the link {0} already has a parent joint, {1}</source>
+        <translation>le corps {0} est déjà mû par {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the link {0} carries itself; correct parent and child of its joints</source>
         <translation>le corps {0} se porte lui-même ; corrigez parent et child de ses articulations</translation>
     </message>
@@ -12598,8 +12653,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the link {0} is moved by {1} already</source>
-        <translation>le corps {0} est déjà mû par {1}</translation>
+        <source>the link {0} does not exist; choose an existing one</source>
+        <translation>il n&apos;y a pas de corps {0} ; nommez-en un qui existe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
@@ -12672,13 +12727,8 @@
         <translation>les points mesurés ne peuvent pas être lus ({0}) ; vérifiez le chemin</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/registration.py"/>
-        <source>the measured points do not settle on the part; give pairs of points to begin with</source>
-        <translation>les points mesurés ne se posent pas sur la pièce ; donnez des paires de points pour commencer</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>the mesh encloses nothing; export the solid again</source>
+        <source>the mesh encloses no volume; export the solid again</source>
         <translation>le maillage n&apos;enferme rien ; exportez le solide de nouveau</translation>
     </message>
     <message>
@@ -12688,32 +12738,32 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}, and {3} more; fill holes (Mesh, Close holes) or export it again, or deposit it as a wall if it is one</source>
+        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}, and {3} more; close the holes (Mesh, Close holes) or export it again, or deposit it as a wall</source>
         <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2}, et {3} de plus ; remplissez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi si c&apos;en est une</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}, and {3} more; up to strategy.mend, {4} mm, holes are closed; fill holes (Mesh, Close holes) or export it again, or deposit it as a wall if it is one</source>
-        <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2}, et {3} de plus ; jusqu&apos;à strategy.mend, {4} mm, les trous sont fermés ; remplissez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi si c&apos;en est une</translation>
+        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}, and {3} more; holes up to strategy.mend = {4} mm are closed; close the holes (Mesh, Close holes) or export it again, or deposit it as a wall</source>
+        <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2}, et {3} de plus ; les trous jusqu&apos;à strategy.mend = {4} mm sont fermés ; fermez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}; fill holes (Mesh, Close holes) or export it again, or deposit it as a wall if it is one</source>
+        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}; close the holes (Mesh, Close holes) or export it again, or deposit it as a wall</source>
         <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2} ; remplissez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi si c&apos;en est une</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}; up to strategy.mend, {3} mm, holes are closed; fill holes (Mesh, Close holes) or export it again, or deposit it as a wall if it is one</source>
-        <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2} ; jusqu&apos;à strategy.mend, {3} mm, les trous sont fermés ; remplissez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi si c&apos;en est une</translation>
+        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}; holes up to strategy.mend = {3} mm are closed; close the holes (Mesh, Close holes) or export it again, or deposit it as a wall</source>
+        <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2} ; les trous jusqu&apos;à strategy.mend = {3} mm sont fermés ; fermez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
-        <source>the mesh has no inside, as at {0}; model the solid again</source>
+        <source>the mesh has no consistent inside, as at {0}; model the solid again</source>
         <translation>le maillage n&apos;a pas d&apos;intérieur, comme en {0} ; modélisez le solide de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>the mesh has no triangles, or points that are not numbers; export it again</source>
+        <source>the mesh has no triangles, or points with invalid coordinates; export it again</source>
         <translation>le maillage n&apos;a pas de triangles, ou des points qui ne sont pas des nombres ; exportez-le de nouveau</translation>
     </message>
     <message>
@@ -12723,8 +12773,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/substrate.py"/>
-        <source>the mesh has points that are not numbers; export it again</source>
+        <source>the mesh has points with invalid coordinates; export it again</source>
         <translation>le maillage a des points qui ne sont pas des nombres ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
+        <source>the mesh intersects itself: {0} pairs of triangles cross, for instance at {1}, so its inside is undefined; fuse the overlapping solids in the CAD system, or repair the mesh (Mesh, Analyze, Self-intersections)</source>
+        <translation>le maillage se coupe lui-même : {0} paires de triangles se croisent, par exemple en {1}, si bien que son intérieur n&apos;est pas défini ; fusionnez les solides qui se chevauchent dans la CAO, ou réparez le maillage (Mesh, Analyser, Auto-intersections)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
@@ -12848,13 +12903,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the origin of the joint {0} is {1} m away; a URDF is in metres: divide what is in mm by 1000</source>
-        <translation>l&apos;origine de l&apos;articulation {0} est à {1} m ; un URDF est en mètres : divisez les valeurs en mm par 1000</translation>
+        <source>the origin of the joint {0} is {1} m away; a URDF uses metres: divide millimetres by 1000</source>
+        <translation>l&apos;origine de l&apos;articulation {0} est à {1} m ; un URDF est en mètres : divisez les millimètres par 1000</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>
-        <source>the pairs of points lie in one line, about which the part can turn; choose others</source>
-        <translation>les paires de points sont sur une ligne, autour de laquelle la pièce peut tourner ; choisissez-en d&apos;autres</translation>
+        <source>the pairs of points are collinear, so the part could rotate about their line; choose others</source>
+        <translation>les paires de points sont alignées, si bien que la pièce pourrait tourner autour de leur droite ; choisissez-en d&apos;autres</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
@@ -12877,14 +12932,24 @@
         <translation>la pièce s&apos;approche à moins de {0} mm de {1}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez un autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/curved/field.py"/>
+        <source>the part has no face to start from: none is on the plane through its lowest point along strategy.direction, or on the substrate; turn the part, set strategy.direction, or choose a substrate in contact</source>
+        <translation>la pièce n&apos;a pas de face d&apos;où partir : aucune n&apos;est sur le plan par son point le plus bas selon strategy.direction, ni sur le substrat ; tournez la pièce, fixez strategy.direction, ou choisissez un substrat en contact</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
         <source>the part has no faces above where the deposit begins; choose another part</source>
         <translation>la pièce n&apos;a pas de faces au-dessus du début du dépôt ; choisissez une autre pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>the part has too few layers to lead back to the plan: the last one is up to {0} mm off it; a larger substrate.scan_band leads back in fewer layers</source>
+        <source>the part has too few layers to blend back to the plan: the last one is up to {0} mm off; raise substrate.scan_band to use fewer layers</source>
         <translation>la pièce a trop peu de couches pour ramener au plan : la dernière en est éloignée de {0} mm au plus ; un substrate.scan_band plus grand y ramène en moins de couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
+        <source>the part touches the platform at a point and has no open end to start from; choose a substrate, or turn the part so that an open end is on the platform</source>
+        <translation>la pièce touche le plateau en un point et n&apos;a pas de bout ouvert d&apos;où partir ; choisissez un substrat, ou tournez la pièce pour qu&apos;un bout ouvert soit sur le plateau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/texts/touching.py"/>
@@ -12923,13 +12988,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
-        <source>the point is that of the line before; leave it out</source>
-        <translation>le point est celui de la ligne d&apos;avant ; enlevez-le</translation>
+        <source>the point repeats the previous line; remove it</source>
+        <translation>le point répète la ligne précédente ; retirez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
-        <source>the points of the part are on a line, or all in one place: they leave open how the part is turned about it; touch one off that line</source>
-        <translation>les points de la pièce sont sur une droite, ou tous au même endroit : rien ne dit comment la pièce est tournée autour ; palpez-en un à côté</translation>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>the points extend over {0} mm, {1} over {2} mm; check the unit of the file</source>
+        <translation>les points s&apos;étendent sur {0} mm, {1} sur {2} mm ; vérifiez l&apos;unité du fichier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/moves.py"/>
@@ -12937,14 +13002,14 @@
         <translation>les points de {0} ne sont pas tous dans un repère</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/inspect.py"/>
-        <source>the points reach over {0} mm, {1} over {2} mm; check the unit of the file</source>
-        <translation>les points s&apos;étendent sur {0} mm, {1} sur {2} mm ; vérifiez l&apos;unité du fichier</translation>
+        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <source>the points on the part are collinear or coincide, so the rotation about their line is undetermined; touch a point off that line</source>
+        <translation>les points sur la pièce sont alignés ou confondus, si bien que la rotation autour de leur droite est indéterminée ; palpez un point à côté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
-        <source>the points touched are on a line, or all in one place: they leave open how the part is turned about it; touch one off that line</source>
-        <translation>les points palpés sont sur une droite, ou tous au même endroit : rien ne dit comment la pièce est tournée autour ; palpez-en un à côté</translation>
+        <source>the points touched are collinear or coincide, so the rotation about their line is undetermined; touch a point off that line</source>
+        <translation>les points palpés sont alignés ou confondus, si bien que la rotation autour de leur droite est indéterminée ; palpez un point à côté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
@@ -13048,8 +13113,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/filling/centre.py"/>
-        <source>the region at {0} is {1} mm wide, less than a bead ({2} mm); choose thin = single, a narrower bead or a margin</source>
+        <source>the region at {0} is {1} mm wide, narrower than a bead ({2} mm); use thin = single, a narrower bead or a margin</source>
         <translation>la région en {0} est large de {1} mm, moins qu&apos;un cordon ({2} mm) ; choisissez thin = single, un cordon plus étroit ou une marge</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/registration.py"/>
+        <source>the registration does not converge; give initial pairs of points</source>
+        <translation>les points mesurés ne se posent pas sur la pièce ; donnez des paires de points pour commencer</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
@@ -13072,19 +13142,24 @@
         <translation>le vecteur de rotation a une longueur de {0} rad, plus d&apos;un tour ; donnez RX RY RZ en rad, comme le pupitre les affiche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>the scan lies {0} mm from layer {1} at {2}, more than substrate.scan_within = {3} mm; check that it is of this part, its unit and its fit</source>
-        <translation>la numérisation est à {0} mm de la couche {1} en {2}, plus que substrate.scan_within = {3} mm ; vérifiez qu&apos;elle est de cette pièce, son unité et son ajustement</translation>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>the row has {0} values, the first {1}: commas may be decimal separators too; export it with decimal points</source>
+        <translation>la ligne a {0} valeurs, la première {1} : les virgules sont peut-être aussi des séparateurs décimaux ; exportez-le avec des points décimaux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/scan_checks.py"/>
-        <source>the scan reaches over {0} mm, {1} over {2} mm; check its unit, substrate.scan_unit, and what was scanned</source>
+        <source>the scan extends over {0} mm, {1} over {2} mm; check its unit, substrate.scan_unit, and what was scanned</source>
         <translation>la numérisation s&apos;étend sur {0} mm, {1} sur {2} mm ; vérifiez son unité, substrate.scan_unit, et ce qui a été numérisé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/scan_checks.py"/>
-        <source>the scan reaches over {0} mm, {1} over {2} mm; in {3} it would be about as large, give that as substrate.scan_unit</source>
-        <translation>la numérisation s&apos;étend sur {0} mm, {1} sur {2} mm ; en {3} elle serait à peu près aussi grande, donnez cela comme substrate.scan_unit</translation>
+        <source>the scan extends over {0} mm, {1} over {2} mm; in {3} the size would match; set it as substrate.scan_unit</source>
+        <translation>la numérisation s&apos;étend sur {0} mm, {1} sur {2} mm ; en {3} la taille conviendrait ; fixez-le comme substrate.scan_unit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
+        <source>the scan is {0} mm away from layer {1} at {2}, more than substrate.scan_within = {3} mm; check that it shows the right part, in the right unit and position</source>
+        <translation>la numérisation est à {0} mm de la couche {1} en {2}, plus que substrate.scan_within = {3} mm ; vérifiez qu&apos;elle montre la bonne pièce, dans la bonne unité et à la bonne place</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/events.py"/>
@@ -13127,6 +13202,11 @@
         <translation>la forme est vide ; choisissez un objet qui a une forme</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/torch.py"/>
+        <source>the shape is open, so its inside is undefined; give closed solids</source>
+        <translation>la forme est ouverte, si bien que son intérieur n&apos;est pas défini ; donnez des solides fermés</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>the shape to deposit, or some of its faces</source>
         <translation>la forme à déposer, ou certaines de ses faces</translation>
@@ -13143,8 +13223,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/substrate.py"/>
-        <source>the solid around {0} is turned inside out (volume {1} mm3); repair it (Part, Check geometry), or turn it (Part, Reverse shapes)</source>
+        <source>the solid around {0} is inside out (volume {1} mm3); repair it (Part, Check geometry), or reverse it (Part, Reverse shapes)</source>
         <translation>le solide autour de {0} est retourné (volume {1} mm3) ; réparez-le (Part, Vérifier la géométrie), ou inversez-le (Part, Inverser les formes)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/rotary/field.py"/>
+        <source>the solid crosses the hub axis beyond its end, at {0}, where equidistant surfaces have an apex or an end; end the solid before the axis</source>
+        <translation>le solide passe l&apos;axe du moyeu au-delà de son bout, en {0}, où les surfaces équidistantes ont un sommet ou un bout ; terminez le solide avant l&apos;axe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
@@ -13153,18 +13238,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
-        <source>the solid is turned inside out (volume {0} mm3, near {1}); flip its normals (Mesh, Flip normals)</source>
+        <source>the solid is inside out (volume {0} mm3, near {1}); flip its normals (Mesh, Flip normals)</source>
         <translation>le solide est retourné (volume {0} mm3, près de {1}) ; inversez ses normales (Mesh, Inverser les normales)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/first_layer.py"/>
-        <source>the solid is turned inside out; repair it (Part, Check geometry)</source>
+        <source>the solid is inside out; repair it (Part, Check geometry)</source>
         <translation>le solide est retourné ; réparez-le (Part, Vérifier la géométrie)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/layers/rotary/field.py"/>
-        <source>the solid reaches over the end of the hub&apos;s axis, at {0}, where equidistant surfaces have an apex or an end; let it end beside the axis</source>
-        <translation>le solide dépasse la fin de l&apos;axe du moyeu, en {0}, là où les surfaces équidistantes ont un sommet ou une fin ; faites-le finir à côté de l&apos;axe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -13200,6 +13280,11 @@
         <location filename="../../freecad_am/objects/results/store.py"/>
         <source>the stored result cannot be read ({0}); recompute it</source>
         <translation>le résultat enregistré ne peut pas être lu ({0}) ; recalculez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/denavit_hartenberg.py"/>
+        <source>the table is empty; give one row per joint</source>
+        <translation>il n&apos;y a pas de ligne ; donnez-en une par articulation</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/notes.py"/>
@@ -13362,13 +13447,23 @@
         <translation>la torche oscille déjà, ou pas encore</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <source>the touched points are {0} times as far apart as planned; one set is in {1}; give both in mm</source>
+        <translation>les points touchés sont {0} fois plus écartés que prévu ; l&apos;un des deux est en {1} ; donnez les deux en mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <source>the touched points are {0} times as far apart as planned; the points belong to another part, or are in another order</source>
+        <translation>les points touchés sont {0} fois plus écartés que prévu ; ce sont des points d&apos;une autre pièce, ou dans un autre ordre</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>the transformation changes while the deposit is on</source>
         <translation>la transformation change pendant que le dépôt est en marche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>the unit in {0} is not read; use mm, cm, m, um or inch</source>
+        <source>the unit in {0} is not supported; use mm, cm, m, um or inch</source>
         <translation>l&apos;unité dans {0} n&apos;est pas lue ; utilisez mm, cm, m, um ou inch</translation>
     </message>
     <message>
@@ -13378,7 +13473,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>the unit of the column {0} is not read; use mm, cm, m, um or inch</source>
+        <source>the unit of the column {0} is not supported; use mm, cm, m, um or inch</source>
         <translation>l&apos;unité de la colonne {0} n&apos;est pas lue ; utilisez mm, cm, m, um ou inch</translation>
     </message>
     <message>
@@ -13413,18 +13508,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>the wall bends too sharply: {0} mm off between {1} x {2} samples; smooth it, or cut it where it has an edge</source>
+        <source>the wall bends too sharply: the error is {0} mm between {1} x {2} samples; smooth it, or cut it at the crease</source>
         <translation>la paroi se courbe trop fort : {0} mm d&apos;écart entre {1} x {2} échantillons ; lissez-la, ou coupez-la là où elle a une arête</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/cuts.py"/>
-        <source>the wall cuts itself at {0} ({1}); {2}</source>
-        <translation>la paroi se coupe en {0} ({1}) ; {2}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
-        <source>the wall cuts itself: {0} pairs of its triangles cross, for instance at {1}; repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid, with holes of up to strategy.mend closed</source>
-        <translation>la paroi se coupe elle-même : {0} paires de ses triangles se croisent, par exemple en {1} ; réparez le maillage (Mesh, Analyser, Auto-intersections), ou déposez-le comme solide, les trous jusqu&apos;à strategy.mend étant fermés</translation>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
+        <source>the wall coincides with the surface of {0}; choose the part below the wall, or clear the substrate if the wall starts on the platform or from edges</source>
+        <translation>la paroi coïncide avec la surface de {0} ; choisissez la pièce sous la paroi, ou videz le substrat si la paroi part du plateau ou d&apos;arêtes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/first_layer.py"/>
@@ -13433,13 +13523,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/first_layer.py"/>
-        <source>the wall does not meet {0} in a closed curve (nearest {1} mm); let it reach into it all around</source>
+        <source>the wall does not meet {0} in a closed curve (nearest {1} mm); extend it into the substrate all around</source>
         <translation>la paroi ne rencontre pas {0} en une courbe fermée (au plus près {1} mm) ; faites-la pénétrer sur tout le tour</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
-        <source>the wall does not touch {0}: it comes nearest at {1}, {2} mm away; move it so that it reaches in, at most {3} mm may be missing</source>
+        <source>the wall does not touch {0}: its nearest point is {1}, {2} mm away; extend it to within {3} mm of the substrate</source>
         <translation>la paroi ne touche pas {0} : elle en est au plus près en {1}, à {2} mm ; déplacez-la pour qu&apos;elle y pénètre, il peut manquer {3} mm au plus</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
+        <source>the wall faces do not close around; open walls (half shells) cannot be deposited yet: choose a full tube</source>
+        <translation>les faces de la paroi ne se ferment pas sur le tour ; les parois ouvertes (demi-coques) ne peuvent pas encore être déposées : choisissez un tube entier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/tubes/smooth_spacing.py"/>
@@ -13448,12 +13543,27 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
-        <source>the wall lies wholly in {0} (at {1} it is {2} mm deep, and nowhere less); let it end outside of the substrate</source>
-        <translation>la paroi est tout entière dans {0} (en {1} à {2} mm de profondeur, et nulle part moins) ; faites-la finir hors du substrat</translation>
+        <source>the wall has no start: none of its edges is on the platform, the plane Z = {0} mm through its lowest point {1}; choose a substrate or start edges</source>
+        <translation>la paroi n&apos;a pas de départ : aucune de ses arêtes n&apos;est sur le plateau, le plan Z = {0} mm par son point le plus bas {1} ; choisissez un substrat ou des arêtes de départ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/cuts.py"/>
+        <source>the wall intersects itself at {0} ({1}); {2}</source>
+        <translation>la paroi se coupe en {0} ({1}) ; {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
+        <source>the wall intersects itself: {0} pairs of triangles cross, for instance at {1}; repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid with holes up to strategy.mend closed</source>
+        <translation>la paroi se coupe elle-même : {0} paires de ses triangles se croisent, par exemple en {1} ; réparez le maillage (Mesh, Analyser, Auto-intersections), ou déposez-le comme solide, les trous jusqu&apos;à strategy.mend étant fermés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
-        <source>the wall meets {0} in no curve that a layer can start from (shorter than a few {1} mm); let it reach in all around, or choose the edges to start from</source>
+        <source>the wall is entirely inside {0} (at {1} it is {2} mm deep, the least depth); extend one end outside the substrate</source>
+        <translation>la paroi est entièrement dans {0} (en {1} elle est à {2} mm de profondeur, au moins) ; prolongez un bout hors du substrat</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
+        <source>the wall meets {0} in no curve long enough to start a layer (all shorter than a few {1} mm); extend it into the substrate all around, or choose start edges</source>
         <translation>la paroi ne rencontre {0} en aucune courbe d&apos;où une couche puisse partir (plus courte que quelques fois {1} mm) ; faites-la pénétrer sur tout le tour, ou choisissez les arêtes de départ</translation>
     </message>
     <message>
@@ -13552,11 +13662,6 @@
         <translation>il n&apos;y a pas de mouvements</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>there are no points in it; give rows of x y z</source>
-        <translation>il n&apos;y a pas de points dedans ; donnez des lignes de x y z</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/sections/tree.py"/>
         <source>there are too many values; give at most {0}</source>
         <translation>il y a trop de valeurs ; donnez-en au plus {0}</translation>
@@ -13582,16 +13687,6 @@
         <translation>il y a {0} programmes qui ne sont pas des sous-programmes, un seul attendu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
-        <source>there are {0} robots in it, the last axes of which are {1}; name one in `cell.machine`, with base and tip, and what stands beside it in `{2}`</source>
-        <translation>il y a {0} robots dedans, dont les derniers axes sont {1} ; nommez-en un dans `cell.machine`, avec base et tip, et ce qui se trouve à côté dans `{2}`</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
-        <source>there are {0}; give at least 3 joint vectors with their flange poses</source>
-        <translation>il y en a {0} ; donnez au moins 3 vecteurs articulaires avec leurs poses de bride</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>there are {}; at least {} are needed, for a machine without them is not loaded; enter more</source>
         <translation>il y en a {} ; il en faut au moins {}, car une machine sans elles n&apos;est pas chargée ; saisissez-en d&apos;autres</translation>
@@ -13607,34 +13702,9 @@
         <translation>il y a déjà une machine {0} ; choisissez un autre nom</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>there is a {0} {1} already, in line {2}; rename one of the two</source>
-        <translation>il y a déjà un {0} {1}, à la ligne {2} ; renommez l&apos;un des deux</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>there is no &lt;{0}&gt;; choose the URDF of a robot</source>
-        <translation>il n&apos;y a pas de &lt;{0}&gt; ; choisissez l&apos;URDF d&apos;un robot</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
-        <source>there is no URDF {0}; check the path</source>
-        <translation>il n’y a pas d’URDF {0} ; vérifiez le chemin</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/planning/program/build.py"/>
         <source>there is no bead {0} in a layer {1}; choose from layers 0 to {2}</source>
         <translation>il n&apos;y a pas de cordon {0} dans une couche {1} ; choisissez parmi les couches 0 à {2}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
-        <source>there is no calibration {0}; give the path of the YAML file that ur_calibration wrote of this arm</source>
-        <translation>il n&apos;y a pas d&apos;étalonnage {0} ; donner le chemin du fichier YAML que ur_calibration a écrit pour ce bras</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/sections/cell.py"/>
-        <source>there is no file {0}; check the path, relative to the file with it</source>
-        <translation>il n&apos;y a pas de fichier {0} ; vérifiez le chemin, relatif au fichier qui le contient</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/cell.py"/>
@@ -13677,44 +13747,9 @@
         <translation>il n&apos;y a pas de couche au-dessus de {0} : la dernière des {1} est {2} ; donnez-en une plus basse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>there is no link {0}; name one that is there</source>
-        <translation>il n&apos;y a pas de corps {0} ; nommez-en un qui existe</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>there is no machine file {0}; check the path</source>
-        <translation>il n&apos;y a pas de fichier machine {0} ; vérifiez le chemin</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>there is no model in it ({0})</source>
-        <translation>il n&apos;y a pas de modèle dedans ({0})</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/filling/fill.py"/>
-        <source>there is no pattern {0}; use one of {1}</source>
-        <translation>il n&apos;y a pas de motif {0} ; utilisez l&apos;un de {1}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/results/stored.py"/>
         <source>there is no result yet; recompute it</source>
         <translation>il n&apos;y a pas encore de résultat ; recalculez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
-        <source>there is no robot in it: no chain has six turning axes on nothing but axes that slide; the longest is {0}</source>
-        <translation>il n&apos;y a pas de robot dedans : aucune chaîne n&apos;a six axes qui tournent portés par des axes qui glissent seulement ; la plus longue est {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/denavit_hartenberg.py"/>
-        <source>there is no row; give one per joint</source>
-        <translation>il n&apos;y a pas de ligne ; donnez-en une par articulation</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>there is no such file; check the name and the folder</source>
-        <translation>il n&apos;y a pas de tel fichier ; vérifiez le nom et le dossier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
@@ -13740,11 +13775,6 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>there is nothing to be seen in these layers</source>
         <translation>il n&apos;y a rien à voir dans ces couches</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
-        <source>there is nothing to grow on: none of its edges lies on the platform, the plane Z = {0} mm through its lowest place {1}; choose a substrate, or the edges to start from</source>
-        <translation>il n&apos;y a rien sur quoi croître : aucune de ses arêtes n&apos;est sur le plateau, le plan Z = {0} mm par son point le plus bas {1} ; choisissez un substrat, ou les arêtes d&apos;où partir</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
@@ -13782,18 +13812,8 @@
         <translation>ce Python ne sait pas lire YAML ; installez-y PyYAML</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>this and most other lines are not points; give rows of x y z</source>
-        <translation>celle-ci et la plupart des autres lignes ne sont pas des points ; donnez des lignes de x y z</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>this cannot be planned for: {0}; {1}</source>
-        <translation>cette machine ne peut pas être planifiée : {0} ; {1}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>this is &lt;{0}&gt;, not the &lt;robot&gt; of a URDF; choose the URDF of a robot</source>
+        <source>this is &lt;{0}&gt;, not the &lt;robot&gt; of a URDF; choose a robot URDF</source>
         <translation>c&apos;est &lt;{0}&gt;, et non le &lt;robot&gt; d&apos;un URDF ; choisissez l&apos;URDF d&apos;un robot</translation>
     </message>
     <message>
@@ -13833,12 +13853,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>this is xacro; make a URDF of it first, with the program xacro of ROS</source>
+        <source>this is xacro; convert it to URDF first, with the ROS program xacro</source>
         <translation>c&apos;est du xacro ; faites-en d&apos;abord un URDF, avec le programme xacro de ROS</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
-        <source>this key is missing; give the file as ur_calibration wrote it</source>
+        <source>this key is missing; use the file as ur_calibration wrote it</source>
         <translation>cette clé manque ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
     </message>
     <message>
@@ -13967,6 +13987,11 @@
         <translation>tore, cône (cylindres aussi) ou table ; patches pour une paroi de faces quelconques qui se tiennent ; mesh.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <source>touched points calibrate a part that the robot moves, but here the part is fixed and the robot holds the tool; remove them, and measure cell.platform or the pose of the positioner</source>
+        <translation>on palpe les points d&apos;une pièce immobile sous un outil porté par le robot ; retirez-les, et mesurez cell.platform ou la pose de ce qui porte la pièce</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>travel speed</source>
         <translation>vitesse d&apos;avance</translation>
@@ -13983,8 +14008,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/cuts.py"/>
-        <source>trim the faces where they cross, or choose those that do not cross and deposit the others as a feature of their own</source>
-        <translation>ajustez les faces là où elles se croisent, ou choisissez celles qui ne se croisent pas et déposez les autres comme un élément à part</translation>
+        <source>trim the faces at their intersection, or deposit the intersecting faces as separate features</source>
+        <translation>coupez les faces à leur intersection, ou déposez les faces qui se coupent comme des éléments séparés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/path_view.py"/>
@@ -14018,13 +14043,38 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>two files in it give object {0} different roles</source>
+        <source>two files in it assign different roles to object {0}</source>
         <translation>deux de ses fichiers donnent à l&apos;objet {0} des rôles différents</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>um</source>
         <translation>um</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>unknown &lt;{0}&gt; in the joint {1}, which may move links; remove it</source>
+        <translation>&lt;{0}&gt; dans l&apos;articulation {1} est inconnu et peut déplacer les corps ; supprimez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>unknown command {0}; {1}</source>
+        <translation>{0} n&apos;est pas connu ; {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/external.py"/>
+        <source>unknown mechanism {0}; use one of {1}, or the path of a machine file or a URDF</source>
+        <translation>{0} n&apos;est pas connu ; sont intégrés {1} ; ou donnez le chemin d&apos;un fichier de machine ou d&apos;un URDF</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/near_names.py"/>
+        <source>unknown name {0}; {1}</source>
+        <translation>{0} n&apos;est pas connu ; {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/filling/fill.py"/>
+        <source>unknown pattern {0}; use one of {1}</source>
+        <translation>il n&apos;y a pas de motif {0} ; utilisez l&apos;un de {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
@@ -14060,6 +14110,16 @@
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
         <source>use 1 or -1</source>
         <translation>utilisez 1 ou -1</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/cuts.py"/>
+        <source>use a bend radius larger than the tube radius</source>
+        <translation>donnez au coude un rayon plus grand que celui du tube</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/cuts.py"/>
+        <source>use bend radii larger than the tube radius</source>
+        <translation>donnez aux coudes un rayon plus grand que celui du tube</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
@@ -14197,16 +14257,6 @@
         <translation>ce qui a été supprimé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
-        <source>what was touched is {0} times as large as what is planned; one of them is in {1}, give both in mm</source>
-        <translation>ce qui a été palpé est {0} fois plus grand que ce qui est prévu ; l&apos;un des deux est en {1}, donnez les deux en mm</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
-        <source>what was touched is {0} times as large as what is planned; these are points of another part, or in another order</source>
-        <translation>ce qui a été palpé est {0} fois plus grand que ce qui est prévu ; ce sont des points d&apos;une autre pièce, ou dans un autre ordre</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>where the base frame of {0} lies is not known: positions of the program count from its base_link. Compare the pose of a known point on the controller before the program is run, set base in a copy of the machine file, or use program.motion: joint</source>
         <translation>la position du repère de base de {0} est inconnue : les positions du programme comptent depuis son base_link. Comparez la pose d&apos;un point connu sur la commande avant de lancer le programme, fixez base dans une copie du fichier de machine, ou utilisez program.motion: joint</translation>
@@ -14257,14 +14307,14 @@
         <translation>avec TRAORI un mouvement demande X Y Z A3 B3 C3 F, G94, FGROUP, ORIWKS et un décalage d&apos;origine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
-        <source>with edges of {0} mm, a layer height, the mesh of the wall has more than {1} triangles; use a larger layer height, or deposit the wall in parts</source>
-        <translation>avec des arêtes de {0} mm, une hauteur de couche, le maillage de la paroi a plus de {1} triangles ; prenez des couches plus hautes, ou déposez la paroi en plusieurs parties</translation>
+        <location filename="../../freecad_am/brep/walls/sheet.py"/>
+        <source>with edges of {0} mm, from the layer height and the smallest radius, the wall mesh needs more than {1} triangles, about {2}; use a larger layer height, larger bend radii, or deposit the wall in parts</source>
+        <translation>avec des arêtes de {0} mm, d&apos;après la hauteur de couche et le plus petit rayon, le maillage de la paroi a plus de {1} triangles, environ {2} ; prenez une plus grande hauteur de couche, arrondissez davantage les coudes serrés, ou déposez la paroi par parties</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/sheet.py"/>
-        <source>with edges of {0} mm, by layer height and smallest radius, the mesh of the wall has more than {1} triangles, about {2}; use a larger layer height, round sharp bends more, or deposit the wall in parts</source>
-        <translation>avec des arêtes de {0} mm, d&apos;après la hauteur de couche et le plus petit rayon, le maillage de la paroi a plus de {1} triangles, environ {2} ; prenez une plus grande hauteur de couche, arrondissez davantage les coudes serrés, ou déposez la paroi par parties</translation>
+        <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
+        <source>with edges of {0} mm, the layer height, the wall mesh needs more than {1} triangles; use a larger layer height, or deposit the wall in parts</source>
+        <translation>avec des arêtes de {0} mm, une hauteur de couche, le maillage de la paroi a plus de {1} triangles ; prenez des couches plus hautes, ou déposez la paroi en plusieurs parties</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
@@ -14305,11 +14355,6 @@
         <location filename="../../freecad_am/core/planning/remedies.py"/>
         <source>with {0} the {1} of the layers in question that were planned again are feasible; the whole job was not tried</source>
         <translation>avec {0}, les {1} couches en cause replanifiées sont faisables ; le travail entier n’a pas été essayé</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/remedies.py"/>
-        <source>with {0} this job is feasible; tried, not applied</source>
-        <translation>avec {0}, ce travail est faisable ; essayé, non appliqué</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program/beads.py"/>
@@ -14372,11 +14417,6 @@
         <translation>zigzag</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/curved/field.py"/>
-        <source>{0} % of it hang together with nothing that stands on the platform or the substrate; deposit these by themselves, or set strategy.direction</source>
-        <translation>{0} % de la pièce ne tiennent à rien de ce qui repose sur le plateau ou le substrat ; déposez-les à part, ou donnez strategy.direction</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>{0} % of the joint speeds is none of 1 to 100</source>
         <translation>{0} % des vitesses articulaires n&apos;est pas de 1 à 100</translation>
@@ -14385,6 +14425,11 @@
         <location filename="../../freecad_am/core/process/model/notes.py"/>
         <source>{0} % of the length bends more than the table&apos;s beads, of {1} mm or more, and counts as bent like these; widths are only estimated there</source>
         <translation>{0} % de la longueur est plus courbée que les cordons du tableau, de {1} mm ou plus, et compte comme courbée pareillement ; les largeurs n&apos;y sont qu&apos;estimées</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/curved/field.py"/>
+        <source>{0} % of the solid is not connected to the platform or the substrate; deposit that part separately, or set strategy.direction</source>
+        <translation>{0} % du solide ne sont pas reliés au plateau ou au substrat ; déposez cette partie à part, ou fixez strategy.direction</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/issues.py"/>
@@ -14413,7 +14458,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>{0} all have a wall; name the faces of the one to deposit</source>
+        <source>{0} all have a wall; select the faces of one</source>
         <translation>{0} ont toutes une paroi ; nommez les faces de celle à déposer</translation>
     </message>
     <message>
@@ -14453,13 +14498,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/clad_faces.py"/>
-        <source>{0} and {1} are faces of different solids; cover each solid as a feature of its own, or fuse them first</source>
+        <source>{0} and {1} are faces of different solids; cover each solid as a separate feature, or fuse them first</source>
         <translation>{0} et {1} sont des faces de solides différents ; recouvrez chaque solide comme un élément à part, ou fusionnez-les d&apos;abord</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} and {1} are two mechanisms of one name, {2}; give one of the files another id</source>
-        <translation>{0} et {1} sont deux mécanismes d&apos;un même nom, {2} ; donnez un autre id à l&apos;un des fichiers</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/checks.py"/>
@@ -14478,8 +14518,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/checks.py"/>
-        <source>{0} and {1} meet at an angle of {2} deg at {3}; a wall&apos;s faces must run on smoothly, within {4} deg: round the edge, or deposit the faces one after the other</source>
+        <source>{0} and {1} meet at an angle of {2} deg at {3}; faces of a wall must be tangent within {4} deg: round the edge, or deposit the faces in turn</source>
         <translation>{0} et {1} se rencontrent sous un angle de {2} deg en {3} ; les faces d&apos;une paroi doivent se prolonger sans cassure, à {4} deg près : arrondissez l&apos;arête, ou déposez les faces l&apos;une après l&apos;autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/external.py"/>
+        <source>{0} and {1} share the name {2}; change the id of one file</source>
+        <translation>{0} et {1} sont deux mécanismes d&apos;un même nom, {2} ; donnez un autre id à l&apos;un des fichiers</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
+        <source>{0} appears twice in {1}; remove one</source>
+        <translation>{0} est deux fois dans {1} ; retirez-en un</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/steps.py"/>
@@ -14513,7 +14563,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} axes carry the part; give one or two turning axes</source>
+        <source>{0} axes carry the part; use one or two revolute axes</source>
         <translation>{0} axes portent la pièce ; donnez un ou deux axes tournants</translation>
     </message>
     <message>
@@ -14548,7 +14598,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/stl_check.py"/>
-        <source>{0} bytes follow its {1} triangles, which may be further ones; export the part again, as one solid</source>
+        <source>{0} bytes follow its {1} triangles, possibly more triangles; export the part again, as one solid</source>
         <translation>{0} octets suivent ses {1} triangles et peuvent en être d&apos;autres ; exportez la pièce de nouveau en un solide</translation>
     </message>
     <message>
@@ -14587,11 +14637,6 @@
         <translation>{0} ne peut pas être le nom d&apos;une machine ; utilisez a à z, chiffres et -</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/sheet.py"/>
-        <source>{0} cannot be turned to one side (a twisted band has no outside); divide the band, or leave one of its faces out</source>
-        <translation>{0} ne peuvent pas être tournées d&apos;un même côté (une bande vrillée n&apos;a pas d&apos;extérieur) ; divisez la bande, ou laissez une de ses faces de côté</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/names.py"/>
         <source>{0} cannot be {1} on the controller: {2}; use {3}</source>
         <translation>{0} ne peut pas être {1} sur la commande : {2} ; utilisez {3}</translation>
@@ -14603,13 +14648,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} carries the robot and is not a track, which is one axis that slides; choose a track</source>
-        <translation>{0} porte le robot et n&apos;est pas un rail, c&apos;est-à-dire un axe qui coulisse ; choisissez un rail</translation>
+        <source>{0} carries the part on a prismatic axis, which cannot be planned yet; use revolute axes</source>
+        <translation>{0} a un axe linéaire et porte la pièce, ce qui ne peut pas encore être planifié ; utilisez des axes rotatifs</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
-        <source>{0} chains move beside the robot ({1}), and one can carry the part; name it in `{2}`, with base and tip</source>
-        <translation>{0} chaînes bougent à côté du robot ({1}), et une seule peut porter la pièce ; nommez-la dans `{2}`, avec base et tip</translation>
+        <location filename="../../freecad_am/core/kinematics/external.py"/>
+        <source>{0} carries the robot but is not a track, a single prismatic axis; choose a track</source>
+        <translation>{0} porte le robot et n&apos;est pas un rail, c&apos;est-à-dire un axe qui coulisse ; choisissez un rail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
@@ -14627,6 +14672,11 @@
         <translation>{0} cm3 de lui se trouvent dans {1} et seraient déposés deux fois ; découpez l&apos;un de l&apos;autre</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} comes before a command; write the command first</source>
+        <translation>{0} est avant une commande ; écrivez d&apos;abord la commande</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/checks/collisions.py"/>
         <source>{0} comes within {1} {2} of its limit, {3} % of half its range; move the part, or choose another cell.branch or joints.rotation_range</source>
         <translation>{0} arrive à {1} {2} de sa limite, {3} % de la moitié de sa course ; déplacez la pièce ou choisissez une autre cell.branch ou joints.rotation_range</translation>
@@ -14637,14 +14687,44 @@
         <translation>{0} compare avec {1} ; choisissez un contrôle de la pièce sur laquelle on dépose</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
+        <source>{0} contains a 0; give the pulses per degree of each axis, negative where they count down</source>
+        <translation>{0} contient un 0 ; donnez les impulsions d&apos;un degré de chaque axe, négatives là où elles décroissent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0} contains holes drilled by the slicer, which the mesh lacks; remove them, or export the drilled part as a mesh</source>
+        <translation>{0} y dit que le trancheur perce des trous que le maillage n&apos;a pas ; supprimez-les ou exportez la pièce percée en maillage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution/turn.py"/>
+        <source>{0} covers {1} and {2} {3}; choose faces with the same angular range</source>
+        <translation>{0} tourne {1} et {2} {3} ; choisissez des faces qui tournent pareillement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
+        <source>{0} degenerate triangles were removed</source>
+        <translation>{0} triangles sans surface ont été écartés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
+        <source>{0} differs from the file name, {1}; rename it</source>
+        <translation>{0} n&apos;est pas le nom du fichier, {1} ; renommez-le</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>{0} do not belong together</source>
         <translation>{0} ne vont pas ensemble</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>{0} do not join to one wall; name the faces of the wall, or deposit them one by one</source>
+        <source>{0} do not form one wall; select the faces of the wall, or deposit them in turn</source>
         <translation>{0} ne se joignent pas en une paroi ; nommez les faces de la paroi, ou déposez-les une à une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} does not belong to an arc in {1}; use {2} and {3}</source>
+        <translation>{0} n&apos;est pas un mot d&apos;un arc en {1} ; donnez {2} et {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/on_substrate.py"/>
@@ -14657,14 +14737,24 @@
         <translation>{0} n&apos;attend pas les mouvements qui le précèdent</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
+        <source>{0} duplicate triangles were removed</source>
+        <translation>{0} triangles présents en double ont été écartés</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/slicing/solids/equidistant.py"/>
         <source>{0} edges have not two faces, one at ({1}, {2}, {3}) mm from the hub&apos;s base; close the mesh</source>
         <translation>{0} arêtes n&apos;ont pas deux faces, l&apos;une à ({1}, {2}, {3}) mm de la base du moyeu ; fermez le maillage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>{0} edges of more than two triangles were divided, as at {1}</source>
+        <source>{0} edges of more than two triangles were split, as at {1}</source>
         <translation>{0} arêtes de plus de deux triangles ont été dédoublées, par exemple en {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
+        <source>{0} exceeds the rounding of a display; give 0 to {1}</source>
+        <translation>{0} est plus que ce que laisse l&apos;arrondi d&apos;un affichage ; donnez de 0 à {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
@@ -14675,6 +14765,11 @@
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>{0} face(s) ({1}), about {2} cm3 of the {3} cm3 of {4}, are not deposited</source>
         <translation>{0} face(s) ({1}), environ {2} cm3 des {3} cm3 de {4}, ne sont pas déposées</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/read.py"/>
+        <source>{0} files are not supported; use {1}</source>
+        <translation>les fichiers {0} ne sont pas pris en charge ; utilisez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -14688,7 +14783,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} follows a move in its line; give it a line of its own</source>
+        <source>{0} follows a move on the same line; put it on its own line</source>
         <translation>{0} suit un déplacement dans sa ligne ; donnez-lui sa propre ligne</translation>
     </message>
     <message>
@@ -14703,8 +14798,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/machine.py"/>
-        <source>{0} from {1} to {2}: {3}; the robot begins at the link {4}; or write `external: {5}`, which takes track and positioner of the file</source>
-        <translation>{0} de {1} à {2} : {3} ; le robot commence au corps {4} ; ou écrivez `external: {5}`, qui prend rail et positionneur du fichier</translation>
+        <source>{0} from {1} to {2}: {3}; the robot begins at the link {4}; or write `external: {5}` to use the track and positioner of the file</source>
+        <translation>{0} de {1} à {2} : {3} ; le robot commence au corps {4} ; ou écrivez `external: {5}` pour utiliser le rail et le positionneur du fichier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
@@ -14723,23 +14818,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0} gives a piece of it the role {1}, which is not known; export the part alone</source>
-        <translation>{0} donne à un morceau le rôle {1}, qui est inconnu ; exportez la pièce seule</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0} gives {1}, a piece of object {2}, the role {3}, and the model has no such piece; save the project in the slicer again, or export the part alone</source>
-        <translation>{0} donne à {1}, un morceau de l&apos;objet {2}, le rôle {3}, et le modèle n&apos;a pas ce morceau ; enregistrez à nouveau le projet dans le trancheur, ou exportez la pièce seule</translation>
+        <source>{0} gives a volume the unknown role {1}; export only the part</source>
+        <translation>{0} donne à un volume le rôle inconnu {1} ; exportez seulement la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/expressions.py"/>
         <source>{0} gives {1}, which is not a number; write one that gives a number</source>
         <translation>{0} donne {1}, qui n&apos;est pas un nombre ; écrivez-en une qui donne un nombre</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
-        <source>{0} has a 0; give the pulses of a degree of each axis, negative where they count down</source>
-        <translation>{0} contient un 0 ; donnez les impulsions d&apos;un degré de chaque axe, négatives là où elles décroissent</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/rows.py"/>
@@ -14748,13 +14833,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
-        <source>{0} has a decimal comma; write numbers with a point</source>
+        <source>{0} has a decimal comma; use a decimal point</source>
         <translation>{0} a une virgule décimale ; écrivez les nombres avec un point</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} has an axis that slides and carries the part, which cannot be planned yet; use turning axes</source>
-        <translation>{0} a un axe linéaire et porte la pièce, ce qui ne peut pas encore être planifié ; utilisez des axes rotatifs</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/rows.py"/>
@@ -14768,18 +14848,28 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} has neither {1} and {2} nor R; give the middle of the arc or its radius</source>
+        <source>{0} has neither {1} and {2} nor R; give the centre of the arc or its radius</source>
         <translation>{0} n&apos;a ni {1} et {2} ni R ; donnez le centre de l&apos;arc ou son rayon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
+        <source>{0} has no calibration, only Universal Robots arms do; remove it</source>
+        <translation>{0} n&apos;a pas d&apos;étalonnage, seuls les bras de Universal Robots en ont ; retirez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} has no command before it; begin the line with G, M or T</source>
+        <translation>{0} n&apos;a pas de commande avant lui ; commencez la ligne par G, M ou T</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/sheet.py"/>
+        <source>{0} has no consistent side, like a twisted band; divide the band, or remove one of its faces</source>
+        <translation>{0} ne peuvent pas être tournées d&apos;un même côté (une bande vrillée n&apos;a pas d&apos;extérieur) ; divisez la bande, ou laissez une de ses faces de côté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
         <source>{0} has no faces that a deposit could be held against; choose another object</source>
         <translation>{0} n&apos;a pas de faces auxquelles comparer un dépôt ; choisissez un autre objet</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>{0} has no limits {1}; use {2}</source>
-        <translation>{0} n&apos;a pas de limites {1} ; utilisez {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/machine.py"/>
@@ -14793,18 +14883,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} has no number; give one</source>
+        <source>{0} has no number; add one</source>
         <translation>{0} n&apos;a pas de nombre ; donnez-en un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
+        <source>{0} has no set of limits {1}; use {2}</source>
+        <translation>{0} n&apos;a pas de limites {1} ; utilisez {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>{0} has no spherical wrist, and what its controller calls the configurations of cartesian positions is not known; use joint</source>
         <translation>{0} n&apos;a pas de poignet sphérique, et le nom que sa commande donne aux configurations des positions cartésiennes n&apos;est pas connu ; utilisez joint</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} has no word {1}; give {2}, or correct the line</source>
-        <translation>{0} n&apos;a pas de mot {1} ; donnez {2} ou corrigez la ligne</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
@@ -14820,11 +14910,6 @@
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>{0} has sliding axes; use {1}, or choose another machine</source>
         <translation>{0} a des axes de translation ; utilisez {1}, ou choisissez une autre machine</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} has the word {1} after it; give it a line of its own</source>
-        <translation>{0} est suivi du mot {1} ; donnez-lui sa propre ligne</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
@@ -14873,23 +14958,28 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0} in it has a value that is not a number ({1})</source>
-        <translation>{0} y a une valeur qui n&apos;est pas un nombre ({1})</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0} in it is in another unit than {1}, which programs read in different ways; export it in one unit</source>
+        <source>{0} in it has a unit other than {1}, which programs interpret differently; use one unit and export again</source>
         <translation>{0} y est dans une autre unité que {1}, ce que les programmes lisent différemment ; exportez dans une seule unité</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0} in it says that the slicer drills holes, which the mesh does not have; remove them, or export the drilled part as a mesh</source>
-        <translation>{0} y dit que le trancheur perce des trous que le maillage n&apos;a pas ; supprimez-les ou exportez la pièce percée en maillage</translation>
+        <source>{0} in it has a value that is not a number ({1})</source>
+        <translation>{0} y a une valeur qui n&apos;est pas un nombre ({1})</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>{0} in or about a loop that waits for an analogue input</source>
         <translation>{0} dans une boucle qui attend une entrée analogique, ou près d&apos;elle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
+        <source>{0} inside-out solids were reversed</source>
+        <translation>{0} solides étaient retournés et ont été remis à l&apos;endroit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
+        <source>{0} intersecting triangles were removed, as at {1}, leaving holes up to {2} mm across</source>
+        <translation>{0} triangles qui se croisent ont été retirés, par exemple en {1}, ce qui a laissé des trous larges de {2} mm au plus</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
@@ -14898,12 +14988,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
-        <source>{0} is a comment that does not end; close it with )</source>
-        <translation>{0} est un commentaire sans fin ; fermez-le par )</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
-        <source>{0} is a condition, a loop or a variable; write the moves out</source>
+        <source>{0} is a condition, a loop or a variable; write out the moves</source>
         <translation>{0} est une condition, une boucle ou une variable ; écrivez les déplacements</translation>
     </message>
     <message>
@@ -14928,12 +15013,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0} is a negative volume, and cannot be subtracted from the part here: the geometry kernel makes no sound solid of the two, as of a mesh that touches or crosses itself; subtract it where the part was drawn, or remove it in the slicer, and export again</source>
+        <source>{0} is a negative volume that cannot be subtracted here: the geometry kernel finds no valid result, as when a mesh touches or crosses itself; subtract it in the CAD system, or remove it in the slicer, and export again</source>
         <translation>{0} est un volume négatif et ne peut pas être soustrait de la pièce ici : le noyau géométrique n&apos;en fait pas de solide sain, comme pour un maillage qui se touche ou se croise ; soustrayez-le là où la pièce a été dessinée ou supprimez-le dans le trancheur, et exportez de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0} is a negative volume, and cannot be subtracted from the part here: {1} triangles take part, and at most {2} are cut; subtract it where the part was drawn, or remove it in the slicer, and export again</source>
+        <source>{0} is a negative volume that cannot be subtracted here: {1} triangles are involved, and the limit is {2}; subtract it in the CAD system, or remove it in the slicer, and export again</source>
         <translation>{0} est un volume négatif et ne peut pas être soustrait de la pièce ici : {1} triangles sont concernés, et au plus {2} sont coupés ; soustrayez-le là où la pièce a été dessinée ou supprimez-le dans le trancheur, et exportez de nouveau</translation>
     </message>
     <message>
@@ -14968,7 +15053,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>{0} is a surface: it has no {1} wall, and is taken as it is</source>
+        <source>{0} is a surface without an {1} wall; it is used as it is</source>
         <translation>{0} est une surface : elle n&apos;a pas de paroi {1}, et est prise telle quelle</translation>
     </message>
     <message>
@@ -14982,6 +15067,11 @@
         <translation>{0} est une paroi mince qui croît sur {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>{0} is accurate to {1} mm, as a mesh</source>
+        <translation>{0} est connu à {1} mm près, par des triangles</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>{0} is activated, and no move follows</source>
         <translation>{0} est activé et aucun déplacement ne suit</translation>
@@ -14990,6 +15080,11 @@
         <location filename="../../freecad_am/posts/refusals.py"/>
         <source>{0} is also the name of data or a signal that the program uses; call it otherwise</source>
         <translation>{0} est aussi le nom de données ou d&apos;un signal dont le programme se sert ; donnez un autre nom</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
+        <source>{0} is ambiguous: a number with an exponent, or two words; write the number without exponent, or a space before E</source>
+        <translation>{0} peut être un nombre avec exposant ou deux mots ; écrivez le nombre sans exposant ou une espace avant E</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
@@ -15048,8 +15143,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
-        <source>{0} is carried by {1}, as the robot is; let the positioner stand on the floor</source>
-        <translation>{0} est porté par {1}, comme le robot ; posez le positionneur au sol</translation>
+        <source>{0} is carried by {1}, as the robot is; attach the positioner to the floor</source>
+        <translation>{0} est porté par {1}, comme le robot ; fixez le positionneur au sol</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
@@ -15057,19 +15152,19 @@
         <translation>{0} est défini à nouveau, ou dans une partie</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} is followed by the word {1}; put it on its own line</source>
+        <translation>{0} est suivi du mot {1} ; donnez-lui sa propre ligne</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/table_part.py"/>
         <source>{0} is for G-code, which {1} is not; leave it out</source>
         <translation>{0} est pour le G-code, ce que {1} n&apos;est pas ; retirez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
-        <source>{0} is for a machine that is the URDF of the whole cell, such as machine: bay.urdf; or give a list of mechanisms</source>
-        <translation>{0} est pour une machine qui est l&apos;URDF de toute la cellule, comme machine: bay.urdf ; ou donnez une liste de mécanismes</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/inspect.py"/>
-        <source>{0} is known to {1} mm, by triangles</source>
-        <translation>{0} est connu à {1} mm près, par des triangles</translation>
+        <location filename="../../freecad_am/core/kinematics/external.py"/>
+        <source>{0} is listed twice; remove one, or give the second one its own pose</source>
+        <translation>{0} est dans la liste deux fois ; retirez-en un, ou donnez au second sa propre pose</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -15097,18 +15192,13 @@
         <translation>{0} manque ; choisissez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
-        <source>{0} is more than the rounding of a display leaves; give 0 to {1}</source>
-        <translation>{0} est plus que ce que laisse l&apos;arrondi d&apos;un affichage ; donnez de 0 à {1}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
         <source>{0} is neither a file nor a box, or both; give one of them</source>
         <translation>{0} n&apos;est ni un fichier ni une boîte, ou les deux ; donnez l&apos;un d&apos;eux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
-        <source>{0} is neither a group ({1}) nor a type of {2} ({3}); use one of them</source>
+        <source>{0} is neither a group ({1}) nor a type of {2} ({3}); choose a listed one</source>
         <translation>{0} n&apos;est ni un groupe ({1}) ni un type de {2} ({3}) ; utilisez l&apos;un d&apos;eux</translation>
     </message>
     <message>
@@ -15122,11 +15212,6 @@
         <translation>{0} n&apos;est ni true ni false ; donnez l&apos;un des deux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} is no word of an arc in {1}; give {2} and {3}</source>
-        <translation>{0} n&apos;est pas un mot d&apos;un arc en {1} ; donnez {2} et {3}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/checks/placed.py"/>
         <source>{0} is none of the parameters that it takes; give {1}</source>
         <translation>{0} n’est pas un des jeux de paramètres attendus ; donnez {1}</translation>
@@ -15138,7 +15223,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
-        <source>{0} is not `key: value`; give the file as ur_calibration wrote it</source>
+        <source>{0} is not `key: value`; use the file as ur_calibration wrote it</source>
         <translation>{0} n&apos;est pas de la forme `clé: valeur` ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
     </message>
     <message>
@@ -15168,7 +15253,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/links/shape.py"/>
-        <source>{0} is not a colour; give red, green and blue from 0 to 1</source>
+        <source>{0} is not a colour; use red, green and blue from 0 to 1</source>
         <translation>{0} n&apos;est pas une couleur ; donnez rouge, vert et bleu de 0 à 1</translation>
     </message>
     <message>
@@ -15220,6 +15305,11 @@
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>{0} is not a height; give numbers in mm</source>
         <translation>{0} n&apos;est pas une hauteur ; donnez des nombres en mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
+        <source>{0} is not a joint type; use revolute or prismatic</source>
+        <translation>{0} n&apos;est pas un type d&apos;articulation ; utilisez revolute ou prismatic</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -15277,19 +15367,19 @@
         <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 2 ou {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
-        <source>{0} is not a number; give the file as ur_calibration wrote it</source>
-        <translation>{0} n&apos;est pas un nombre ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/sections/quantity.py"/>
         <source>{0} is not a number; give {1}</source>
         <translation>{0} n&apos;est pas un nombre ; donnez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
-        <source>{0} is not a number; give {1} as a number with a point</source>
+        <source>{0} is not a number; give {1} as a number with a decimal point</source>
         <translation>{0} n&apos;est pas un nombre ; donnez {1} comme nombre à point décimal</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
+        <source>{0} is not a number; use the file as ur_calibration wrote it</source>
+        <translation>{0} n&apos;est pas un nombre ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
@@ -15372,14 +15462,14 @@
         <translation>{0} n&apos;est pas une grandeur ; donnez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>{0} is not a range; give the smaller one first, or null for endless</source>
-        <translation>{0} n&apos;est pas une plage ; donnez d&apos;abord la plus petite valeur, ou null pour un axe sans fin</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>{0} is not a range; give the smaller percentage first</source>
         <translation>{0} n&apos;est pas une plage ; donnez d&apos;abord le plus petit pourcentage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
+        <source>{0} is not a range; give the smaller value first, or null for a continuous axis</source>
+        <translation>{0} n&apos;est pas une plage ; donnez d&apos;abord la plus petite valeur, ou null pour un axe sans fin</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
@@ -15402,11 +15492,6 @@
         <translation>{0} n&apos;est pas une section ; écrivez des clés sous {1} :</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/links/shape.py"/>
-        <source>{0} is not a shape that can be drawn; use {1}</source>
-        <translation>{0} n&apos;est pas une forme qui puisse être dessinée ; utilisez {1}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/machines/denavit_hartenberg.py"/>
         <source>{0} is not a sign; use 1 or -1</source>
         <translation>{0} n&apos;est pas un signe ; utilisez 1 ou -1</translation>
@@ -15420,6 +15505,16 @@
         <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>{0} is not a speed of the module, or the speed is given otherwise than by \T or \V</source>
         <translation>{0} n&apos;est pas une vitesse du module, ou le mouvement est donné autrement que par \T ou \V</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>{0} is not a supported point format; use {1}</source>
+        <translation>{0} n&apos;est pas lu comme des points ; utilisez {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/links/shape.py"/>
+        <source>{0} is not a supported shape format; use {1}</source>
+        <translation>{0} n&apos;est pas une forme qui puisse être dessinée ; utilisez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
@@ -15443,7 +15538,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>{0} is not a torus, cylinder or cone: a wall of several faces must be of one of these; choose one face</source>
+        <source>{0} is not a torus, cylinder or cone, as a wall of several faces requires; choose one face</source>
         <translation>{0} n&apos;est ni un tore, ni un cylindre, ni un cône : une paroi de plusieurs faces doit être de l&apos;un d&apos;eux ; choisissez une seule face</translation>
     </message>
     <message>
@@ -15453,18 +15548,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
-        <source>{0} is not a type of joint; use revolute or prismatic</source>
-        <translation>{0} n&apos;est pas un type d&apos;articulation ; utilisez revolute ou prismatic</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
-        <source>{0} is not a unit of path speeds; use {1}</source>
+        <source>{0} is not a unit of path speed; use {1}</source>
         <translation>{0} n&apos;est pas une unité de vitesse ; utilisez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
-        <source>{0} is not a unit vector; give one of length 1</source>
+        <source>{0} is not a unit vector; give a vector of length 1</source>
         <translation>{0} n&apos;est pas un vecteur unitaire ; donnez-en un de longueur 1</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
+        <source>{0} is not a valid target of a warning; use {1}</source>
+        <translation>{0} n&apos;est pas un objet possible d&apos;un avertissement ; utilisez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/parts.py"/>
@@ -15518,7 +15613,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>{0} is not an object with the keys {1}; write it as one in braces</source>
+        <source>{0} is not an object with the keys {1}; write one in braces</source>
         <translation>{0} n&apos;est pas un objet avec les clés {1} ; écrivez-le comme tel entre accolades</translation>
     </message>
     <message>
@@ -15547,11 +15642,6 @@
         <translation>{0} n&apos;est pas pour les solides sur moyeu, qui croissent le long de ses normales ; utilisez local</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} is not known; built in are {1}; or give the path of a machine file or a URDF</source>
-        <translation>{0} n&apos;est pas connu ; sont intégrés {1} ; ou donnez le chemin d&apos;un fichier de machine ou d&apos;un URDF</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/sections/fields.py"/>
         <source>{0} is not known; did you mean {1}? use one of {2}</source>
         <translation>{0} n&apos;est pas connu ; vouliez-vous dire {1} ? utilisez l&apos;une des valeurs {2}</translation>
@@ -15572,11 +15662,6 @@
         <translation>{0} n&apos;est pas connu ; utilisez l&apos;un de {1}, ou none</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} is not known; {1}</source>
-        <translation>{0} n&apos;est pas connu ; {1}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>{0} is not position {1}</source>
         <translation>{0} n&apos;est pas la position {1}</translation>
@@ -15587,24 +15672,9 @@
         <translation>{0} n&apos;est pas la position {1} de {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>{0} is not read as points; use {1}</source>
-        <translation>{0} n&apos;est pas lu comme des points ; utilisez {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>{0} is not read; use {1}</source>
-        <translation>{0} n&apos;est pas lu ; utilisez {1}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
         <source>{0} is not the length of an arm; give more than 0 mm</source>
         <translation>{0} n&apos;est pas la longueur d&apos;un bras ; donnez plus de 0 mm</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>{0} is not the name of the file, {1}; rename it</source>
-        <translation>{0} n&apos;est pas le nom du fichier, {1} ; renommez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
@@ -15667,24 +15737,19 @@
         <translation>{0} n&apos;est pas compris ; donnez couche/cordon:constante:pente avec jusqu&apos;à {1} coefficients en deg et deg par tour, comme 12/0:-35:360 ; * vaut pour tout autre cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
-        <source>{0} is not understood; give letters with numbers such as X-1.5</source>
-        <translation>{0} n&apos;est pas compris ; donnez des lettres avec des nombres comme X-1.5</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>{0} is not understood; give {1}</source>
         <translation>{0} n&apos;est pas compris ; donnez {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
+        <source>{0} is not understood; use letters with numbers, such as X-1.5</source>
+        <translation>{0} n&apos;est pas compris ; donnez des lettres avec des nombres comme X-1.5</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/widgets/quantity.py"/>
         <source>{0} is not understood; {1}</source>
         <translation>{0} n&apos;est pas compris ; {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
-        <source>{0} is not what a warning applies to; use {1}</source>
-        <translation>{0} n&apos;est pas un objet possible d&apos;un avertissement ; utilisez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -15723,18 +15788,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/planes/stacking.py"/>
-        <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 of it lean over nothing by more than {5} deg, and it is {6} mm high</source>
-        <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 en surplombent le vide de plus de {5} deg, et sa hauteur est de {6} mm</translation>
+        <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 overhang by more than {5} deg, and the height is {6} mm</source>
+        <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 sont en surplomb de plus de {5} deg, et la hauteur est de {6} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/planes/stacking.py"/>
-        <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 of it lean over nothing by more than {5} deg, and it is {6} mm high; along (0, 0, 1) it would be {7} mm^2 and {8} mm</source>
-        <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 en surplombent le vide de plus de {5} deg, et sa hauteur est de {6} mm ; suivant (0, 0, 1) ce serait {7} mm^2 et {8} mm</translation>
+        <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 overhang by more than {5} deg, and the height is {6} mm; along (0, 0, 1) they would be {7} mm^2 and {8} mm</source>
+        <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 sont en surplomb de plus de {5} deg, et la hauteur est de {6} mm ; suivant (0, 0, 1) ce serait {7} mm^2 et {8} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} is the machine of the cell, which cannot carry itself; name what stands beside it</source>
-        <translation>{0} est la machine de la cellule, qui ne peut pas se porter elle-même ; nommez ce qui se trouve à côté</translation>
+        <source>{0} is the machine of the cell and cannot carry itself; name a track or positioner</source>
+        <translation>{0} est la machine de la cellule et ne peut pas se porter elle-même ; nommez un rail ou un positionneur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -15772,6 +15837,11 @@
         <translation>{0} jobs ne sont appelés par aucun autre, un seul est attendu</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} lacks the word {1}; add {2}, or correct the line</source>
+        <translation>{0} n&apos;a pas de mot {1} ; donnez {2} ou corrigez la ligne</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/solids/without_bead.py"/>
         <source>{0} layer(s) of {1} have places too narrow for a bead, and none in them: {2}; the largest place, {3} mm^2 and {4} mm wide, is at {5}; all of them are {6} mm^2; use narrower beads, lower strategy.narrowest, or make the part thicker there</source>
         <translation>{0} couche(s) de {1} ont des endroits trop étroits pour un cordon et n&apos;y ont aucun cordon : {2} ; le plus grand, {3} mm^2 et {4} mm de large, est en {5} ; tous ensemble font {6} mm^2 ; utilisez des cordons plus étroits, baissez strategy.narrowest ou épaississez la pièce à ces endroits</translation>
@@ -15783,8 +15853,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/turn.py"/>
-        <source>{0} leave more than one opening around the axis; choose one of them</source>
-        <translation>{0} laissent plus d&apos;une ouverture autour de l&apos;axe ; choisissez-en une</translation>
+        <source>{0} leave more than one opening around the axis; choose one face</source>
+        <translation>{0} laissent plus d&apos;une ouverture autour de l&apos;axe ; choisissez une face</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -15812,11 +15882,6 @@
         <translation>{0} est lié à {1}, qui manque ; remettez le fichier ou changez le lien dans FreeCAD</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
-        <source>{0} may be a number with an exponent, or two words; write the number without exponent, or a space before E</source>
-        <translation>{0} peut être un nombre avec exposant ou deux mots ; écrivez le nombre sans exposant ou une espace avant E</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>{0} may be a program of this very job; call one of another name</source>
         <translation>{0} peut être un programme de ce travail même ; appelez-en un d&apos;un autre nom</translation>
@@ -15833,7 +15898,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} mechanisms carry the robot; give one track</source>
+        <source>{0} mechanisms carry the robot; choose one track</source>
         <translation>{0} mécanismes portent le robot ; donnez un seul rail</translation>
     </message>
     <message>
@@ -15843,8 +15908,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>{0} missing triangles were put in</source>
+        <source>{0} missing triangles were added</source>
         <translation>{0} triangles manquants ont été ajoutés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/torch.py"/>
+        <source>{0} mm above its tip the torch extends {1} mm from its axis, but the nozzle cone only {2} mm, and only the cone is checked against the deposit; set a larger cell.nozzle.diameter, or a smaller cell.nozzle.length</source>
+        <translation>à {0} mm de sa pointe elle s&apos;étend à {1} mm de son axe, la buse en cône à {2} mm, et c&apos;est le cône qui est tenu à l&apos;écart du dépôt ; donnez un cell.nozzle.diameter plus grand, ou une cell.nozzle.length plus petite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/torch.py"/>
+        <source>{0} mm above its tip the torch extends {1} mm from its axis, but the nozzle cone only {2} mm, and only the cone is checked against the deposit; set cell.nozzle.half_angle of at least {3} deg, or a smaller cell.nozzle.length</source>
+        <translation>à {0} mm au-dessus de sa pointe la torche s&apos;étend à {1} mm de son axe, mais le cône de la buse à {2} mm seulement, et c&apos;est le cône qui est tenu à l&apos;écart du dépôt ; donnez un cell.nozzle.half_angle d&apos;au moins {3} deg, ou une cell.nozzle.length plus petite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/iso_height.py"/>
@@ -15858,22 +15933,22 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>
-        <source>{0} mm is not a unit; give the length of one unit of the file, as 25.4 mm</source>
+        <source>{0} mm is not a unit; give the length of one unit of the file, such as 25.4 mm</source>
         <translation>{0} mm n&apos;est pas une unité ; donnez la longueur d&apos;une unité du fichier, comme 25.4 mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/curved/field.py"/>
-        <source>{0} mm is too fine for curved layers of {1}, {2} cm3; give at least {3} mm, or layers: planes</source>
+        <source>{0} mm is too fine for curved layers of {1}, {2} cm3; use at least {3} mm, or layers: planes</source>
         <translation>{0} mm est trop fin pour des couches courbes de {1}, {2} cm3 ; donnez au moins {3} mm, ou layers: planes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/planes/field.py"/>
-        <source>{0} mm is too much for {1}, {2} mm high along strategy.direction (the highest place is at {3}): no layer is cut in its {4}; give at most {5} mm</source>
+        <source>{0} mm is too high for {1}, {2} mm high along strategy.direction (top at {3}): no layer is cut in its {4}; use at most {5} mm</source>
         <translation>{0} mm est trop pour {1}, haut de {2} mm suivant strategy.direction (le point le plus haut est en {3}) : aucune couche n&apos;est coupée ({4}) ; donnez {5} mm au plus</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/along/field.py"/>
-        <source>{0} mm is too much for {1}, {2} mm long along the guide: no layer is cut in its {3}; give at most {4} mm</source>
+        <source>{0} mm is too high for {1}, {2} mm long along the guide: no layer is cut in its {3}; use at most {4} mm</source>
         <translation>{0} mm, c&apos;est trop pour {1}, long de {2} mm le long du guide : aucune couche n&apos;est coupée en son {3} ; donnez au plus {4} mm</translation>
     </message>
     <message>
@@ -15917,16 +15992,6 @@
         <translation>{0} mm de la paroi restent en haut, moins qu&apos;une couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/torch.py"/>
-        <source>{0} mm over its tip it reaches {1} mm from its axis, the nozzle as a cone {2} mm, and it is the cone that is kept clear of the deposit; give a larger cell.nozzle.diameter, or a smaller cell.nozzle.length</source>
-        <translation>à {0} mm de sa pointe elle s&apos;étend à {1} mm de son axe, la buse en cône à {2} mm, et c&apos;est le cône qui est tenu à l&apos;écart du dépôt ; donnez un cell.nozzle.diameter plus grand, ou une cell.nozzle.length plus petite</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/torch.py"/>
-        <source>{0} mm over its tip it reaches {1} mm from its axis, the nozzle as a cone {2} mm, and it is the cone that is kept clear of the deposit; give cell.nozzle.half_angle of {3} deg at least, or a smaller cell.nozzle.length</source>
-        <translation>à {0} mm de sa pointe elle s&apos;étend à {1} mm de son axe, la buse en cône à {2} mm, et c&apos;est le cône qui est tenu à l&apos;écart du dépôt ; donnez un cell.nozzle.half_angle d&apos;au moins {3} deg, ou une cell.nozzle.length plus petite</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>{0} mm/s cannot be written in {1}; use {2} to {3} mm/s</source>
         <translation>{0} mm/s ne s&apos;écrit pas en {1} ; utilisez {2} à {3} mm/s</translation>
@@ -15958,7 +16023,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/over_and_under.py"/>
-        <source>{0} mm^2 lean out over the layer below by more than {1} deg, the largest piece at {2}; deposit what carries it first, choose another strategy.direction, or raise strategy.max_overhang</source>
+        <source>{0} mm^2 overhang the layer below by more than {1} deg, the largest piece at {2}; deposit a support first, choose another strategy.direction, or raise strategy.max_overhang</source>
         <translation>{0} mm^2 surplombent la couche du dessous de plus de {1} deg, le plus grand morceau en {2} ; déposez d&apos;abord ce qui le porte, choisissez une autre strategy.direction, ou augmentez strategy.max_overhang</translation>
     </message>
     <message>
@@ -15983,13 +16048,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
-        <source>{0} must lie within +-180; give the same angles in that range</source>
-        <translation>{0} doit être compris entre -180 et 180 ; donnez les mêmes angles dans cette plage</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} names a state that was not stored; store it first</source>
-        <translation>{0} nomme un état qui n&apos;a pas été mémorisé ; mémorisez-le d&apos;abord</translation>
+        <source>{0} must be within +-180; give equivalent angles in that range</source>
+        <translation>{0} doit être dans +-180 ; donnez des angles équivalents dans cette plage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/nested.py"/>
@@ -16012,6 +16072,16 @@
         <translation>{0} nomme les arêtes d&apos;où elle part</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0} names {1}, a volume of object {2}, with the role {3}, but the model lacks this volume; save the project in the slicer again, or export only the part</source>
+        <translation>{0} donne à {1}, un morceau de l&apos;objet {2}, le rôle {3}, et le modèle n&apos;a pas ce morceau ; enregistrez à nouveau le projet dans le trancheur, ou exportez la pièce seule</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
+        <source>{0} needs a machine that is the URDF of the whole cell, such as machine: bay.urdf; otherwise give a list of mechanisms</source>
+        <translation>{0} est pour une machine qui est l&apos;URDF de toute la cellule, comme machine: bay.urdf ; ou donnez une liste de mécanismes</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
         <source>{0} objects are called {1}; give one of them another label</source>
         <translation>{0} objets s&apos;appellent {1} ; donnez un autre nom à l&apos;un d&apos;eux</translation>
@@ -16027,34 +16097,19 @@
         <translation>{0} n&apos;y a pas de forme ; choisissez un objet avec une forme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/inspect.py"/>
-        <source>{0} of its points lie on {1}; choose the object that was measured, its unit, or pairs of points to begin with</source>
-        <translation>{0} de ses points sont sur {1} ; choisissez l&apos;objet qui a été mesuré, son unité, ou des paires de points pour commencer</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
         <source>{0} of its {1} faces have no surfaces, only triangles; export exact faces, or a mesh (STL, OBJ, 3MF)</source>
         <translation>{0} de ses {1} faces n&apos;ont pas de surfaces, seulement des triangles ; exportez des faces exactes ou un maillage (STL, OBJ, 3MF)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/scan_checks.py"/>
-        <source>{0} of its {1} points lie within {2} mm of {3}, at least {4} have to; half of them are farther off than {5} mm. It reaches over {6} mm, {7} over {8} mm: scan this part, crop the scan to it, check its unit, or raise substrate.scan_within</source>
-        <translation>{0} de ses {1} points sont à moins de {2} mm de {3}, il en faut au moins {4} ; la moitié en est plus loin que {5} mm. Elle s&apos;étend sur {6} mm, {7} sur {8} mm : numérisez cette pièce, rognez la numérisation à celle-ci, vérifiez son unité, ou augmentez substrate.scan_within</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>{0} of its {1} solids and {2} of its {3} faces cannot be read; check these where they were drawn, and export the part again</source>
+        <source>{0} of its {1} solids and {2} of its {3} faces cannot be read; check them in the CAD system, and export the part again</source>
         <translation>{0} de ses {1} solides et {2} de ses {3} faces ne peuvent pas être lus ; vérifiez-les là où ils ont été dessinés et exportez la pièce de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>{0} of the extension {1}</source>
         <translation>{0} de l&apos;extension {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/registration.py"/>
-        <source>{0} of the points cannot be left out; give 0 or more and less than 0.5</source>
-        <translation>une part de {0} des points ne peut pas être écartée ; donnez 0 ou plus et moins de 0.5</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
@@ -16123,8 +16178,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/along/field.py"/>
-        <source>{0} of {1} layers are not as high everywhere as asked for: layer {2} is {3} to {4} mm high, farthest off the {5} mm at {6}; strategy.band allows {7} %, and {8} % would be needed: raise it, or choose a guide in the middle of the part or one that bends less</source>
-        <translation>{0} couches sur {1} ne sont pas partout de la hauteur demandée : la couche {2} a {3} à {4} mm, le plus loin des {5} mm en {6} ; strategy.band permet {7} %, et il faudrait {8} % : augmentez-le, ou choisissez un guide au milieu de la pièce ou moins courbé</translation>
+        <source>{0} of {1} layers deviate from the layer height: layer {2} is {3} to {4} mm high, farthest off the {5} mm at {6}; strategy.band allows {7} %, but {8} % is needed: raise it, or choose a guide in the middle of the part or with a gentler bend</source>
+        <translation>{0} couches sur {1} ne sont pas partout de la hauteur demandée : la couche {2} a {3} à {4} mm, le plus loin des {5} mm en {6} ; strategy.band permet {7} %, et il faudrait {8} % : augmentez-le, ou choisissez un guide au milieu de la pièce ou moins courbé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
@@ -16183,17 +16238,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>
-        <source>{0} pairs of points; give three or more</source>
+        <source>{0} pairs of points are too few; give at least three</source>
         <translation>{0} paires de points ; donnez-en trois ou plus</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>{0} pairs of triangles cross, as at {1}, and what any of them enclose counts as inside</source>
-        <translation>{0} paires de triangles se croisent, par exemple en {1}, et ce que l&apos;un d&apos;eux enferme compte comme intérieur</translation>
+        <source>{0} pairs of triangles intersect, as at {1}; the union of the enclosed volumes counts as inside</source>
+        <translation>{0} paires de triangles se coupent, comme en {1} ; la réunion des volumes enclos compte comme l&apos;intérieur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
-        <source>{0} pieces that enclose nothing were dropped</source>
+        <source>{0} pieces that enclose no volume were removed</source>
         <translation>{0} morceaux qui n&apos;enferment rien ont été écartés</translation>
     </message>
     <message>
@@ -16203,8 +16258,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
-        <source>{0} point(s) do not determine where a part stands; touch {1} or more, far from one another and not on a line</source>
-        <translation>{0} point(s) ne disent pas où se trouve une pièce ; palpez-en {1} ou plus, éloignés les uns des autres et pas sur une droite</translation>
+        <source>{0} point(s) cannot locate a part; touch at least {1}, spread out and not collinear</source>
+        <translation>{0} point(s) ne peuvent pas localiser une pièce ; touchez-en au moins {1}, écartés et non alignés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/promise.py"/>
@@ -16212,38 +16267,28 @@
         <translation>{0} points</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>{0} points beyond the edges of {1} are ignored</source>
+        <translation>{0} points au-delà des bords de {1} sont ignorés</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>
-        <source>{0} points do not hold a part; measure {1} or more all over</source>
+        <source>{0} points cannot locate a part; measure at least {1}, spread over it</source>
         <translation>{0} points ne tiennent pas une pièce ; mesurez-en {1} ou plus partout</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/roundness.py"/>
-        <source>{0} points do not make a circle; measure {1} or more</source>
+        <source>{0} points do not define a circle; measure at least {1}</source>
         <translation>{0} points ne font pas un cercle ; mesurez-en {1} ou plus</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/roundness.py"/>
-        <source>{0} points do not make a sphere; measure {1} or more</source>
+        <source>{0} points do not define a sphere; measure at least {1}</source>
         <translation>{0} points ne font pas une sphère ; mesurez-en {1} ou plus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/inspect.py"/>
-        <source>{0} points lie past the edges of {1} and count nowhere</source>
-        <translation>{0} points sont au-delà des bords de {1} et ne comptent nulle part</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/figures.py"/>
-        <source>{0} points lie within {1} mm of the height {2} mm; measure more there, choose other heights, or a wider band</source>
-        <translation>{0} points sont à {1} mm au plus de la hauteur {2} mm ; mesurez-y davantage, choisissez d&apos;autres hauteurs, ou une bande plus large</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/inspect.py"/>
-        <source>{0} points were left out of the fit, the farthest off; the figures have them</source>
-        <translation>{0} points ont été laissés hors de l&apos;ajustement, les plus écartés ; les chiffres les contiennent</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>{0} points without finite coordinates are left out</source>
+        <source>{0} points without finite coordinates are ignored</source>
         <translation>{0} points sans coordonnées finies sont laissés de côté</translation>
     </message>
     <message>
@@ -16267,6 +16312,16 @@
         <translation>{0} descend à {1} mm au-dessous du plateau, en {2}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} restores a state that was never stored; store it first</source>
+        <translation>{0} nomme un état qui n&apos;a pas été mémorisé ; mémorisez-le d&apos;abord</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} rotates an axis, but strategy.rotary is {1}; set how A, B and C turn the tool ({2}), or remove these words</source>
+        <translation>{0} tourne un axe et strategy.rotary vaut {1} ; indiquez-y comment A, B et C tournent l&apos;outil ({2}), ou retirez-les</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>{0} row {1}</source>
         <translation>{0} ligne {1}</translation>
@@ -16277,18 +16332,13 @@
         <translation>{0} ligne {1} (ligne {2} du fichier)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>
-        <source>{0} says that its unit is {1}, and is read in mm; give part.scale: {2} mm, if that is true</source>
-        <translation>{0} dit que son unité est {1}, et est lu en mm ; donnez part.scale : {2} mm, si c&apos;est vrai</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/shapes/places.py"/>
         <source>{0} scales or mirrors it; choose {1} itself</source>
         <translation>{0} le met à l&apos;échelle ou le retourne ; choisissez {1} lui-même</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} sets offsets, which are not known; leave it out</source>
+        <source>{0} sets unknown offsets; remove it</source>
         <translation>{0} fixe des décalages, qui sont inconnus ; retirez-le</translation>
     </message>
     <message>
@@ -16312,19 +16362,9 @@
         <translation>{0} solides sur {1} ({2})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
-        <source>{0} solids were inside out and were turned</source>
-        <translation>{0} solides étaient retournés et ont été remis à l&apos;endroit</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>{0} stands among the lines of another instruction</source>
         <translation>{0} se trouve parmi les lignes d&apos;une autre instruction</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} stands before a command; write the command first</source>
-        <translation>{0} est avant une commande ; écrivez d&apos;abord la commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
@@ -16347,44 +16387,24 @@
         <translation>{0} y est deux fois</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} stands there twice; leave one of them out, or give a second one of the same kind a pose of its own</source>
-        <translation>{0} s&apos;y trouve deux fois ; retirez-en un, ou donnez au second du même type sa propre pose</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
-        <source>{0} stands twice in {1}; leave one out</source>
-        <translation>{0} est deux fois dans {1} ; retirez-en un</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} stands without a command before it; begin the line with G, M or T</source>
-        <translation>{0} n&apos;a pas de commande avant lui ; commencez la ligne par G, M ou T</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
-        <source>{0} starts in {1} curves, about {2}: layers grow from all of them; choose the edges to start from if only some are meant</source>
-        <translation>{0} commence en {1} courbes, vers {2} : les couches croissent à partir de toutes ; choisissez les arêtes de départ si seules certaines sont voulues</translation>
+        <source>{0} starts from {1} curves, about {2}; choose start edges to use only some</source>
+        <translation>{0} part de {1} courbes, vers {2} ; choisissez des arêtes de départ pour n&apos;en utiliser que quelques-unes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>
-        <source>{0} states its own unit; leave out the scale, which is for STL and OBJ</source>
+        <source>{0} states its own unit; remove the scale, which is for STL and OBJ</source>
         <translation>{0} dit lui-même son unité ; retirez l&apos;échelle, elle est pour STL et OBJ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>
+        <source>{0} states the unit {1}, but is read in mm; set part.scale to {2} mm if the unit is right</source>
+        <translation>{0} dit que son unité est {1}, et est lu en mm ; donnez part.scale : {2} mm, si c&apos;est vrai</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>{0} switches a second output, after {1}</source>
         <translation>{0} commute une deuxième sortie, après {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
-        <source>{0} takes all of the file; leave out base and tip of the machine, or name the mechanisms one by one</source>
-        <translation>{0} prend tout le fichier ; retirez base et tip de la machine, ou nommez les mécanismes un par un</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>{0} takes no calibration; those of Universal Robots do: leave it out</source>
-        <translation>{0} n&apos;admet pas d&apos;étalonnage ; seuls les robots d&apos;Universal Robots en ont un : omettez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/moves.py"/>
@@ -16402,24 +16422,9 @@
         <translation>{0} à {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
-        <source>{0} triangles that cross were cut out, as at {1}, which left holes of up to {2} mm across</source>
-        <translation>{0} triangles qui se croisent ont été retirés, par exemple en {1}, ce qui a laissé des trous larges de {2} mm au plus</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>{0} triangles that were there twice were dropped</source>
-        <translation>{0} triangles présents en double ont été écartés</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
-        <source>{0} triangles were turned to agree with their neighbours</source>
+        <source>{0} triangles were flipped to match their neighbours</source>
         <translation>{0} triangles ont été retournés pour s&apos;accorder avec leurs voisins</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>{0} triangles without an area were dropped</source>
-        <translation>{0} triangles sans surface ont été écartés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
@@ -16427,19 +16432,14 @@
         <translation>{0} tourne autour d&apos;un axe, et sa paroi est un cordon de {1} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} turns an axis, and strategy.rotary is {1}; name there how A, B and C turn the tool ({2}), or leave them out</source>
-        <translation>{0} tourne un axe et strategy.rotary vaut {1} ; indiquez-y comment A, B et C tournent l&apos;outil ({2}), ou retirez-les</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/revolution/turn.py"/>
-        <source>{0} turns {1} and {2} {3}; choose faces that turn alike</source>
-        <translation>{0} tourne {1} et {2} {3} ; choisissez des faces qui tournent pareillement</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0} unpacks to more than {1} MB; export it with a coarser mesh</source>
+        <source>{0} unpacks to more than {1} MB; export a coarser mesh</source>
         <translation>{0} occupe plus de {1} Mo une fois décomprimé ; exportez-le avec un maillage plus grossier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
+        <source>{0} uses the whole file; remove base and tip of the machine, or list the mechanisms</source>
+        <translation>{0} prend tout le fichier ; retirez base et tip de la machine, ou nommez les mécanismes un par un</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/current.py"/>
@@ -16627,6 +16627,11 @@
         <translation>{0} : une paroi d’un seul cordon, de {1} mm de large, est prévue</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
+        <source>{0}: all {1} {2} are mapped to that of the cell</source>
+        <translation>{0} : {1} {2} sont pris pour celui de la cellule</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/current.py"/>
         <source>{0}: an input changed since it was computed</source>
         <translation>{0} : une entrée a changé depuis le calcul</translation>
@@ -16653,18 +16658,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
-        <source>{0}: external axes need the tool on the robot; use setup: tool-on-robot, or leave external out</source>
+        <source>{0}: external axes need the tool on the robot; use setup: tool-on-robot, or remove external</source>
         <translation>{0} : des axes à côté du robot demandent l&apos;outil sur le robot ; utilisez setup: tool-on-robot, ou omettez external</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
-        <source>{0}: fields that the published schema does not have are not read: {1}</source>
+        <source>{0}: fields outside the published schema are ignored: {1}</source>
         <translation>{0} : les champs absents du schéma publié ne sont pas lus : {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0}: files in it that are not read, as nothing that is built uses them: {1}</source>
-        <translation>{0} : fichiers contenus qui ne sont pas lus, car rien de ce qui est construit ne les utilise : {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/api.py"/>
@@ -16672,8 +16672,28 @@
         <translation>{0} : donnez source, et au besoin {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0}: ignored files that no built object uses: {1}</source>
+        <translation>{0} : fichiers contenus qui ne sont pas lus, car rien de ce qui est construit ne les utilise : {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0}: ignored, as no object uses it for its shape: data of the extensions: {1}</source>
+        <translation>{0} : non lu, car aucun objet ne l&apos;utilise pour sa forme : ce qu&apos;ajoutent ces extensions : {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0}: ignored, as they are not part of the shape: {1}</source>
+        <translation>{0} : omis, car ne faisant pas partie de la forme : {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
+        <source>{0}: ignored, as they bound no shape: {1}</source>
+        <translation>{0} : omis, car ne bornant aucune forme : {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>{0}: it marks items as invisible; they are read as the others</source>
+        <source>{0}: items marked as invisible are read like the others</source>
         <translation>{0} : il marque des éléments comme invisibles ; ils sont lus comme les autres</translation>
     </message>
     <message>
@@ -16683,33 +16703,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0}: its objects stand on {1} plates, and all are deposited, as far apart as the plates; to deposit one plate, export it alone</source>
+        <source>{0}: its objects are on {1} plates, and all are deposited, with the distance between plates; to deposit one plate, export only that plate</source>
         <translation>{0} : ses objets se trouvent sur {1} plateaux, et tous sont déposés, aussi loin les uns des autres que les plateaux ; pour déposer un plateau, exportez-le seul</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/whole_mesh.py"/>
-        <source>{0}: its triangles enclose {1} cm3 and its faces {2} cm3; check and export the part again, or deposit it from a mesh</source>
+        <source>{0}: its triangles enclose {1} cm3 but its faces {2} cm3; check the part and export it again, or deposit it from a mesh</source>
         <translation>{0} : ses triangles enferment {1} cm3 et ses faces {2} cm3 ; contrôlez la pièce et exportez-la de nouveau, ou déposez-la à partir d&apos;un maillage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>{0}: layer {1} lies on what was scanned, {2} to {3} mm from the plan, now within {4} mm; {5} layers lead back to the plan. {6} points were used, {7} that face another way left out; along the beads it rises by up to {8} deg against the plan{9}</source>
-        <translation>{0} : la couche {1} repose sur ce qui a été numérisé, de {2} à {3} mm du plan, maintenant à moins de {4} mm ; {5} couches ramènent au plan. {6} points ont été regardés, {7} tournés ailleurs laissés de côté ; le long des cordons elle monte de {8} deg au plus par rapport au plan{9}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0}: left out, as they are not part of the shape: {1}</source>
-        <translation>{0} : omis, car ne faisant pas partie de la forme : {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
-        <source>{0}: left out, as they bound no shape: {1}</source>
-        <translation>{0} : omis, car ne bornant aucune forme : {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0}: not read, as no object uses it for its shape: what these extensions add: {1}</source>
-        <translation>{0} : non lu, car aucun objet ne l&apos;utilise pour sa forme : ce qu&apos;ajoutent ces extensions : {1}</translation>
+        <source>{0}: layer {1} starts on the scan, which deviates {2} to {3} mm from the plan, and follows it within {4} mm; {5} layers blend back to the plan. {6} points were used, {7} with opposite normals ignored; beads rise by up to {8} deg against the plan{9}</source>
+        <translation>{0} : la couche {1} part de la numérisation, qui s&apos;écarte de {2} à {3} mm du plan, et la suit à {4} mm près ; {5} couches ramènent au plan. {6} points ont servi, {7} de normale opposée sont ignorés ; les cordons montent jusqu&apos;à {8} deg par rapport au plan{9}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
@@ -16723,12 +16728,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/scan.py"/>
-        <source>{0}: only a scan in the part&apos;s own coordinates shows how far a part has grown; give none</source>
+        <source>{0}: only a scan in the coordinates of the part shows how far it has grown; remove it</source>
         <translation>{0} : seule une numérisation dans les coordonnées de la pièce dit jusqu&apos;où une pièce a grandi ; donnez none</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0}: settings of the slicer that are not applied, so that the solids are deposited as their meshes are: {1}{2}</source>
+        <source>{0}: slicer settings that change the shape are not applied; the meshes are deposited as they are: {1}{2}</source>
         <translation>{0} : réglages du trancheur qui ne sont pas appliqués, de sorte que les solides sont déposés comme leurs maillages : {1}{2}</translation>
     </message>
     <message>
@@ -16743,23 +16748,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
-        <source>{0}: the types {1} are not known and are deposited as the part; name roles in strategy.roles to leave them out</source>
+        <source>{0}: the unknown types {1} are deposited as the part; list roles in strategy.roles to exclude them</source>
         <translation>{0} : les types {1} sont inconnus et déposés comme la pièce ; nommez des rôles dans strategy.roles pour les omettre</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
+        <source>{0}: the wall is smoothed across facets, by up to {1} mm, at {2}</source>
+        <translation>{0} : là où des facettes se rencontrent sous un angle la paroi est lissée, jusqu&apos;à {1} mm de celles-ci, en {2}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0}: tools {1} deposit, all of which are taken for the one of the cell</source>
+        <source>{0}: tools {1} all deposit, and are mapped to the tool of the cell</source>
         <translation>{0} : les outils {1} déposent, tous pris pour celui de la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
-        <source>{0}: values of external axes are not read; the cell&apos;s own are planned anew</source>
+        <source>{0}: values of external axes are ignored; the cell plans its own</source>
         <translation>{0} : les valeurs des axes externes ne sont pas lues ; celles de la cellule sont replanifiées</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
-        <source>{0}: where facets meet at an angle the wall runs smoothly, up to {1} mm off them, at {2}</source>
-        <translation>{0} : là où des facettes se rencontrent sous un angle la paroi est lissée, jusqu&apos;à {1} mm de celles-ci, en {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/issues.py"/>
@@ -16782,8 +16787,13 @@
         <translation>{0} : {1} arêtes, la première en {2} ; {3}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>{0}: {1} entities marked as invisible are ignored</source>
+        <translation>{0} : {1} de ses entités sont marquées invisibles et omises</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/hub.py"/>
-        <source>{0}: {1} face(s) and {2} edge(s) belong to none of its solids and are left out</source>
+        <source>{0}: {1} face(s) and {2} edge(s) belong to no solid and are ignored</source>
         <translation>{0} : {1} face(s) et {2} arête(s) n&apos;appartiennent à aucun de ses solides et sont omises</translation>
     </message>
     <message>
@@ -16792,14 +16802,19 @@
         <translation>{0} : {1} ne donne pas de nombre ; {2}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
+        <source>{0}: {1} ignored by strategy.roles = {2}; add roles to deposit more</source>
+        <translation>{0} : {1} omis, car strategy.roles vaut {2} ; nommez d&apos;autres rôles pour déposer davantage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0}: {1} ignored: machine codes and macros, assumed to cause no motion and no deposit</source>
+        <translation>{0} : {1} non lus : codes et macros de la machine, considérés comme ne déplaçant et ne déposant rien</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
         <source>{0}: {1} is not a pose; give six numbers x y z RX RY RZ</source>
         <translation>{0} : {1} n&apos;est pas une pose ; donnez six nombres x y z RX RY RZ</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
-        <source>{0}: {1} left out, as strategy.roles is {2}; name other roles to deposit more</source>
-        <translation>{0} : {1} omis, car strategy.roles vaut {2} ; nommez d&apos;autres rôles pour déposer davantage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
@@ -16817,29 +16832,14 @@
         <translation>{0} : écart de {1} mm ; nommez les faces de la paroi si elle n&apos;en fait pas partie</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0}: {1} not read: codes and macros of the machine, taken as if they moved nothing and deposited nothing</source>
-        <translation>{0} : {1} non lus : codes et macros de la machine, considérés comme ne déplaçant et ne déposant rien</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>{0}: {1} of its entities are marked as invisible, and are left out</source>
-        <translation>{0} : {1} de ses entités sont marquées invisibles et omises</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>{0}: {1} of its {2} faces are not in any shape that was read; check the part (Part, Check geometry)</source>
+        <source>{0}: {1} of its {2} faces belong to no shape; check the part (Part, Check geometry)</source>
         <translation>{0} : {1} de ses {2} faces ne sont dans aucune forme lue ; vérifiez la pièce (Part, Vérifier la géométrie)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>{0}: {1} of its {2} solids are read as faces that enclose nothing; check the part (Part, Check geometry)</source>
+        <source>{0}: {1} of its {2} solids are read as faces that enclose no volume; check the part (Part, Check geometry)</source>
         <translation>{0} : {1} de ses {2} solides sont lus comme des faces qui n&apos;enferment rien ; vérifiez la pièce (Part, Vérifier la géométrie)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
-        <source>{0}: {1} {2} are taken for the one of the cell</source>
-        <translation>{0} : {1} {2} sont pris pour celui de la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -16882,6 +16882,11 @@
         <translation>{0} ; mesurez au moins deux vitesses et deux rayons</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/hub.py"/>
+        <source>{0}; openings up to strategy.mend = {1} mm are closed automatically, but the widest is {2} mm across</source>
+        <translation>{0} ; les ouvertures jusqu&apos;à strategy.mend = {1} mm sont fermées automatiquement, mais la plus large mesure {2} mm</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
         <source>{0}; set program.motion to cartesian with the tool on the robot (fanuc, yaskawa; abb with program.schedule.by: arc too), or process.weave, also in process.classes, to 0</source>
         <translation>{0} ; mettez program.motion à cartesian avec l&apos;outil sur le robot (fanuc, yaskawa ; abb aussi avec program.schedule.by: arc), ou process.weave, aussi dans process.classes, à 0</translation>
@@ -16890,11 +16895,6 @@
         <location filename="../../freecad_am/gui/nodes/machine_links.py"/>
         <source>{0}; the link has its plain solid for now</source>
         <translation>{0} ; le corps garde pour l&apos;instant son solide simple</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/hub.py"/>
-        <source>{0}; up to strategy.mend, {1} mm, what is open is closed, and the widest place is {2} mm across</source>
-        <translation>{0} ; jusqu&apos;à strategy.mend, {1} mm, ce qui est ouvert est fermé, et l&apos;endroit le plus large a {2} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -16933,8 +16933,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>{0}={1} of &lt;{2}&gt; is not {3} numbers; write so many, with blanks between</source>
-        <translation>{0}={1} de &lt;{2}&gt; n&apos;est pas {3} nombres ; écrivez-en autant, séparés par des espaces</translation>
+        <source>{0}={1} of &lt;{2}&gt; needs {3} numbers; separate them with spaces</source>
+        <translation>{0}={1} de &lt;{2}&gt; demande {3} nombres ; séparez-les par des espaces</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>

@@ -43,7 +43,7 @@ CASES = {  # triangles, keys of the strategy, exit status, and what is told
         np.where(np.arange(36).reshape(12, 3, 1) == 4, np.nan, box((40, 30, 20))),
         "",
         2,
-        ("BAD_FILE", "a corner of a triangle is not a number"),
+        ("BAD_FILE", "a vertex of a triangle is not a number"),
     ),
     "crossing": (
         np.vstack([box((40, 30, 20)), box((40, 30, 20), (7, 11, 5))]),

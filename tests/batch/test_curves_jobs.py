@@ -96,7 +96,11 @@ def test_forms_of_a_table(planned, text):
         ("0,0,0\n", "line 1", "one point"),
         ("0,0,0,1\n1,0,0,1\n2,0,0,2\n", "line 3", "one point"),
         ("0,0,0\n1,0,zero\n", "line 2", "'zero' is not a number"),
-        ("0,0,0,1\n1,0,0,1\n0,1,0,2\n1,1,0,2\n5,0,0,1\n6,0,0,1\n", "line 5", "begins again"),
+        (
+            "0,0,0,1\n1,0,0,1\n0,1,0,2\n1,1,0,2\n5,0,0,1\n6,0,0,1\n",
+            "line 5",
+            "starts a second time",
+        ),
         ("", "beads.csv", "no points"),
         ("x,y\n0,0\n", "line 1", "columns"),
         ("x,y,w\n0,0,0\n1,0,0\n", "line 1", "columns"),
@@ -233,7 +237,10 @@ def test_a_program_of_a_slicer_is_laid_in_its_layers(planned):
     np.testing.assert_allclose(
         column(rows, "bx", "by", "bz"), np.tile([0, 0, 1], (len(rows), 1)), atol=1e-12
     )
-    for part, words in (("G20\n", "no move of it extrudes"), ("G0 X1\n", "no move of it extrudes")):
+    for part, words in (
+        ("G20\n", "none of its moves extrudes"),
+        ("G0 X1\n", "none of its moves extrudes"),
+    ):
         done, _, _ = planned("slicer.gcode", part)
         assert done.status == 2 and "error[BAD_GCODE]" in done.err and words in done.err, done.err
 

@@ -223,7 +223,7 @@ def test_a_part_too_heavy_for_its_table_gets_no_program(workshop, written):
         (
             lambda job: job["cell"]["external"].append(job["cell"]["external"][0]),
             "BAD_VALUE",
-            "stands there twice",
+            "is listed twice",
         ),
         (
             lambda job: job["cell"]["external"][0].update(carries="robot"),

@@ -110,8 +110,8 @@ POINTS = "inspection/hemisphere-synthetic.csv"
         (["hemisphere.yaml", "--measured", "nowhere.csv"], "cannot be read"),
         (["hemisphere.yaml", "--measured", POINTS, "--set", "tolerance"], "not a setting"),
         (["hemisphere.yaml", "--measured", POINTS, "--set", "colour=3"], "colour is not known"),
-        (["hemisphere.yaml", "--measured", POINTS, "--object", "X"], "for FCStd documents"),
-        (["nowhere.FCStd", "--measured", POINTS], "no such file"),
+        (["hemisphere.yaml", "--measured", POINTS, "--object", "X"], "from FCStd documents"),
+        (["nowhere.FCStd", "--measured", POINTS], "the file does not exist"),
     ],
 )
 def test_bad_input_is_told_and_nothing_is_written(

@@ -235,7 +235,7 @@ def test_a_cell_is_a_file_of_its_own(read, tmp_path):
             "mine.yaml: cell.part",
             "there is no key 'part'",
         ),
-        (None, "NO_FILE", "mine.yaml", "there is no such file"),
+        (None, "NO_FILE", "mine.yaml", "the file does not exist"),
     ],
 )
 def test_a_broken_cell_file_is_told_by_its_own_place(read, tmp_path, text, code, where, says):
@@ -427,7 +427,7 @@ def test_files_that_are_no_jobs(read, text, code, says):
 
 
 def test_files_that_cannot_be_read(tmp_path):
-    with pytest.raises(InputError, match="no such file"):
+    with pytest.raises(InputError, match="the file does not exist"):
         jobs.read_job(str(tmp_path / "none.yaml"))
     with pytest.raises(InputError) as caught:
         jobs.read_job(str(tmp_path))

@@ -71,13 +71,13 @@ def test_the_list_is_of_those_asked_for(workshop, words, listed):
 @pytest.mark.parametrize(
     "words,told",
     [
-        (["--maker", "kukka"], "no machine known is of 'kukka'; use one of ABB, FANUC"),
+        (["--maker", "kukka"], "no known machine is from 'kukka'; use one of ABB, FANUC"),
         (["--payload", "heavy"], "'heavy' is not a mass"),
         (["--reach", "3 s"], "--reach"),
         (["--post", "krl"], "use one of fanuc"),
         (["kuka-kr16-2", "--urdf", "--reach", "1 m"], "leave 'kuka-kr16-2' out"),
-        (["kuka-kr16-2"], "in what form is 'kuka-kr16-2' to be written"),
-        (["--urdf"], "--urdf of what machine"),
+        (["kuka-kr16-2"], "the output format for 'kuka-kr16-2' is missing"),
+        (["--urdf"], "--urdf needs the name of a machine"),
         (["kuka-kr16", "--dh"], "did you mean kuka-kr16-2"),
         (["kuka-kr16-2", "--dh", "--urdf"], "not allowed with"),
     ],

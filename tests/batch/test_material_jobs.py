@@ -117,8 +117,8 @@ def test_a_material_may_be_told_in_the_job(folder):
 @pytest.mark.parametrize(
     ("change", "code", "where", "told"),
     [
-        (("density: 7.8\n", ""), "BAD_VALUE", "density", "there is none"),
-        (("source: lab book 7\n", ""), "BAD_VALUE", "source", "there is none"),
+        (("density: 7.8\n", ""), "BAD_VALUE", "density", "the material lacks"),
+        (("source: lab book 7\n", ""), "BAD_VALUE", "source", "the material lacks"),
         (("density: 7.8", "density: -7.8"), "BAD_VALUE", "density", "more than 0 (line 3)"),
         (("density: 7.8", "density: 7.8 mm"), "BAD_UNIT", "density", "line 3"),
         (("density", "densty"), "UNKNOWN_KEY", "densty", "did you mean density?"),
@@ -143,7 +143,7 @@ def test_a_material_may_be_told_in_the_job(folder):
             "beads",
             "5 to 15 mm/s",
         ),
-        (("480 mm/min", "480 mm/s"), "BAD_VALUE", "travel_speed", "outside of speed_range"),
+        (("480 mm/min", "480 mm/s"), "BAD_VALUE", "travel_speed", "outside speed_range"),
         (("contour: 3", "contour: 0"), "BAD_VALUE", "schedules.contour", "from 1 to"),
         (("contour: 3", "rim: 3"), "UNKNOWN_KEY", "schedules.rim", "contour"),
         (("own.csv", "other.csv"), "NO_FILE", "other.csv", "calibration table"),
@@ -205,7 +205,7 @@ def test_layers_and_spacing_that_the_model_makes(folder):
             "process: {bead_model: csw, bead_width: 9.5 mm}\n",
             HIGH.replace("HIGH", "0.5 mm"),
             "strategy.bead_spacing",
-            "make layers higher",
+            "use higher layers",
         ),
         (
             "process: {bead_model: csw}\n",

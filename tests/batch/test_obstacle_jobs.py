@@ -96,9 +96,7 @@ def test_links_of_a_written_path_keep_clear_of_a_post_that_is_a_file(job):
     assert done.status == 3 and not (folder / "program").exists(), done.err
     assert nearest(folder, POST_AT, POST) == 0.0
     assert "inside post" in notes(folder)["ARM_COLLISION"]
-    assert notes(folder)["REMEDY"].startswith(
-        "with `cell.arm_clearance: 5 mm` this job is feasible"
-    )
+    assert notes(folder)["REMEDY"].startswith("the job is feasible with `cell.arm_clearance: 5 mm`")
     assert notes(folder)["OBSTACLES_NOT_KEPT"].startswith("post: ")
     done, folder = job(arm_clearance="10 mm")
     assert done.status == 0, done.err

@@ -72,9 +72,7 @@ def test_a_remedy_that_was_told_makes_the_job_feasible(name, workshop):
     done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 3, done.err
     first = done.err.splitlines()[0]
-    assert first.startswith("note[REMEDY] job: with `") and first.endswith(
-        "this job is feasible; tried, not applied"
-    )
+    assert first.startswith("note[REMEDY] job: with `") and first.endswith("; tested, not applied")
     told = re.findall(r"`(\w+)\.(\w+): ([^`]+)`", first)
     assert told and EXPECTED[name] in first
     report = json.loads(workshop.files()["report.json"])
@@ -190,7 +188,7 @@ def test_one_direction_for_a_wall_that_leans_is_told_and_chosen(
     done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 3 and f"error[{code}]" in done.err, done.err
     assert done.err.splitlines()[0] == (
-        "note[REMEDY] job: with `build_direction.mode: fixed` this job is feasible; tried, not applied"
+        "note[REMEDY] job: the job is feasible with `build_direction.mode: fixed`; tested, not applied"
     ), done.err
     workshop.write_job(written_for(kind, more + "build_direction: {mode: fixed}\n"))
     again = workshop.run("plan", "cup.yaml", "--no-page")

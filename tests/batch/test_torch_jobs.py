@@ -105,7 +105,7 @@ def test_a_document_notices_and_a_saved_cell_keeps_it(shop, doc):
     torch(((-6.0, -6.0, -300.0), (12.0, 12.0, 100.0))).exportStep(str(shop.folder / "torch.step"))
     cell.touch()
     doc.recompute()
-    assert cell.Status == "failed" and "200 mm from its origin" in cell.Message
+    assert cell.Status == "failed" and "200 mm away from its origin" in cell.Message
     torch(NECK).exportStep(str(shop.folder / "torch.step"))
     cell.touch()
     doc.recompute()

@@ -239,9 +239,7 @@ def test_what_stands_on_the_platform_needs_no_substrate_either():
     x, y = first.points[:, :2].T
     assert np.hypot(x / 30.0, y / 18.0) == pytest.approx(1.0, abs=1e-6) and abs(np.ptp(x)) > 59.0
     assert (
-        note.code == "FIRST_LAYER"
-        and "Vase" in note.message
-        and "stands on the platform" in note.message
+        note.code == "FIRST_LAYER" and "Vase" in note.message and "on the platform" in note.message
     )
     assert [rim.points[0, 2] for rim in wall.rims if rim.end] == pytest.approx([60.0])
     for names, length in (((), 60.0), (("Face1",), 30.0)):
@@ -372,14 +370,14 @@ def blade():
             "LAYER_HEIGHT",
             ["2 mm"],
         ),
-        (tight_pipe, slab, 2.0, "SELF_INTERSECTION", ["cuts itself"]),
+        (tight_pipe, slab, 2.0, "SELF_INTERSECTION", ["intersects itself"]),
         # noses of a blade turn over sharply and do not fold
         pytest.param(
             blade,
             slab,
             2.0,
             "LAYER_HEIGHT",
-            ["smallest radius of curvature, 0.0"],
+            ["smallest radius of curvature of the wall, 0.0"],
             marks=pytest.mark.long,
         ),
     ],

@@ -145,6 +145,6 @@ def test_what_of_it_is_wider_is_told(topless):
         hub.bodies_of(topless, "knob", 0.1, 4.9, True)
     assert caught.value.code == "OPEN_MESH" and caught.value.where == "knob"
     assert (
-        "up to strategy.mend, 4.9 mm, what is open is closed, and the widest place is 5 mm across"
+        "openings up to strategy.mend = 4.9 mm are closed automatically, but the widest is 5 mm across"
         in caught.value.message
     )

@@ -224,7 +224,7 @@ def test_a_unit_that_a_file_states_is_told_unless_it_is_given(tmp_path, name, te
     (tmp_path / name).write_text(text.format(body))
     issues = mesh_content(tmp_path / name).issues
     assert [(one.level, one.code) for one in issues] == [("warning", "FILE_CONTENT")] * bool(scale)
-    assert not scale or f"part.scale: {scale} mm" in issues[0].message
+    assert not scale or f"part.scale to {scale} mm" in issues[0].message
     assert not mesh_content(tmp_path / name, float(scale or 2.0)).issues
     head = b"UNITS=inch".ljust(80, b"\0")
     (tmp_path / "part.stl").write_bytes(head + stl_binary()[80:])

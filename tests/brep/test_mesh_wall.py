@@ -174,8 +174,8 @@ def test_facets_that_cross_in_one_place_are_cut_out_and_what_cuts_itself_farther
     made = wall(crossed(10), faces, mend=8.0)
     told = " ".join(issue.message for issue in made.issues if issue.code == "MENDED")
     assert (
-        "8 triangles that cross were cut out, as at (" in told
-        and "which left holes of up to 7.4 mm across" in told
+        "8 intersecting triangles were removed, as at (" in told
+        and "leaving holes up to 7.4 mm across" in told
     )
     found = layers(made)
     assert [len(layer.beads) for layer in found] == [1] * 11
@@ -186,7 +186,7 @@ def test_facets_that_cross_in_one_place_are_cut_out_and_what_cuts_itself_farther
             wall(bad, faces, mend=mend)
         assert (
             caught.value.code == "SELF_INTERSECTION"
-            and "6 pairs of its triangles cross" in caught.value.message
+            and "6 pairs of triangles cross" in caught.value.message
         )
 
 

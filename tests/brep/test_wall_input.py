@@ -203,7 +203,7 @@ def test_unsound_meshes_are_refused_with_a_place():
             "4 edges, 28.28 mm across, at (0, 0, 10)",
         ),
         (points, corners[:0], "NO_SOLID", "no triangles"),
-        (np.where(points > 0.0, np.nan, points), corners, "BAD_FILE", "not numbers"),
+        (np.where(points > 0.0, np.nan, points), corners, "BAD_FILE", "invalid coordinates"),
     ]
     for some, triangles, code, words in cases:
         with pytest.raises(InputError) as caught:
@@ -226,13 +226,13 @@ def test_meshes_that_can_be_mended_are():
             "(10, 10, 0)",
         ),
         (points, corners[1:], 8000.0, "MESH_REPAIRED", "1 missing triangles"),
-        (points, corners[:, ::-1], 8000.0, "MESH_REPAIRED", "inside out"),
+        (points, corners[:, ::-1], 8000.0, "MESH_REPAIRED", "inside-out"),
         (
             points,
             np.vstack([corners[:1, ::-1], corners[1:]]),
             8000.0,
             "MESH_REPAIRED",
-            "1 triangles were turned",
+            "1 triangles were flipped",
         ),
     ]
     for some, triangles, volume, code, words in cases:
@@ -301,7 +301,7 @@ def test_first_layers_on_meshes_are_as_good_as_the_facets(angle):
     x, y, z = curve.at(curve.refined(5))[0].T
     assert np.hypot(x, y) == pytest.approx(15.0, abs=2e-5)
     assert np.abs(np.hypot(x, z) - RADIUS).max() < 1.3 * sagitta + 1e-4
-    assert "about as far as they are off" in wall.issues[0].message
+    assert "about the error of the mesh itself" in wall.issues[0].message
 
 
 def test_a_large_mesh():
@@ -343,6 +343,6 @@ def test_a_mesh_that_comes_to_no_end_is_not_said_to_have_too_many_triangles(monk
         wall_on(half_tube(), (), slab(), 4.0, "Wall", "Slab")
     assert caught.value.code == "TOO_FINE"
     assert (
-        "comes to no end, though about" in caught.value.message
+        "does not converge, though about" in caught.value.message
         and "larger layer height" not in caught.value.message
     )

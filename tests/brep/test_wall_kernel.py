@@ -160,7 +160,7 @@ def test_layers_higher_than_a_tube_is_round_are_refused(make, radius):
     with pytest.raises(InputError) as caught:
         wall_on(make(), (), slab(), 1.03 * radius, "Wall")
     assert (caught.value.code, caught.value.where) == ("LAYER_HEIGHT", "Wall Face1")
-    told = float(caught.value.message.split("curvature, ")[1].split(" mm")[0])
+    told = float(caught.value.message.split("curvature of the wall, ")[1].split(" mm")[0])
     assert (
         told == pytest.approx(radius, rel=0.02) and f"{1.03 * radius:g} mm" in caught.value.message
     )
@@ -221,9 +221,9 @@ def hollow():
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (rounded_box, ["are not one wall", "Face"]),
-        (hollow, ["are not one wall", "Face"]),
-        (rounded_on_top, ["run on smoothly into Face"]),
+        (rounded_box, ["do not form one wall", "Face"]),
+        (hollow, ["do not form one wall", "Face"]),
+        (rounded_on_top, ["are tangent to Face"]),
         (lambda: Part.makeBox(9, 9, 9), ["none"]),
     ],
 )

@@ -138,7 +138,7 @@ def test_what_is_wrong_is_told_beside_its_field_and_nothing_is_left(person, part
     for name, told in (
         ("nowhere.csv", "cannot be read"),
         ("empty.csv", "empty"),
-        ("scan.docx", "not read as points"),
+        ("scan.docx", "not a supported point format"),
         ("words.csv", "three numbers"),
     ):
         person.type(panel, "File", str(tmp_path / name))

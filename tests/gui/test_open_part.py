@@ -161,8 +161,8 @@ def test_what_is_opened_in_the_window_is_what_the_commands_read(person, tmp_path
 
 
 @pytest.mark.parametrize(("read", "says"), [
-    (crashing, "crashes"), (ending, "crashes"), (endless, "more than 1 s of the processor"),
-    (growing, "more than 100 MB of memory"), (waiting, "more than 1 s of the processor"),
+    (crashing, "crashes"), (ending, "crashes"), (endless, "more than 1 s of processor time"),
+    (growing, "more than 100 MB of memory"), (waiting, "more than 1 s of processor time"),
 ])  # fmt: skip
 def test_limits_are_told_in_the_window_too(person, monkeypatch, tmp_path, read, says):
     monkeypatch.setattr(apart, "SECONDS", 1.0)

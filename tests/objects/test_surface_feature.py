@@ -38,7 +38,7 @@ def test_feature_and_toolpath(doc, tube):
     assert feature.WallKind == "cone" and list(feature.WallFaces) == ["Face1"]
     assert np.hypot(wall.first[:, 0], wall.first[:, 2]) == pytest.approx(32.0, abs=1e-9)
     assert [issue.message for issue in wall.issues] == [
-        "the first layer lies on the wall and on Pipe within 0.001 mm"
+        "the first layer follows the intersection of the wall and Pipe within 0.001 mm"
     ]
     toolpath = api.make_toolpath(doc, feature)
     value = api.result(toolpath)
@@ -194,7 +194,7 @@ def test_needs_a_solid_substrate(doc, tube):
     )  # it stands on no edge
     with pytest.raises(InputError) as caught:
         api.make_surface_feature(doc, tube[0], ["Face1"])
-    assert caught.value.code == "NO_SUBSTRATE" and "edges to start from" in caught.value.message
+    assert caught.value.code == "NO_SUBSTRATE" and "start edges" in caught.value.message
     plane = doc.addObject("Part::Plane", "Plane")
     doc.recompute()
     with pytest.raises(InputError) as caught:
@@ -216,7 +216,7 @@ def test_a_wall_that_is_its_own_substrate_is_refused_where_that_is_said(doc, tub
     further.Mesh = scan.Mesh
     for wall, faces, ground in ((branch, ["Face1"], other), (scan, [], further)):
         with pytest.raises(
-            InputError, match=f"on the surface of {ground.Label}, as if it were a part of it"
+            InputError, match=f"coincides with the surface of {ground.Label}"
         ) as caught:
             api.make_surface_feature(doc, wall, faces, ground, layer_height=5)
         assert caught.value.code == "OWN_SUBSTRATE"

@@ -203,8 +203,8 @@ def waiting(_):
 
 
 @pytest.mark.parametrize(("read", "says"), [
-    (crashing, "crashes"), (endless, "more than 1 s of the processor"), (growing, "more than 100 MB of memory"),
-    (waiting, "more than 1 s of the processor"),
+    (crashing, "crashes"), (endless, "more than 1 s of processor time"), (growing, "more than 100 MB of memory"),
+    (waiting, "more than 1 s of processor time"),
 ])  # fmt: skip
 def test_limits_are_told(monkeypatch, tmp_path, read, says):
     monkeypatch.setattr(apart, "SECONDS", 1.0)

@@ -35,8 +35,8 @@ def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, A
         raise InputError(
             "BAD_VALUE",
             f"strategy.{key}",
-            "auto is what a bead model says, and there is none; give a length, a "
-            "process.bead_model or a process.material that has one",
+            "auto needs a bead model, and the job has none; give a length, a process.bead_model "
+            "or a process.material with one",
         )
     speed = model.straight_speed(process.bead_width)
     section_with_numbers = dict(section)
@@ -59,8 +59,8 @@ def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, A
             raise InputError(
                 "BAD_VALUE",
                 f"strategy.{SPACING}",
-                "layers of {:.4g} mm take beads {:.4g} mm apart to hold the wire fed, "
-                "and beads are {:g} mm wide; make layers higher, or beads wider",
+                "layers of {:.4g} mm need beads {:.4g} mm apart to hold the wire fed, but beads "
+                "are {:g} mm wide; use higher layers or wider beads",
                 height,
                 spacing,
                 process.bead_width,

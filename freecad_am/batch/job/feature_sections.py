@@ -56,23 +56,23 @@ def substrate_of(section: Any, strategy: Any, source: PartSource) -> PartSource 
         raise InputError(
             "NOT_FOR_FAMILY",
             "part.start_edges",
-            "only strategy.kind surface starts from edges; leave them out",
+            "only strategy.kind surface starts from edges; remove them",
         )
     table = source.file.lower().endswith(tuple(POINT_FILES))
     if family.kind != "curves" and (source.edges or table):
         where, what = ("part.edges", "edges") if source.edges else ("part.file", "tables of points")
         raise InputError(
-            "NOT_FOR_FAMILY", where, "only strategy.kind curves lays {} as beads; use it", what
+            "NOT_FOR_FAMILY", where, "only strategy.kind curves deposits {} as beads; use it", what
         )
     if table and (source.edges or source.faces):
         raise InputError(
             "NOT_FOR_FAMILY",
             "part.edges" if source.edges else "part.faces",
-            "a table of points has no edges and no faces; leave them out",
+            "a table of points has no edges or faces; remove them",
         )
     if source.faces and not family.faces:
         raise InputError(
-            "NOT_FOR_FAMILY", "part.faces", "solids are deposited as a whole; leave the faces out"
+            "NOT_FOR_FAMILY", "part.faces", "solids are deposited whole; remove the faces"
         )
     if family.substrate == NEEDED:
         if section is None:
@@ -89,14 +89,15 @@ def substrate_of(section: Any, strategy: Any, source: PartSource) -> PartSource 
             raise InputError(
                 "OWN_SUBSTRATE",
                 "substrate",
-                "the wall and what it grows on are the same, {}; give the part that is there "
-                "before it, or leave the substrate out where the wall starts on the platform or from part.start_edges",
+                "the wall and its substrate are the same object, {}; choose the part below the "
+                "wall, or remove the substrate if the wall starts on the platform or from "
+                "part.start_edges",
                 os.path.basename(substrate.file),
             )
         return substrate
     if section is not None and family.substrate == NONE:
         raise InputError(
-            "NOT_FOR_FAMILY", "substrate", "parts of revolution grow on no substrate; leave it out"
+            "NOT_FOR_FAMILY", "substrate", "parts of revolution do not use a substrate; remove it"
         )
     return None if section is None else part_of(fields.mapping(section, "substrate"), "substrate")
 

@@ -89,7 +89,7 @@ def one_feature(values: dict[str, Any], name: str) -> JobFeature:
         raise InputError(
             "NOT_FOR_FAMILY",
             "strategy.guide",
-            "only layers: along have a guide; leave it out, or use them",
+            "only layers: along uses a guide; remove the guide, or use layers: along",
         )
     start_faces = faces_of(
         (values.get("strategy") or {}).get("start_faces"), "strategy.start_faces"
@@ -98,8 +98,8 @@ def one_feature(values: dict[str, Any], name: str) -> JobFeature:
         raise InputError(
             "NOT_FOR_FAMILY",
             "strategy.start_faces",
-            "only layers: geodesic and offset start from faces; leave them out, "
-            "or use those layers",
+            "only layers: geodesic and layers: offset start from faces; remove the faces, or use "
+            "one of these layers",
         )
     ground, scanned = split(values.get("substrate"))
     return JobFeature(
@@ -194,7 +194,7 @@ def several(values: dict[str, Any], lines: tree.Tree) -> tuple[JobFeature, ...]:
         raise InputError(
             "BAD_VALUE",
             "features",
-            "features are a list; write features: [{name: hub, part: {file: hub.step}}, ...]",
+            "features must be a list; write features: [{name: hub, part: {file: hub.step}}, ...]",
         )
     features: list[JobFeature] = []
     for number, entry in enumerate(entries):
@@ -210,7 +210,7 @@ def several(values: dict[str, Any], lines: tree.Tree) -> tuple[JobFeature, ...]:
             raise InputError(
                 "BAD_VALUE",
                 f"{where}.name",
-                "{!r} is the name of another feature; give each its own",
+                "{!r} is the name of another feature; use a unique name",
                 name,
             )
         try:
@@ -307,6 +307,6 @@ def _add_fuse(section: Any, part_section: dict[str, Any]) -> Any:
         return section
     if fields.mapping(section, "strategy").get("kind") != "solid":
         raise InputError(
-            "NOT_FOR_FAMILY", "part.fuse", "only strategy.kind solid fuses solids; leave it out"
+            "NOT_FOR_FAMILY", "part.fuse", "only strategy.kind solid fuses solids; remove it"
         )
     return {**section, "fuse": part_section["fuse"]}

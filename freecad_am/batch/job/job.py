@@ -121,7 +121,7 @@ def read_without_part(path: str) -> WithoutPart:
         fields.known_keys(values, SECTIONS, "")
         cell = job_cell.read(values.get("cell"), folder)
         if cell is None:
-            raise InputError("NO_CELL", "cell", "there is no cell to drive a program in; add one")
+            raise InputError("NO_CELL", "cell", "the job has no cell to run a program in; add one")
         return WithoutPart(
             cell, _joints(values.get("joints") or {}), _program(values.get("program"), cell)
         )
@@ -155,7 +155,7 @@ def _checked(job: tree.Tree, path: str) -> Job:
             raise InputError(
                 "BAD_VALUE",
                 "sequence",
-                "there is one feature alone; leave it out, or list features",
+                "`sequence` needs `features`; remove it, or list the features",
             )
         features: tuple[JobFeature, ...] = (one_feature(values, name),)
         process = features[0].process
@@ -169,8 +169,8 @@ def _checked(job: tree.Tree, path: str) -> Job:
         raise InputError(
             "NOT_YET",
             "substrate.scan",
-            "several features in one job are not fitted to a scan yet; leave it "
-            "out, or give each feature a job of its own",
+            "several features in one job cannot be fitted to a scan yet; remove the scan, or put "
+            "each feature in its own job",
         )
     if scan is not None and program is not None:
         program = _resumed(program, scan.parameters.first)
@@ -201,7 +201,7 @@ def _name(name: Any, path: str) -> str:
         raise InputError(
             "BAD_NAME",
             "name",
-            "{} names files; use no slash, control sign or leading dot",
+            "{} is used in file names; use no slash, control character or leading dot",
             quantity.shown(name),
         )
     if len(name.encode()) > _LONGEST_NAME:

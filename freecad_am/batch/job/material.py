@@ -57,7 +57,7 @@ def _file(name: str) -> Path:
     raise InputError(
         "NO_FILE",
         KEY,
-        "there is no material {}; give one of {}, or the path of a material file",
+        "unknown material {}; use one of {}, or the path of a material file",
         quantity.shown(name),
         ", ".join(built_in()),
     )
@@ -71,7 +71,7 @@ def _defaults(values: dict[str, Any], file: Path) -> dict[str, Any]:
             raise InputError(
                 "BAD_VALUE",
                 key,
-                "a material needs its {}, and there is none; write {}: ...",
+                "the material lacks {}; write {}: ...",
                 key,
                 key,
             )
@@ -144,7 +144,7 @@ def _checked(
             raise InputError(
                 "BAD_VALUE",
                 key,
-                "{} is outside of speed_range; mend one of them",
+                "{} is outside speed_range; change one of the two",
                 quantity.shown(stated[key]),
             )
     if values.get("wire") in (None, {}):
@@ -197,8 +197,8 @@ def _beads(values: dict[str, Any], file: Path, slowest: float | None, fastest: f
         raise InputError(
             "BAD_VALUE",
             "beads",
-            "the beads of {} were laid at {:.4g} to {:.4g} mm/s, and speed_range is {:.4g} to {:.4g} "
-            "mm/s; mend one of them",
+            "the beads of {} were measured at {:.4g} to {:.4g} mm/s, but speed_range is {:.4g} "
+            "to {:.4g} mm/s; correct one of the two",
             os.path.basename(name),
             low,
             high,
@@ -213,8 +213,8 @@ def _beads(values: dict[str, Any], file: Path, slowest: float | None, fastest: f
             raise InputError(
                 "BAD_VALUE",
                 "wire.feed",
-                "{:.4g} mm/s is not a wire feed of {}, whose beads were laid at {:.4g} to {:.4g} "
-                "mm/s; leave it out, or give one of these",
+                "{:.4g} mm/s is not a wire feed of {}, whose beads were measured at {:.4g} to "
+                "{:.4g} mm/s; remove it, or use a measured feed",
                 wire_feed,
                 os.path.basename(name),
                 min_feed,

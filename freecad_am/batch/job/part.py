@@ -41,8 +41,8 @@ def _no_surfaces() -> InputError:
     return InputError(
         "UNSUPPORTED_FILE",
         "part.file",
-        "a mesh has no exact surfaces; give a part of this family as STEP, IGES, "
-        "BREP or FCStd; a mesh may be the substrate, or a fixture",
+        "a mesh has no exact surfaces; for this strategy use STEP, IGES, BREP or FCStd; a mesh "
+        "can serve as substrate or fixture",
     )
 
 
@@ -67,7 +67,7 @@ def _only_solids(obj: Any, source: PartSource, key: str) -> Any:
         raise InputError(
             "BAD_VALUE",
             f"{key}.solids",
-            "{} is a mesh, which has no solids; leave them out",
+            "{} is a mesh without solids; remove `solids`",
             obj.Label,
         )
     solids = obj.Shape.Solids
@@ -77,7 +77,7 @@ def _only_solids(obj: Any, source: PartSource, key: str) -> Any:
         raise InputError(
             "BAD_VALUE",
             f"{key}.solids",
-            "{} has {} solid(s), and no {}; name others",
+            "{} has {} solid(s), but no {}; choose others",
             obj.Label,
             len(solids),
             ", ".join(wrong),
@@ -103,7 +103,7 @@ def _change(source: Any, part: PartSource, section: str) -> list[Any]:
         raise InputError(
             "BAD_PART",
             f"{section}.set",
-            "with these values {} cannot be built; change them",
+            "{} cannot be built with these values; change them",
             names,
         )
     return changed
@@ -139,10 +139,13 @@ def _set(document: Any, name: str, key: str, text: str, section: str) -> Any:
             obj.setExpression(key, None)
             setattr(obj, key, _typed(getattr(obj, key), text))
     except (ValueError, TypeError, ArithmeticError, RuntimeError, IndexError, NameError):
-        message = Text("{!r} does not fit this property; give a value such as it has now", text)
+        message = Text(
+            "{!r} does not fit this property; give a value of the same type as its current one",
+            text,
+        )
         raise InputError("BAD_VALUE", where, message) from None
     except AttributeError:
-        message = Text("{} cannot be set here; set what it is computed from", key)
+        message = Text("{} is computed and cannot be set here; set its inputs", key)
         raise InputError("BAD_VALUE", where, message) from None
     return obj
 
@@ -176,7 +179,7 @@ def _set_cell(sheet: Any, key: str, text: str, where: str) -> None:
     unit = ""
     if isinstance(value, App.Units.Quantity) and value.Unit != now.Unit:
         if now.Unit.Type not in UNIT_OF_BARE_NUMBERS:
-            raise InputError("BAD_VALUE", where, "{!r} has no unit; give it with one", text)
+            raise InputError("BAD_VALUE", where, "{!r} has no unit; add one", text)
         unit = UNIT_OF_BARE_NUMBERS[now.Unit.Type]
     sheet.set(address, f"={text} {unit}")
 

@@ -41,7 +41,7 @@ def fixtures_of(section: Any) -> tuple[PartSource, ...]:
     entries = [] if section is None else section
     if not isinstance(entries, list):
         raise InputError(
-            "BAD_VALUE", "fixtures", "fixtures are a list; write fixtures: [{file: clamp.step}]"
+            "BAD_VALUE", "fixtures", "fixtures must be a list; write fixtures: [{file: clamp.step}]"
         )
     fixtures = []
     for number, entry in enumerate(entries):
@@ -49,7 +49,7 @@ def fixtures_of(section: Any) -> tuple[PartSource, ...]:
         fixture = part_of(fields.mapping(entry, key), key)
         if fixture.faces:
             raise InputError(
-                "BAD_VALUE", f"{key}.faces", "a fixture counts as a whole; leave out its faces"
+                "BAD_VALUE", f"{key}.faces", "a fixture is used whole; remove its faces"
             )
         fixtures.append(fixture)
     return tuple(fixtures)
@@ -61,19 +61,19 @@ def part_of(section: dict[str, Any], key: str = "part") -> PartSource:
     fields.known_keys(section, ("file", "object", "solids", "faces", "set", "scale", *further), key)
     if "file" not in section:
         raise InputError(
-            "NO_PART", f"{key}.file", "there is no file; write {}: {{file: shape.step}}", key
+            "NO_PART", f"{key}.file", "the file is missing; write {}: {{file: shape.step}}", key
         )
     file = fields.text(section["file"], f"{key}.file")
     is_document = file.lower().endswith(".fcstd")
     for entry in ("object", "set"):
         if section.get(entry) is not None and not is_document:
-            message = Text("only an FCStd part has objects, {} has none", os.path.basename(file))
+            message = Text("only an FCStd part has objects; {} has none", os.path.basename(file))
             raise InputError("BAD_VALUE", f"{key}.{entry}", message)
     if not is_there(file):
         raise InputError(
             "NO_FILE",
             f"{key}.file",
-            "there is no file {}; check the path, relative to the file with it",
+            "file {} does not exist; check the path, which is relative to the file that names it",
             file,
         )
     name, solids = section.get("object"), _names(section.get("solids"), f"{key}.solids", _SOLID)
@@ -81,10 +81,10 @@ def part_of(section: dict[str, Any], key: str = "part") -> PartSource:
         raise InputError(
             "BAD_VALUE",
             f"{key}.solids",
-            "faces and edges are those of the whole file; name either solids or them",
+            "`faces` and `edges` refer to the whole file; use `solids` or them, not both",
         )
     if solids and file.lower().endswith(MESHES):
-        message = Text("{} is a mesh, which has no solids; leave them out", os.path.basename(file))
+        message = Text("{} is a mesh without solids; remove `solids`", os.path.basename(file))
         raise InputError("BAD_VALUE", f"{key}.solids", message)
     return PartSource(
         file=file,

@@ -50,7 +50,7 @@ def scan_of(scan_keys: dict[str, Any], strategy: Any) -> ScanSource | None:
         raise InputError(
             "BAD_VALUE",
             f"{PREFIX}.{key}",
-            "there is no scan; give its file as {}.scan, or leave it",
+            "the scan is missing; give its file as {}.scan, or remove the section",
             PREFIX,
         )
     file = job_fields.text(scan_keys["scan"], f"{PREFIX}.scan")
@@ -58,7 +58,7 @@ def scan_of(scan_keys: dict[str, Any], strategy: Any) -> ScanSource | None:
         raise InputError(
             "NO_FILE",
             f"{PREFIX}.scan",
-            "there is no file {}; check the path, relative to the file with it",
+            "file {} does not exist; check the path, which is relative to the file that names it",
             file,
         )
     for key, choices in (("scan_unit", (AUTO, *UNITS)), ("scan_fit", FITS)):
@@ -78,8 +78,7 @@ def scan_of(scan_keys: dict[str, Any], strategy: Any) -> ScanSource | None:
         raise InputError(
             "BAD_VALUE",
             f"{PREFIX}.scan_fit",
-            "{}: only a scan in the part's own coordinates shows how far a part has "
-            "grown; give none",
+            "{}: only a scan in the coordinates of the part shows how far it has grown; remove it",
             fit,
         )
     layers = getattr(strategy, "layers", "planes")
@@ -88,8 +87,8 @@ def scan_of(scan_keys: dict[str, Any], strategy: Any) -> ScanSource | None:
         raise InputError(
             "NOT_YET",
             f"{PREFIX}.scan",
-            "{} is not fitted to a scan yet; solids in plane layers and walls on a substrate "
-            "are: leave it out",
+            "{} cannot be fitted to a scan yet; only solids in planar layers and walls on a "
+            "substrate can: remove it",
             kind if kind != "solid" else f"layers: {layers}",
         )
     return ScanSource(file, scan_keys.get("scan_unit", AUTO), fit, pairs, parameters)

@@ -24,12 +24,14 @@ def unused_key_issues(job: Job) -> list[Issue]:
 def _issues_without_cell(job: Job) -> Iterator[Issue]:
     if job.program is not None:
         message = Text(
-            "program: no program is written, as the job has no cell; add the section cell, or leave the program out"
+            "program: the job has no cell, so no program is written; add the section `cell`, or "
+            "remove `program`"
         )
         yield Issue(WARNING, NO_EFFECT, message)
     if job.tree.values.get("joints"):
         message = Text(
-            "joints: no joint path is planned, as the job has no cell; add the section cell, or leave the joints out"
+            "joints: the job has no cell, so no joint path is planned; add the section `cell`, "
+            "or remove `joints`"
         )
         yield Issue(NOTE, NO_EFFECT, message)
 
@@ -40,21 +42,23 @@ def _issues_of_cell(job: Job) -> Iterator[Issue]:
     joints, cell = (job.tree.values.get(section) for section in ("joints", "cell"))
     if _gives(joints, "rz") and "constant" not in (job.joints.method, *job.joints.compare):
         message = Text(
-            "joints.rz has no effect with joints.method: {}; leave it out, or use the method constant",
+            "joints.rz has no effect with joints.method: {}; remove it, or use the method constant",
             job.joints.method,
         )
         yield Issue(WARNING, NO_EFFECT, message)
     fixed_part = not arrangement.carries_part and job.cell.external == NONE
     if fixed_part and _gives(cell, "platform"):
         message = Text(
-            "cell.platform has no effect with cell.setup: {}: cell.deposition_point is the platform's pose; leave it out",
+            "cell.platform has no effect with cell.setup: {}: cell.deposition_point is the pose "
+            "of the platform; remove it",
             job.cell.setup,
         )
         yield Issue(WARNING, NO_EFFECT, message)
     nozzle = cell.get("nozzle") if isinstance(cell, dict) else None
     if arrangement.holds_part and _gives(nozzle, "tool"):
         message = Text(
-            "cell.nozzle.tool has no effect with cell.setup: {}: cell.deposition_point is where the nozzle stands; leave it out",
+            "cell.nozzle.tool has no effect with cell.setup: {}: cell.deposition_point is the "
+            "pose of the nozzle; remove it",
             job.cell.setup,
         )
         yield Issue(WARNING, NO_EFFECT, message)

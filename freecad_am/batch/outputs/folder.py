@@ -102,7 +102,8 @@ class Outputs:
     def _unwritable(self, path: str, error: Exception) -> InputError:
         reason = getattr(error, "strerror", None) or str(error)
         message = Text(
-            "outputs cannot be written here ({}); free it or choose another folder with -o", reason
+            "the outputs cannot be written here ({}); free the folder, or choose another with -o",
+            reason,
         )
         return InputError("UNWRITABLE", path, message)
 

@@ -77,7 +77,7 @@ def _cells(text: str, label: str) -> tuple[list[str], list[list[str]]]:
         raise InputError(
             "EMPTY_FILE",
             label,
-            "there are no rows; give a line of job keys and a line per job below it",
+            "the table has no rows; write a line of job keys, then a line per job",
         )
     columns = lines[0]
     for column in columns:
@@ -85,12 +85,14 @@ def _cells(text: str, label: str) -> tuple[list[str], list[list[str]]]:
             raise InputError(
                 "BAD_FILE",
                 label,
-                "the column {!r} is empty or stands twice; name each one once",
+                "the column {!r} is empty or duplicated; use each name once",
                 column,
             )
         if ";" in column or "\t" in column:
             raise InputError(
-                "BAD_FILE", label, "cells are not separated by commas; save the table with commas"
+                "BAD_FILE",
+                label,
+                "the cells are not separated by commas; save the table as CSV with commas",
             )
         if column.split(".")[0] not in job.SECTIONS:
             message = "there is no such key; use job keys such as strategy.layer_height"
@@ -98,7 +100,7 @@ def _cells(text: str, label: str) -> tuple[list[str], list[list[str]]]:
     for number, line in enumerate(lines[1:], 1):
         if len(line) != len(columns):
             message = Text(
-                "{} cells for {} columns; quote cells with commas", len(line), len(columns)
+                "{} cells for {} columns; quote cells that contain commas", len(line), len(columns)
             )
             raise InputError("BAD_FILE", f"{label} row {number}", message)
     return columns, lines[1:]

@@ -56,7 +56,7 @@ def read_apart(
     where = os.path.basename(os.fspath(path)) or os.fspath(path)
     if size > MAX_FILE_MB:
         message = Text(
-            "the file is larger than {} MB, the most that is read; is it the right one?",
+            "the file is larger than {} MB, the maximum; check that it is the right one",
             MAX_FILE_MB,
         )
         raise InputError("BAD_FILE", where, message)
@@ -239,12 +239,13 @@ def _limit(kind: int, value: int) -> None:
 def _refused(where: str, exit_code: int, used: float, seconds: float, memory: float) -> InputError:
     if exit_code == -signal.SIGXCPU:
         why = Text(
-            "it takes more than {:.0f} s of the processor to read, the limit of a file of its size",
+            "reading it takes more than {:.0f} s of processor time, the limit for a file of its "
+            "size",
             seconds,
         )
     elif exit_code == NO_MEMORY or used > 0.8 * memory:
         why = Text(
-            "it takes more than {:.0f} MB of memory to read, the limit of a file of its size",
+            "reading it takes more than {:.0f} MB of memory, the limit for a file of its size",
             memory,
         )
     else:

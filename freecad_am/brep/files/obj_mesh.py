@@ -85,7 +85,7 @@ class ObjMesh:
         if not self.left_out:
             return ()
         counts = ", ".join(f"{count} x {name}" for name, count in self.left_out.items())
-        text = Text("{}: left out, as they bound no shape: {}", self.where, counts)
+        text = Text("{}: ignored, as they bound no shape: {}", self.where, counts)
         return (Issue(NOTE, CONTENT, text),)
 
     def _read(self, line: bytes, number: int) -> None:
@@ -126,13 +126,13 @@ class ObjMesh:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "line {} takes content from another file, which is not read; export all in one file",
+                "line {} refers to another file, which is not read; export everything in one file",
                 number,
             )
         raise InputError(
             "BAD_FILE",
             self.where,
-            "line {} begins with {!r}, which is no statement of OBJ; export the part again",
+            "line {} begins with {!r}, which is not an OBJ statement; export the part again",
             number,
             key[:40],
         )
@@ -164,7 +164,7 @@ class ObjMesh:
             raise InputError(
                 "BAD_FILE",
                 self.where,
-                "a face has the corner {}, and there are {} points; export the part again",
+                "a face refers to vertex {}, but the file has {} vertices; export the part again",
                 largest + 1,
                 len(vertices),
             )
@@ -178,7 +178,7 @@ class ObjMesh:
             raise InputError(
                 "BAD_FILE",
                 self.where,
-                "a corner of a face is not a number; export the part again",
+                "a vertex index of a face is not a number; export the part again",
             )
         return points, corners.reshape(-1, 3).astype(np.intp)
 

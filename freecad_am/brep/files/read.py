@@ -49,21 +49,21 @@ def shape_content(path: str | os.PathLike[str]) -> FileContent:
     where = file.name or str(path)
     suffix = file.suffix.lower()
     if not file.exists():
-        raise InputError("NO_FILE", where, "there is no such file; check the name and the folder")
+        raise InputError("NO_FILE", where, "the file does not exist; check its name and folder")
     if not file.is_file():
-        raise InputError("NO_FILE", where, "it is a folder; name the file of the part")
+        raise InputError("NO_FILE", where, "it is a folder; choose the file of the part")
     if suffix in MESHES:
         raise InputError(
             "UNSUPPORTED_FILE",
             where,
-            "a mesh has no exact surfaces; give a part of revolution as STEP, IGES or BREP",
+            "a mesh has no exact surfaces; export the part of revolution as STEP, IGES or BREP",
         )
     if suffix not in READABLE:
         raise InputError(
             "UNSUPPORTED_FILE",
             where,
-            "{} is not read; use {}",
-            suffix or "no ending",
+            "{} files are not supported; use {}",
+            suffix or "no extension",
             ", ".join((*READABLE, *MESHES)),
         )
     try:
@@ -72,10 +72,10 @@ def shape_content(path: str | os.PathLike[str]) -> FileContent:
             stream.read(1)
     except OSError as error:
         raise InputError(
-            "BAD_FILE", where, "it cannot be read: {}; choose a file that can", error.strerror
+            "BAD_FILE", where, "it cannot be read: {}; choose another file", error.strerror
         ) from error
     if size == 0:
-        raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
+        raise InputError("EMPTY_FILE", where, "the file is empty; export the part again")
     return FileContent(*apart.read_apart(_shape, file, where))
 
 
@@ -92,9 +92,9 @@ def mesh_content(path: str | os.PathLike[str], scale: float = 1.0) -> FileConten
     file = locate(path)
     where = file.name or str(path)
     if not file.is_file():
-        raise InputError("NO_FILE", where, "there is no such file; check the name and the folder")
+        raise InputError("NO_FILE", where, "the file does not exist; check its name and folder")
     if file.stat().st_size == 0:
-        raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
+        raise InputError("EMPTY_FILE", where, "the file is empty; export the part again")
     return FileContent(*apart.read_apart(_mesh, file, where, scale))
 
 
@@ -186,7 +186,9 @@ def _shape(file: Path, where: str) -> tuple[Any, tuple[Issue, ...]]:
 
 def _read_shape(file: Path, where: str) -> Any:
     bad = InputError(
-        "BAD_FILE", where, "it is damaged or not what its ending says; export the part again"
+        "BAD_FILE",
+        where,
+        "it is damaged, or its extension does not match its content; export the part again",
     )
     shape = Part.Shape()
     try:
@@ -231,8 +233,8 @@ def _refuse_far(reach: float, where: str) -> None:
         raise InputError(
             "BAD_FILE",
             where,
-            "it reaches to {:.3g} mm, farther than {:.3g} mm; a coordinate is damaged, or its unit is "
-            "wrong; export the part again",
+            "it extends to {:.3g} mm, farther than {:.3g} mm; a coordinate is damaged or the "
+            "unit is wrong; export the part again",
             reach,
             MAX_COORDINATE_MM,
         )

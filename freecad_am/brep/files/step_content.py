@@ -128,7 +128,7 @@ class StepContent:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "it has solids by constructive geometry ({}), which are not read; {}",
+                "it has solids by constructive geometry ({}), which are not supported; {}",
                 ", ".join(constructed),
                 PLAIN,
             )
@@ -138,7 +138,8 @@ class StepContent:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "parts of it are in other files ({}), which are not read; export the assembly as one file",
+                "it refers to other files ({}), which are not read; export the assembly as one "
+                "file",
                 ", ".join(dict.fromkeys(references)),
             )
 
@@ -171,8 +172,8 @@ class StepContent:
             raise InputError(
                 "BAD_FILE",
                 self.where,
-                "{} of its {} solids and {} of its {} faces cannot be read; check these where they were drawn, and export "
-                "the part again",
+                "{} of its {} solids and {} of its {} faces cannot be read; check them in the "
+                "CAD system, and export the part again",
                 lost_solids,
                 solids,
                 lost_faces,
@@ -184,7 +185,8 @@ class StepContent:
                     WARNING,
                     CONTENT,
                     Text(
-                        "{}: {} of its {} solids are read as faces that enclose nothing; check the part (Part, Check geometry)",
+                        "{}: {} of its {} solids are read as faces that enclose no volume; check "
+                        "the part (Part, Check geometry)",
                         self.where,
                         lost_solids,
                         solids,
@@ -197,7 +199,8 @@ class StepContent:
                     WARNING,
                     CONTENT,
                     Text(
-                        "{}: {} of its {} faces are not in any shape that was read; check the part (Part, Check geometry)",
+                        "{}: {} of its {} faces belong to no shape; check the part (Part, Check "
+                        "geometry)",
                         self.where,
                         lost_faces,
                         faces,
@@ -209,9 +212,7 @@ class StepContent:
                 Issue(
                     NOTE,
                     CONTENT,
-                    Text(
-                        "{}: it marks items as invisible; they are read as the others", self.where
-                    ),
+                    Text("{}: items marked as invisible are read like the others", self.where),
                 )
             )
         if self.kinds["CONSTRUCTIVE_GEOMETRY_REPRESENTATION"]:
@@ -262,7 +263,7 @@ def refuse_iges(file: Path, where: str) -> list[Issue]:
         raise InputError(
             "UNSUPPORTED_FILE",
             where,
-            "it has solids by constructive geometry ({}), which are not read; {}",
+            "it has solids by constructive geometry ({}), which are not supported; {}",
             ", ".join(constructed),
             PLAIN,
         )
@@ -270,7 +271,8 @@ def refuse_iges(file: Path, where: str) -> list[Issue]:
         raise InputError(
             "UNSUPPORTED_FILE",
             where,
-            "parts of it are in other files (entity {}), which are not read; export the assembly as one file",
+            "it refers to other files (entity {}), which are not read; export the assembly as "
+            "one file",
             IGES_EXTERNAL,
         )
     if kinds and not any(kinds[kind] for kind in IGES_SHAPES):
@@ -281,7 +283,8 @@ def refuse_iges(file: Path, where: str) -> list[Issue]:
         raise InputError(
             "EMPTY_FILE",
             where,
-            "all that it holds is marked as invisible, which is not read; show the part and export it again",
+            "everything in it is marked as invisible and therefore not read; show the part and "
+            "export it again",
         )
     issues = []
     elements = [name for kind, name in IGES_ELEMENTS.items() if kinds[kind]]
@@ -293,7 +296,7 @@ def refuse_iges(file: Path, where: str) -> list[Issue]:
                 NOTE,
                 CONTENT,
                 Text(
-                    "{}: {} of its entities are marked as invisible, and are left out",
+                    "{}: {} entities marked as invisible are ignored",
                     where,
                     blanked,
                 ),

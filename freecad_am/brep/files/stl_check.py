@@ -35,7 +35,7 @@ def stl_triangles(file: Path, where: str) -> tuple[Array, tuple[Issue, ...]]:
     corners, issues = _binary(data, count, where) if is_binary else (_ascii(data, where), ())
     if not np.isfinite(corners).all():
         raise InputError(
-            "BAD_FILE", where, "a corner of a triangle is not a number; export the part again"
+            "BAD_FILE", where, "a vertex of a triangle is not a number; export the part again"
         )
     return corners, issues
 
@@ -52,8 +52,8 @@ def _binary(data: bytes, count: int, where: str) -> tuple[Array, tuple[Issue, ..
         raise InputError(
             "BAD_FILE",
             where,
-            "it is cut off, or is no STL file: it says that it has {:,} triangles, and has room for {:,}; export the "
-            "part again",
+            "it is truncated, or not an STL file: its header counts {:,} triangles, but its size "
+            "holds {:,}; export the part again",
             count,
             available,
         )
@@ -62,7 +62,8 @@ def _binary(data: bytes, count: int, where: str) -> tuple[Array, tuple[Issue, ..
         raise InputError(
             "BAD_FILE",
             where,
-            "{:,} bytes follow its {:,} triangles, which may be further ones; export the part again, as one solid",
+            "{:,} bytes follow its {:,} triangles, possibly more triangles; export the part "
+            "again, as one solid",
             len(trailing),
             count,
         )
@@ -98,7 +99,7 @@ def _ascii(data: bytes, where: str) -> Array:
             raise _bad_line(number, line, where)
     if is_open or in_loop >= 0:
         raise InputError(
-            "BAD_FILE", where, "it is cut off: its last solid has no end; export the part again"
+            "BAD_FILE", where, "it is truncated: the last solid has no end; export the part again"
         )
     return np.array(corners, dtype=np.float64).reshape(-1, 3, 3)
 

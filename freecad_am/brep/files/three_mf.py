@@ -208,7 +208,7 @@ class _Package:
             raise InputError(
                 "EMPTY_FILE",
                 self.where,
-                "it builds no triangles{}; export the part again",
+                "it contains no triangles{}; export the part again",
                 self._names_left_out(),
             )
         return Content(points, corners, tuple(self._notes()))
@@ -246,8 +246,9 @@ class _Package:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "{!r} is a negative volume, and cannot be subtracted from the part here: {} triangles take part, and at most "
-                "{} are cut; subtract it where the part was drawn, or remove it in the slicer, and export again",
+                "{!r} is a negative volume that cannot be subtracted here: {} triangles are "
+                "involved, and the limit is {}; subtract it in the CAD system, or remove it in "
+                "the slicer, and export again",
                 tool.name,
                 count if count > max_triangles else self.cut,
                 max_triangles if count > max_triangles else MAX_CUT,
@@ -257,9 +258,9 @@ class _Package:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "{!r} is a negative volume, and cannot be subtracted from the part here: the geometry kernel makes no sound "
-                "solid of the two, as of a mesh that touches or crosses itself; subtract it where the part was drawn, or "
-                "remove it in the slicer, and export again",
+                "{!r} is a negative volume that cannot be subtracted here: the geometry kernel "
+                "finds no valid result, as when a mesh touches or crosses itself; subtract it in "
+                "the CAD system, or remove it in the slicer, and export again",
                 tool.name,
             )
         self.subtracted.append((tool.name, NEGATIVE))
@@ -268,13 +269,13 @@ class _Package:
     def _names_left_out(self) -> str:
         if not self.left_out:
             return ""
-        return Text(", for what it holds is not part ({})", _listed(self.left_out))
+        return Text(", as its content is not part of the shape ({})", _listed(self.left_out))
 
     def _notes(self) -> list[Issue]:
         notes = []
         if self.left_out:
             message = Text(
-                "{}: left out, as they are not part of the shape: {}",
+                "{}: ignored, as they are not part of the shape: {}",
                 self.where,
                 _listed(self.left_out),
             )
@@ -284,7 +285,8 @@ class _Package:
             notes.append(Issue(NOTE, CONTENT, message))
         if self.laid:
             message = Text(
-                "{}: settings of the slicer that are not applied, so that the solids are deposited as their meshes are: {}{}",
+                "{}: slicer settings that change the shape are not applied; the meshes are "
+                "deposited as they are: {}{}",
                 self.where,
                 Text.joined(", ", list(self.laid)[:MAX_NAMED]),
                 "" if len(self.laid) <= MAX_NAMED else ", ...",
@@ -292,15 +294,15 @@ class _Package:
             notes.append(Issue(NOTE, CONTENT, message))
         if self.plates > 1:
             message = Text(
-                "{}: its objects stand on {} plates, and all are deposited, as far apart as the plates; to deposit one "
-                "plate, export it alone",
+                "{}: its objects are on {} plates, and all are deposited, with the distance "
+                "between plates; to deposit one plate, export only that plate",
                 self.where,
                 self.plates,
             )
             notes.append(Issue(NOTE, CONTENT, message))
         if self.spaces:
             message = Text(
-                "{}: not read, as no object uses it for its shape: what these extensions add: {}",
+                "{}: ignored, as no object uses it for its shape: data of the extensions: {}",
                 self.where,
                 ", ".join(list(self.spaces)[:MAX_NAMED]),
             )
@@ -314,7 +316,7 @@ class _Package:
         ]
         if unused:
             message = Text(
-                "{}: files in it that are not read, as nothing that is built uses them: {}",
+                "{}: ignored files that no built object uses: {}",
                 self.where,
                 ", ".join(unused[:MAX_NAMED]),
             )
@@ -353,7 +355,7 @@ class _Package:
                 raise InputError(
                     "UNSUPPORTED_FILE",
                     self.where,
-                    "{} gives a piece of it the role {!r}, which is not known; export the part alone",
+                    "{} gives a volume the unknown role {!r}; export only the part",
                     name,
                     reader.unknown[0],
                 )
@@ -367,8 +369,8 @@ class _Package:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "{} in it says that the slicer drills holes, which the mesh does not have; remove them, or export "
-                "the drilled part as a mesh",
+                "{} contains holes drilled by the slicer, which the mesh lacks; remove them, or "
+                "export the drilled part as a mesh",
                 name,
             )
 
@@ -406,7 +408,7 @@ class _Package:
         if model is not None and model.triangles and ranges:
             if model.volumes and model.volumes != ranges:
                 raise _bad(
-                    self.where, Text("two files in it give object {} different roles", number)
+                    self.where, Text("two files in it assign different roles to object {}", number)
                 )
             model.volumes = ranges
             return
@@ -421,8 +423,8 @@ class _Package:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "{} gives {!r}, a piece of object {}, the role {}, and the model has no such piece; save the project in the "
-                "slicer again, or export the part alone",
+                "{} names {!r}, a volume of object {}, with the role {}, but the model lacks "
+                "this volume; save the project in the slicer again, or export only the part",
                 name,
                 strange[0].name or str(strange[0].component or strange[0].start),
                 number,
@@ -444,7 +446,7 @@ class _Package:
             if targets and targets[0].lower() in names:
                 return names[targets[0].lower()]
         if MODEL.lower() not in names:
-            raise _bad(self.where, Text("there is no model in it ({})", MODEL))
+            raise _bad(self.where, Text("it contains no model ({})", MODEL))
         return names[MODEL.lower()]
 
     def _load(self, file: str) -> None:
@@ -463,7 +465,8 @@ class _Package:
                 raise InputError(
                     "UNSUPPORTED_FILE",
                     self.where,
-                    "{} in it is in another unit than {}, which programs read in different ways; export it in one unit",
+                    "{} in it has a unit other than {}, which programs interpret differently; "
+                    "use one unit and export again",
                     name,
                     file,
                 )
@@ -507,7 +510,7 @@ class _Package:
                     raise InputError(
                         "UNSUPPORTED_FILE",
                         self.where,
-                        "{} unpacks to more than {} MB; export it with a coarser mesh",
+                        "{} unpacks to more than {} MB; export a coarser mesh",
                         name,
                         MAX_UNPACKED_BYTES >> 20,
                     )
@@ -545,7 +548,7 @@ class _Package:
         if self.placed > MAX_PLACED_OBJECTS or len(within) > MAX_NESTING:
             text = Text("{:,} objects, or objects nested {} times", MAX_PLACED_OBJECTS, MAX_NESTING)
             raise InputError(
-                "UNSUPPORTED_FILE", self.where, "it builds more than {}; simplify it", Word(text)
+                "UNSUPPORTED_FILE", self.where, "it contains more than {}; simplify it", Word(text)
             )
         volume = self._volume(key, within)
         name = (volume and volume.name) or model.name or str(key[1])
@@ -557,7 +560,8 @@ class _Package:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "object {!r} has {}, which changes its shape and is not read; export it as plain triangles",
+                "object {!r} has {}, which changes its shape and is not supported; export it as "
+                "plain triangles",
                 name,
                 model.unread,
             )
@@ -581,7 +585,7 @@ class _Package:
         if model.kind not in (*DEPOSITED, *NOT_DEPOSITED):
             raise _bad(
                 self.where,
-                Text("it has an object of the type {!r}, which 3MF does not know", model.kind),
+                Text("an object has the type {!r}, which 3MF does not define", model.kind),
             )
         if role not in (PART, NEGATIVE):
             return role
@@ -604,7 +608,7 @@ class _Package:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "it builds more than {:,} triangles; simplify it",
+                "it contains more than {:,} triangles; simplify it",
                 MAX_TRIANGLES,
             )
         vertices, faces = (
@@ -614,7 +618,7 @@ class _Package:
         if faces.min() < 0 or faces.max() >= len(vertices):
             raise _bad(
                 self.where,
-                Text("object {} of {} has triangles with points that it has not", key[1], key[0]),
+                Text("object {} of {} has triangles with missing vertices", key[1], key[0]),
             )
         self.points += len(vertices)
         if self.points > 3 * MAX_TRIANGLES:
@@ -622,14 +626,14 @@ class _Package:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "it builds more than {:,} points; simplify it",
+                "it contains more than {:,} points; simplify it",
                 max_points,
             )
         turned = np.linalg.det(moved[:3])
         if abs(turned) <= 1e-12 * np.abs(moved[:3]).max() ** 3:
             raise _bad(
                 self.where,
-                Text("object {} of {} is moved by a matrix that flattens it", key[1], key[0]),
+                Text("object {} of {} has a transformation that flattens it", key[1], key[0]),
             )
         placed = (vertices @ moved[:3] + moved[3]) * unit
         faces = faces if turned > 0.0 else faces[:, ::-1]
@@ -767,10 +771,10 @@ class _Model:
             if name == "slicestackid":
                 self._leave_unread(Text("a stack of slices"))
             elif name == "meshresolution" and value == "lowres":
-                self._leave_unread(Text("a mesh of low resolution beside its slices"))
+                self._leave_unread(Text("a low-resolution mesh that accompanies slices"))
             elif name == "modelresolution":
                 if value != "fullres":
-                    self._leave_unread(Text("a model of the resolution {!r} alone", value))
+                    self._leave_unread(Text("a model with only the resolution {!r}", value))
             elif space not in KNOWN and space != SLICE:
                 self.spaces[space] = None
 
@@ -843,7 +847,7 @@ class _Model:
             if space not in KNOWN:
                 if "securecontent" in space:
                     raise _encrypted(self.where)
-                text = Text("it needs an extension that is not read ({})", space)
+                text = Text("it needs an unsupported extension ({})", space)
                 raise InputError(
                     "UNSUPPORTED_FILE", self.where, "{}; export plain triangles", Word(text)
                 )

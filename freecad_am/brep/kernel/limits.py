@@ -39,8 +39,8 @@ def reported(label: str, shape: Any = None) -> Iterator[None]:
         raise InputError(
             FAULTY,
             label,
-            "the geometry kernel cannot work with this shape ({}{}); repair it (Part, Check geometry), or "
-            "redraw its faces",
+            "the geometry kernel cannot process this shape ({}{}); repair it (Part, Check "
+            "geometry), or redraw its faces",
             what,
             _damaged(shape),
         ) from error
@@ -62,7 +62,7 @@ def _damaged(shape: Any) -> str:
     if named:
         return Text("; {}", Text.joined(", ", named[:MAX_NAMED]))
     if faces:
-        return Text("; its {} face(s), about {}, are each sound", len(faces), _middle(shape))
+        return Text("; each of its {} face(s), about {}, is valid", len(faces), _middle(shape))
     return ""
 
 
@@ -92,15 +92,15 @@ def refuse_bare(
                 raise InputError(
                     "SELF_INTERSECTION",
                     f"{label} {name}",
-                    "an edge of the face crosses itself at {}; draw it without "
-                    "crossings, or divide it there and deposit its parts one after the other",
+                    "an edge of the face crosses itself at {}; redraw it without crossings, or "
+                    "divide the face there and deposit its parts in turn",
                     place(crossing),
                 )
         raise InputError(
             FAULTY,
             f"{label} {name}",
-            "the geometry kernel cannot divide this face, about {}, into triangles; repair it (Part, "
-            "Check geometry), or redraw it",
+            "the geometry kernel cannot triangulate this face, about {}; repair it (Part, Check "
+            "geometry), or redraw it",
             _middle(face),
         )
 

@@ -76,7 +76,7 @@ def _union(turns: Sequence[Turn | None], group: Sequence[Piece], label: str) -> 
     distinct = {round((start % (2.0 * np.pi)) / SAME_AZIMUTH) for start, _ in joined[1:]}
     if len(distinct) > 1:
         names = ", ".join(segment.name for segment in group)
-        text = Text("{} leave more than one opening around the axis; choose one of them", names)
+        text = Text("{} leave more than one opening around the axis; choose one face", names)
         raise InputError("NOT_REVOLUTION", label, text)
     start, end = max(joined, key=lambda turn: turn[1] - turn[0])
     start_in_turn = start % (2.0 * np.pi)
@@ -107,7 +107,7 @@ def common_turn(chain: Chain, label: str) -> Turn | None:
             raise InputError(
                 "NOT_REVOLUTION",
                 label,
-                "{} turns {} and {} {}; choose faces that turn alike",
+                "{} covers {} and {} {}; choose faces with the same angular range",
                 first_segment.name,
                 _degrees(first_segment.turn),
                 segment.name,

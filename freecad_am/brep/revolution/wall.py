@@ -96,8 +96,9 @@ def _only_solid(
             raise InputError(
                 "NOT_OF_REVOLUTION",
                 label,
-                "of its {} solids only {} turns about an axis, {:.0%} of its surface; name the "
-                "faces of that one to deposit it alone, and deposit the others as walls on a part or solids on a hub",
+                "of its {} solids only {} is a solid of revolution, with {:.0%} of the surface; "
+                "select its faces to deposit it, and deposit the others as walls on a part or "
+                "solids on a hub",
                 len(shape.Solids),
                 name,
                 share,
@@ -107,13 +108,11 @@ def _only_solid(
         raise InputError(
             "NO_WALL",
             label,
-            "none of its {} solids is of revolution; name the faces of the wall",
+            "none of its {} solids is of revolution; select the faces of the wall",
             len(shape.Solids),
         )
     names = Text.joined(", ", (name for name, *_ in walls))
-    raise InputError(
-        "SEVERAL_SOLIDS", label, "{} all have a wall; name the faces of the one to deposit", names
-    )
+    raise InputError("SEVERAL_SOLIDS", label, "{} all have a wall; select the faces of one", names)
 
 
 def _from_faces(
@@ -131,18 +130,20 @@ def _from_faces(
         if 2.0 * face.Area > SLIVER * face.Length or has_lost_pole(face)
     ]
     if not wide:
-        raise InputError("NO_WALL", label, "it has no face of any width; choose another object")
+        raise InputError(
+            "NO_WALL", label, "it has no face of measurable width; choose another object"
+        )
     lines = [axis] if axis is not None else list(candidates([face for _, face in wide]))
     if not lines:
         raise InputError(
             "NO_WALL",
             label,
-            "no axis was found that its faces turn about; give it, or name the faces",
+            "its faces share no axis of revolution; choose an axis, or select the faces",
         )
     frame, patches = _about_best(wide, lines)
     if not all(patch.sound for patch in patches) and all(planar(face) for _, face in wide):
         raise InputError(
-            "NO_WALL", label, "all its faces are flat; choose a part, or faces, of revolution"
+            "NO_WALL", label, "all its faces are flat; choose a part or faces of revolution"
         )
     worst = max(patches, key=lambda patch: patch.deviation)
     if not worst.sound:
@@ -162,7 +163,9 @@ def _from_faces(
     segments = merged([segment for patch in patches for segment in patch.segments], label)
     if not segments:
         raise InputError(
-            "NO_WALL", label, "it has no face that turns about the axis; name the faces of the wall"
+            "NO_WALL",
+            label,
+            "no face is a surface of revolution about the axis; select the faces of the wall",
         )
     return _assembled(segments, frame, wall, label, selected, is_closed)
 
@@ -203,7 +206,9 @@ def _from_edges(shape: Any, wall: str, axis: tuple[Any, Any] | None, label: str)
     if not shape.Edges:
         raise InputError("NO_WALL", label, "it has neither faces nor edges; choose another object")
     if axis is None:
-        raise InputError("NO_AXIS", label, "a wire or sketch needs an axis to turn about; give one")
+        raise InputError(
+            "NO_AXIS", label, "a wire or sketch needs an axis of revolution; choose one"
+        )
     frame = axis_frame(*axis)
     return _assembled(pieces_of_edges(shape, frame, label), frame, wall, label, selected=False)
 
@@ -225,7 +230,7 @@ def _assembled(
         raise InputError(
             "NO_WALL",
             label,
-            "{} do not join to one wall; name the faces of the wall, or deposit them one by one",
+            "{} do not form one wall; select the faces of the wall, or deposit them in turn",
             names,
         )
     chain, issues = chains[0], []
@@ -234,14 +239,14 @@ def _assembled(
     if gap > contour.JOIN_MM:
         issues.append(
             Issue(
-                NOTE, "GAP", Text("a gap of {:.3g} mm between faces of {} is bridged", gap, label)
+                NOTE, "GAP", Text("a gap of {:.3g} mm between faces of {} was bridged", gap, label)
             )
         )
     if closed:
         chain, meridian = _wall_of_contour(chain, wall, label)
     else:
         if wall != "outer":
-            text = Text("{} is a surface: it has no {} wall, and is taken as it is", label, wall)
+            text = Text("{} is a surface without an {} wall; it is used as it is", label, wall)
             issues.append(Issue(WARNING, "OPEN_WALL", text))
         chain = contour.upright(chain)
         meridian = contour.meridian_of(chain)
@@ -271,12 +276,16 @@ def _wall_of_contour(chain: Chain, wall: str, label: str) -> tuple[Chain, Meridi
     walls = contour.walls(chain)
     if not walls:
         raise InputError(
-            "NO_WALL", label, "it has only flat faces across the axis; name the faces of the wall"
+            "NO_WALL",
+            label,
+            "all its faces are flat and across the axis; select the faces of the wall",
         )
     if wall == "outer":
         return walls[0], contour.meridian_of(walls[0])
     if len(walls) == 1:
-        raise InputError("NO_WALL", label, "it is solid and has no {} wall; use wall: outer", wall)
+        raise InputError(
+            "NO_WALL", label, "it is a solid without an {} wall; use wall: outer", wall
+        )
     if wall == "inner":
         return walls[-1], contour.meridian_of(walls[-1])
     return walls[0] + walls[-1], Meridian.chained(contour.halfway(walls[0], walls[-1]))

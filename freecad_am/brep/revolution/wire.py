@@ -28,7 +28,7 @@ def pieces_of_edges(shape: Any, frame: AxisFrame, label: str) -> list[Piece]:
         (name, edge) for name, edge in edges if np.hypot(*points[name][:, :2].T).max() > ACROSS
     ]
     if not off_axis:
-        raise InputError("NO_WALL", label, "its edges lie on the axis; choose another axis")
+        raise InputError("NO_WALL", label, "its edges coincide with the axis; choose another axis")
     everything = np.vstack([points[name] for name, _ in off_axis])
     outward = everything[np.argmax(np.hypot(everything[:, 0], everything[:, 1])), :2]
     outward = outward / np.linalg.norm(outward)
@@ -38,8 +38,8 @@ def pieces_of_edges(shape: Any, frame: AxisFrame, label: str) -> list[Piece]:
             raise InputError(
                 "NOT_REVOLUTION",
                 f"{label} {name}",
-                "it is {:.4g} mm off the plane of the wire and its axis; draw the wire "
-                "in a plane that holds the axis",
+                "it is {:.4g} mm off the plane of the wire and the axis; draw the wire in a "
+                "plane through the axis",
                 across,
             )
         behind = float((points[name][:, :2] @ outward).min())

@@ -25,7 +25,8 @@ def no_solid(source: Any, label: str, remedy: str) -> InputError:
         return InputError(
             "NO_SOLID",
             label,
-            "it is no solid, but {} closed shell(s) of {} face(s); make solids of them (Part, Convert to solid), or {}",
+            "it is not a solid, but {} closed shell(s) of {} face(s); convert them to solids "
+            "(Part, Convert to solid), or {}",
             len(source.Shells),
             len(faces),
             remedy,
@@ -34,7 +35,8 @@ def no_solid(source: Any, label: str, remedy: str) -> InputError:
     return InputError(
         "NO_SOLID",
         label,
-        "it is no solid, but {} face(s) that enclose nothing, as nothing is joined to the edge at {} of {}; {}, or {}",
+        "it is not a solid, but {} open face(s): nothing connects to the edge at {} of {}; {}, "
+        "or {}",
         len(faces),
         edge,
         face,

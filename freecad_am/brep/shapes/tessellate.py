@@ -29,7 +29,7 @@ def body(source: Any, name: str) -> Body:
         raise InputError(
             "NO_FACES",
             name,
-            "it has no faces to keep the nozzle clear of; choose a solid or a mesh",
+            "it has no faces for the clearance check; choose a solid or a mesh",
         )
     return Body(name, vertices, triangles)
 

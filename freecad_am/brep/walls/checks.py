@@ -114,8 +114,8 @@ def refuse_creases(wall: PatchWall, shape: Any, label: str) -> None:
         raise InputError(
             "BRANCHING_FACES",
             label,
-            "more than two faces meet in one edge at {}; a wall branches by smooth faces with "
-            "openings: leave one of them out",
+            "more than two faces meet in one edge at {}; remove one of the faces: a wall can "
+            "branch only through smooth faces with openings",
             place(branch_point),
         )
     two = edges.count == 2
@@ -138,8 +138,8 @@ def refuse_creases(wall: PatchWall, shape: Any, label: str) -> None:
         raise InputError(
             "CREASE",
             f"{label} {_edge_at(shape, ends[worst])}".strip(),
-            "{} and {} meet at an angle of {:.3g} deg at {}; a "
-            "wall's faces must run on smoothly, within {:g} deg: round the edge, or deposit the faces one after the other",
+            "{} and {} meet at an angle of {:.3g} deg at {}; faces of a wall must be tangent "
+            "within {:g} deg: round the edge, or deposit the faces in turn",
             names[0],
             names[1],
             np.degrees(angle[worst]),
@@ -200,7 +200,7 @@ def _refuse_below(height: float, radius: float, point: Array, where: str) -> Non
         raise InputError(
             "LAYER_HEIGHT",
             where,
-            "layers of {:g} mm are higher than the wall's smallest radius of curvature, {:.3g} mm at "
+            "layers of {:g} mm exceed the smallest radius of curvature of the wall, {:.3g} mm at "
             "{}; use lower layers, or a larger radius there",
             height,
             radius,

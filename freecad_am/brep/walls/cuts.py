@@ -58,16 +58,14 @@ def refuse_folded(wall: PatchWall, label: str) -> None:
             raise InputError(
                 "SELF_INTERSECTION",
                 f"{label} {wall.faces[k]}",
-                "the face folds back and cuts itself at {}; {}",
+                "the face folds back and intersects itself at {}; {}",
                 place(patch.at(start[:1])[0][0]),
                 FOLDS_TUBE if any(patch.periods) else FOLDS,
             )
 
 
-FOLDS_TUBE = Text("give the bend a larger radius than the tube")
-FOLDS = Text(
-    "redraw it with a larger radius there, or divide it and deposit its parts one after the other"
-)
+FOLDS_TUBE = Text("use a bend radius larger than the tube radius")
+FOLDS = Text("redraw it with a larger radius there, or divide it and deposit its parts in turn")
 MIN_BEND_SHARE = (
     0.02  # least distance, as a share of the length of a tube, of places that cross in a bend
 )
@@ -78,12 +76,13 @@ def _remedy(wall: PatchWall, triangles: tuple[int, int]) -> str:
     patch, other_patch = (int(wall.patch[k]) for k in triangles)
     if patch != other_patch:
         return Text(
-            "trim the faces where they cross, or choose those that do not cross and deposit the others as a feature of their own"
+            "trim the faces at their intersection, or deposit the intersecting faces as separate "
+            "features"
         )
     if _is_bend(wall, patch, triangles):
-        return Text("give bends a larger radius than the tube")
+        return Text("use bend radii larger than the tube radius")
     return Text(
-        "redraw the face so that it does not cross itself, or divide it and deposit its parts one after the other"
+        "redraw the face without self-intersection, or divide it and deposit its parts in turn"
     )
 
 
@@ -155,7 +154,7 @@ def _refuse_cuts(
             raise InputError(
                 "SELF_INTERSECTION",
                 label,
-                "the wall cuts itself at {} ({}); {}",
+                "the wall intersects itself at {} ({}); {}",
                 place(crossing),
                 Text.joined(" and ", names),
                 _remedy(wall, faces),

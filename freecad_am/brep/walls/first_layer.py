@@ -55,8 +55,8 @@ def find_wall(
         raise InputError(
             "NO_CONTACT",
             label,
-            "the wall does not meet {} in a closed curve (nearest {:.4g} mm); let it reach into it all "
-            "around",
+            "the wall does not meet {} in a closed curve (nearest {:.4g} mm); extend it into the "
+            "substrate all around",
             substrate_label,
             gap,
         )
@@ -65,7 +65,7 @@ def find_wall(
     _refuse_inside(tube, solid, label, substrate_label)
     _refuse_edges(tube, points, named, label)
     message = Text(
-        "the first layer lies on the wall and on {} within {} mm",
+        "the first layer follows the intersection of the wall and {} within {} mm",
         substrate_label,
         format_deviation(error),
     )
@@ -104,7 +104,7 @@ def _solid(substrate: Any, label: str) -> Any:
         raise no_solid(substrate, label, Text("choose a solid part for the wall to grow on"))
     if substrate.Volume <= 0.0:
         raise InputError(
-            "INSIDE_OUT", label, "the solid is turned inside out; repair it (Part, Check geometry)"
+            "INSIDE_OUT", label, "the solid is inside out; repair it (Part, Check geometry)"
         )
     return substrate
 
@@ -248,7 +248,7 @@ def _refuse_inside(tube: Tube, solid: Any, label: str, substrate_label: str) -> 
         raise InputError(
             "INSIDE",
             label,
-            "both ends of the wall lie in {}; let one of them end outside of it",
+            "both ends of the wall are inside {}; extend one end outside",
             substrate_label,
         )
 
@@ -271,6 +271,7 @@ def _refuse_edges(tube: Tube, points: Array, named: list[tuple[str, Any]], label
                 raise InputError(
                     "WALL_EDGE",
                     f"{label} {name}",
-                    "it has an edge that is neither straight across the tube at its end nor "
-                    "below the first layer, which cannot be deposited yet; fill openings, and cut ends straight",
+                    "it has an edge that is neither a straight end of the tube nor below the "
+                    "first layer, which cannot be deposited yet; fill openings, and cut ends "
+                    "straight",
                 )

@@ -53,8 +53,8 @@ def find_mesh_wall(
         raise InputError(
             "TOO_FINE",
             "strategy.layer_height",
-            "layers of {:g} mm ask for a mesh of the wall of about {} triangles, and "
-            "more than {:,} cannot be worked with; give more than {:g} mm, or deposit the wall in parts",
+            "layers of {:g} mm need a mesh of about {} triangles, but the limit is {:,}; use "
+            "layers above {:g} mm, or deposit the wall in parts",
             height,
             count(about),
             MAX_TRIANGLES,
@@ -123,7 +123,7 @@ def _from_edges(wall: MeshWall, names: Sequence[str], label: str) -> _Start:
             raise InputError(
                 "UNKNOWN_EDGE",
                 label,
-                "it has no {}; choose from the open ends of the mesh, by height: {}",
+                "it has no {}; choose from the open ends of the mesh, sorted by height: {}",
                 name,
                 available,
             )
@@ -144,7 +144,7 @@ def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
     standing = [loop for loop in loops if loop[:, 2].max() < lowest + height]
     if standing:
         text = Text(
-            "the first layer is the edge of {} at {}, which stands on the platform",
+            "the first layer follows the edge of {} at {}, on the platform",
             label,
             place(standing[0].mean(axis=0)),
         )
@@ -161,7 +161,7 @@ def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
         value = ground_distances(wall, ground)
         curves, _ = first_curves(wall, ground, value, find_rims(wall))
         text = Text(
-            "the first layer runs {:g} mm over the floor of {}, which is not deposited",
+            "the first layer starts {:g} mm above the floor of {}, which is not deposited",
             ABOVE * height,
             label,
         )
@@ -171,11 +171,12 @@ def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
         raise InputError(
             "NO_START",
             label,
-            "it stands on a point and has no open end to start from; give a substrate that it grows on, "
-            "or turn it so that an end lies on the platform",
+            "the part touches the platform at a point and has no open end to start from; choose "
+            "a substrate, or turn the part so that an open end is on the platform",
         )
     text = Text(
-        "the first layer is the lowest open end of {}, Edge1 at {}, which does not lie on the platform",
+        "the first layer follows the lowest open end of {}, Edge1 at {}, which is not on the "
+        "platform",
         label,
         place(loops[0].mean(axis=0)),
     )
@@ -200,8 +201,9 @@ def _refuse_loose(wall: MeshWall, start: _Start, label: str) -> None:
             raise InputError(
                 "GAP",
                 label,
-                "it is {} pieces that do not hang together, and no layer starts on the one at {}, {:.4g} mm "
-                "from where layers start; choose its edge to start from too, or deposit it by itself",
+                "it has {} separate pieces, and no layer starts on the piece at {}, {:.4g} mm "
+                "from the start of the layers; choose its start edge too, or deposit it as a "
+                "separate feature",
                 number,
                 place(piece_points[np.argmin(distance)]),
                 distance.min(),

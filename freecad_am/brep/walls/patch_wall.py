@@ -85,14 +85,14 @@ def _from_platform(
         raise InputError(
             "NO_SUBSTRATE",
             label,
-            "there is nothing to grow on: none of its edges lies on the platform, the plane Z = "
-            "{:.4g} mm through its lowest place {}; choose a substrate, or the edges to start from",
+            "the wall has no start: none of its edges is on the platform, the plane Z = {:.4g} "
+            "mm through its lowest point {}; choose a substrate or start edges",
             lowest[2],
             place(lowest),
         )
     curves = curves_along(edges, wall)
     text = Text(
-        "the first layer is the edge of {} at {}, which stands on the platform",
+        "the first layer follows the edge of {} at {}, on the platform",
         label,
         place(curves[0].points.mean(axis=0)),
     )
@@ -109,8 +109,7 @@ def several_loops(curves: Sequence[FirstCurve], label: str) -> list[Issue]:
             NOTE,
             "SEVERAL_LOOPS",
             Text(
-                "{} starts in {} curves, about {}: layers grow from all of them; choose the edges to "
-                "start from if only some are meant",
+                "{} starts from {} curves, about {}; choose start edges to use only some",
                 label,
                 len(curves),
                 positions,
@@ -130,8 +129,8 @@ def _refuse_fine(named: Sequence[tuple[str, Any]], height: float) -> None:
         raise InputError(
             "TOO_FINE",
             "strategy.layer_height",
-            "layers of {:g} mm ask for a mesh of the wall of about {} triangles, and "
-            "more than {:,} cannot be worked with; give more than {:g} mm, or deposit the wall in parts",
+            "layers of {:g} mm need a mesh of about {} triangles, but the limit is {:,}; use "
+            "layers above {:g} mm, or deposit the wall in parts",
             height,
             count(about),
             MAX_TRIANGLES,
@@ -185,8 +184,8 @@ def from_substrate(
         raise InputError(
             "OWN_SUBSTRATE",
             label,
-            "all of the wall lies on the surface of {}, as if it were a part of it; give the part "
-            "that is there before the wall, or none where the wall starts on the platform or from edges",
+            "the wall coincides with the surface of {}; choose the part below the wall, or clear "
+            "the substrate if the wall starts on the platform or from edges",
             substrate.label,
         )
     outside = value >= 0.0
@@ -195,8 +194,8 @@ def from_substrate(
         raise InputError(
             "NO_CONTACT",
             label,
-            "the wall does not touch {}: it comes nearest at {}, {:.4g} mm away; move it so that it "
-            "reaches in, at most {:g} mm may be missing",
+            "the wall does not touch {}: its nearest point is {}, {:.4g} mm away; extend it to "
+            "within {:g} mm of the substrate",
             substrate.label,
             place(wall.vertices[vertex]),
             gap,
@@ -207,8 +206,8 @@ def from_substrate(
         raise InputError(
             "INSIDE",
             label,
-            "the wall lies wholly in {} (at {} it is {:.4g} mm deep, and nowhere less); let it end "
-            "outside of the substrate",
+            "the wall is entirely inside {} (at {} it is {:.4g} mm deep, the least depth); "
+            "extend one end outside the substrate",
             substrate.label,
             place(wall.vertices[vertex]),
             depth,
@@ -220,17 +219,17 @@ def from_substrate(
         raise InputError(
             "NO_CONTACT",
             label,
-            "the wall meets {} in no curve that a layer can start from (shorter than a few {:.2g} mm); "
-            "let it reach in all around, or choose the edges to start from",
+            "the wall meets {} in no curve long enough to start a layer (all shorter than a few "
+            "{:.2g} mm); extend it into the substrate all around, or choose start edges",
             substrate.label,
             wall.mesh.typical_edge,
         )
-    message = Text("the first layer lies on the wall and on {}", substrate.label)
+    message = Text("the first layer follows the intersection of the wall and {}", substrate.label)
     if ground.facets:
         message += (
             Text(
-                "; between the edges of its triangles it runs smoothly, up to {} mm off them, about as far as they "
-                "are off what they stand for",
+                "; between the mesh edges it is smoothed, by up to {} mm, about the error of the "
+                "mesh itself",
                 format_deviation(off),
             )
             if off > 0.0

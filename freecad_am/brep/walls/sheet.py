@@ -97,9 +97,9 @@ def _too_fine(edge: float, about: float, label: str) -> InputError:
         return InputError(
             "TOO_FINE",
             label,
-            "with edges of {:.3g} mm, by layer height and smallest radius, the mesh of the wall has more "
-            "than {} triangles, about {:.2g}; use a larger layer height, round sharp bends more, or deposit the wall in "
-            "parts",
+            "with edges of {:.3g} mm, from the layer height and the smallest radius, the wall "
+            "mesh needs more than {} triangles, about {:.2g}; use a larger layer height, larger "
+            "bend radii, or deposit the wall in parts",
             edge,
             MAX_TRIANGLES,
             about,
@@ -107,9 +107,10 @@ def _too_fine(edge: float, about: float, label: str) -> InputError:
     return InputError(
         "TOO_FINE",
         label,
-        "halving the edges of the mesh of the wall down to {:.3g} mm, by layer height and smallest "
-        "radius, comes to no end, though about {:.2g} triangles would do, as where a face is twisted like that of a coil; "
-        "make it of shorter faces, or deposit the wall in parts or as a solid",
+        "refining the wall mesh to edges of {:.3g} mm, from the layer height and the smallest "
+        "radius, does not converge, though about {:.2g} triangles should suffice; strongly "
+        "twisted faces such as coils cause this: split the face, or deposit the wall in parts or "
+        "as a solid",
         edge,
         about,
     )
@@ -204,7 +205,7 @@ def _twisted(label: str, face_name: str, other_name: str) -> InputError:
     return InputError(
         "NOT_ORIENTABLE",
         label,
-        "{} cannot be turned to one side (a twisted band has no outside); divide the band, or "
-        "leave one of its faces out",
+        "{} has no consistent side, like a twisted band; divide the band, or remove one of its "
+        "faces",
         named,
     )

@@ -43,7 +43,7 @@ def curves_of(shape: Any, names: Sequence[str], wall: PatchWall, label: str) -> 
             raise InputError(
                 "NO_START",
                 f"{label} {name}",
-                "the edge is {:.4g} mm off the wall at {}; choose edges of the wall's own faces",
+                "the edge is {:.4g} mm off the wall at {}; choose edges of the wall faces",
                 off.max(),
                 place(points[np.argmax(off)]),
             )

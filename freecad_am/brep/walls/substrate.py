@@ -62,15 +62,15 @@ def substrate_of(source: Any, label: str, mend: float = 0.0) -> Substrate:
         return Substrate(label, None, solid, None, issues)
     if source is None or source.isNull() or not source.Solids:
         raise no_solid(
-            source, label, Text("choose a solid part or a closed mesh for the wall to grow on")
+            source, label, Text("choose a solid part or a closed mesh as substrate of the wall")
         )
     for solid in source.Solids:
         if solid.Volume <= 0.0:
             raise InputError(
                 "INSIDE_OUT",
                 label,
-                "the solid around {} is turned inside out (volume {:.4g} mm3); repair it (Part, Check "
-                "geometry), or turn it (Part, Reverse shapes)",
+                "the solid around {} is inside out (volume {:.4g} mm3); repair it (Part, Check "
+                "geometry), or reverse it (Part, Reverse shapes)",
                 place(solid.BoundBox.Center),
                 solid.Volume,
             )
@@ -110,7 +110,7 @@ def mesh_solid(
         )
     if not np.isfinite(points).all():
         raise InputError(
-            "BAD_FILE", label, "the mesh has points that are not numbers; export it again"
+            "BAD_FILE", label, "the mesh has points with invalid coordinates; export it again"
         )
     vertices, corners, _ = welded(
         np.asarray(points, dtype=np.float64),

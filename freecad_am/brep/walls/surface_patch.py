@@ -125,8 +125,8 @@ def _refuse_kinks(patch: Patch, face: Any, where: str) -> None:
                 raise InputError(
                     "ROUGH_WALL",
                     where,
-                    "at ({}) the face has an edge within itself, of {:.3g} deg; round it, or divide "
-                    "the face there and deposit its parts one after the other",
+                    "at ({}) the face has an inner crease of {:.3g} deg; round it, or divide the "
+                    "face there and deposit its parts in turn",
                     position,
                     np.degrees(turn.max()),
                 )
@@ -148,8 +148,8 @@ def _checked(patch: Patch, face: Any, where: str) -> Patch:
         raise InputError(
             "ROUGH_WALL",
             where,
-            "at ({}) it is {:.3g} mm off the spline that stands for it, more than {:g} mm; rebuild the "
-            "face, for instance as a loft or a sweep",
+            "at ({}) the spline that approximates it is {:.3g} mm off, more than {:g} mm; "
+            "rebuild the face, for instance as a loft or a sweep",
             position,
             off.max(),
             ERROR,

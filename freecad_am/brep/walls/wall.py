@@ -59,8 +59,8 @@ def tubes(
         raise InputError(
             "NOT_ONE_SURFACE",
             label,
-            "{} is not a torus, cylinder or cone: a wall of several faces must be of one of "
-            "these; choose one face",
+            "{} is not a torus, cylinder or cone, as a wall of several faces requires; choose "
+            "one face",
             first_name,
         )
     for name, face in named[1:]:
@@ -81,9 +81,7 @@ def faces_by_name(shape: Any, names: Sequence[str], label: str) -> dict[str, Any
     UNKNOWN_FACE for a name that the shape lacks.
     """
     if shape is None or shape.isNull() or not shape.Faces:
-        raise InputError(
-            "NO_WALL", label, "it has no faces; choose a part with the faces of the wall"
-        )
+        raise InputError("NO_WALL", label, "it has no faces; choose a part with wall faces")
     faces = {f"Face{index}": face for index, face in enumerate(shape.Faces, start=1)}
     for name in names:
         if name not in faces:
@@ -104,7 +102,7 @@ def _chosen(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any
         raise InputError(
             "NO_WALL",
             label,
-            "it has {} faces that are not flat; name the wall's in part.faces",
+            "it has {} faces that are not flat; name the wall faces in part.faces",
             len(curved),
         )
     return curved
@@ -124,7 +122,7 @@ def _refuse_other(first_face: Any, face: Any, where: str, first_name: str) -> No
         raise InputError(
             "NOT_ONE_SURFACE",
             where,
-            "it is not on the surface of {} ({:.3g} mm off); walls of several surfaces cannot be "
+            "it is off the surface of {} by {:.3g} mm; walls of several surfaces cannot be "
             "deposited yet: choose faces of one torus, cylinder or cone",
             first_name,
             off,
@@ -155,15 +153,15 @@ def _ranges(faces: list[Any], kind: str, label: str) -> tuple[float, float]:
         raise InputError(
             "NOT_CLOSED",
             label,
-            "the faces of the wall do not close around; walls that are open (half shells) cannot be "
-            "deposited yet: choose a full tube",
+            "the wall faces do not close around; open walls (half shells) cannot be deposited "
+            "yet: choose a full tube",
         )
     low, high = min(low for low, _ in rising), max(high for _, high in rising)
     if kind == TORUS and high - low > TURN - 1e-6:
         raise InputError(
             "NO_WALL",
             label,
-            "a whole ring has no end to start from; cut it where it stands on the substrate",
+            "a full ring has no end to start from; cut it at the substrate",
         )
     return low, high
 
@@ -268,8 +266,8 @@ def _tables(face: Any, faces: tuple[str, ...], label: str) -> tuple[Tube, Tube]:
             raise InputError(
                 "ROUGH_WALL",
                 f"{label} {faces[0]}",
-                "the wall bends too sharply: {:.3g} mm off between {} x {} samples; "
-                "smooth it, or cut it where it has an edge",
+                "the wall bends too sharply: the error is {:.3g} mm between {} x {} samples; "
+                "smooth it, or cut it at the crease",
                 error,
                 n,
                 m,
@@ -301,8 +299,7 @@ def _refuse_seam(
             raise InputError(
                 "ROUGH_WALL",
                 where,
-                "it has an edge along its seam, which cannot be deposited yet; make it "
-                "smooth there",
+                "it has a crease along its seam, which cannot be deposited yet; smooth it there",
             )
 
 

@@ -127,8 +127,8 @@ def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str,
         raise InputError(
             "NO_WALL",
             label,
-            "it is a solid whose faces that are not flat ({}) are not one wall; name the faces of the "
-            "wall: part.faces of a job, or select them",
+            "it is a solid whose curved faces ({}) do not form one wall; select the wall faces, "
+            "or name them in part.faces of a job",
             listed,
         )
     flat = next(
@@ -144,8 +144,8 @@ def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str,
         raise InputError(
             "NO_WALL",
             label,
-            "its faces that are not flat run on smoothly into {}, which is; name the faces of the wall: "
-            "part.faces of a job, or select them",
+            "its curved faces are tangent to {}, which is flat; select the wall faces, or name "
+            "them in part.faces of a job",
             flat,
         )
     return curved

@@ -77,7 +77,7 @@ def fill(
         raise InputError(
             "PATTERN",
             "filling",
-            "there is no pattern {!r}; use one of {}",
+            "unknown pattern {!r}; use one of {}",
             pattern,
             ", ".join(PATTERNS),
         )

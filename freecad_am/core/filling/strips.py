@@ -28,7 +28,7 @@ def strip_contours(
         raise InfeasibleError(
             "THIN_REGION",
             "filling",
-            "a region round the hub is nowhere as wide as a bead ({:.3g} mm); choose thin = "
+            "a region around the hub is narrower than a bead ({:.3g} mm) everywhere; use thin = "
             "single, a narrower bead or a margin",
             2.0 * beads.inset,
         )

@@ -52,6 +52,6 @@ def _read_blocks(path: str | Path, largest: int, code: str, where: str) -> Itera
         raise InputError(
             code,
             where,
-            "the file is larger than {} MB, the most that is read; check that it is the right one",
+            "the file is larger than {} MB, the maximum; check that it is the right one",
             largest,
         )

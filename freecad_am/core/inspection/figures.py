@@ -143,8 +143,8 @@ def circle(
         raise InputError(
             "FEW_POINTS",
             where,
-            "{} points lie within {:g} mm of the height {:g} mm; measure more there, choose other "
-            "heights, or a wider band",
+            "only {} points are within {:g} mm of the height {:g} mm; measure more points there, "
+            "choose other heights, or a wider band",
             len(slid),
             band,
             height,
@@ -228,7 +228,8 @@ def warnings_of(circles: Sequence[Circle]) -> list[str]:
     """Warnings about circles that were not measured all round."""
     return [
         Text(
-            "the circle at {:g} mm was not measured all round: {:.0f} deg between neighbours",
+            "the circle at {:g} mm was not measured all around: neighbouring points are {:.0f} "
+            "deg apart",
             circle.height,
             np.degrees(circle.gap),
         )

@@ -49,8 +49,8 @@ def refuse_family(toolpath: Toolpath, where: str) -> None:
         raise InputError(
             "NOT_YET",
             where,
-            "layers of the family {} are not fitted to a scan yet; solids in plane layers and walls on a "
-            "substrate are: leave the scan out",
+            "layers of the family {} cannot be fitted to a scan yet; only solids in planar "
+            "layers and walls on a substrate can: remove the scan",
             toolpath.family,
         )
 
@@ -165,9 +165,9 @@ def _refusing(scan: Scan, layer: int, height: float) -> Off:
             raise InputError(
                 "SCAN_MISSES",
                 scan.label,
-                "at {} of {} places of layer {} there are no points of the scan around, the "
-                "first at {}; it reaches over {:.4g} mm, the layer over {:.4g} mm: scan all that the layer lies on, or "
-                "check its unit and fit",
+                "at {} of {} places in layer {} the scan has no nearby points, first at {}; the "
+                "scan extends over {:.4g} mm, the layer over {:.4g} mm: scan the whole area "
+                "below the layer, or check unit and fit",
                 len(bare),
                 len(points),
                 layer,
@@ -180,8 +180,8 @@ def _refusing(scan: Scan, layer: int, height: float) -> Off:
             raise InputError(
                 "SCAN_OFF",
                 scan.label,
-                "the scan lies {:.4g} mm from layer {} at {}, more than substrate.scan_within = "
-                "{:g} mm; check that it is of this part, its unit and its fit",
+                "the scan is {:.4g} mm away from layer {} at {}, more than substrate.scan_within "
+                "= {:g} mm; check that it shows the right part, in the right unit and position",
                 heights.off[farthest],
                 layer,
                 place(points[farthest]),
@@ -257,12 +257,12 @@ def _record(
 def _motion_words(motion: Array) -> str:
     """The motion that aligned a scan with the plan, in words."""
     if np.array_equal(motion, np.eye(4)):
-        return Text("; it was taken as it was measured, in the part's coordinates")
+        return Text("; it was used as measured, in part coordinates")
     angle = math.degrees(
         math.acos(min(1.0, max(-1.0, 0.5 * (float(np.trace(motion[:3, :3])) - 1.0))))
     )
     return Text(
-        "; it was turned by {:.3f} deg and its origin moved by {:.3f} mm onto the plan",
+        "; it was rotated by {:.3f} deg and its origin moved by {:.3f} mm to match the plan",
         angle,
         float(np.linalg.norm(motion[:3, 3])),
     )
@@ -284,9 +284,10 @@ def _issues(record: Fitted, height: float) -> list[Issue]:
             NOTE,
             "SCAN_FITTED",
             Text(
-                "{}: layer {} lies on what was scanned, {:.3f} to {:.3f} mm from the plan, now within "
-                "{:.3f} mm; {} layers lead back to the plan. {} points were used, {} that face another way left out; along "
-                "the beads it rises by up to {:.1f} deg against the plan{}",
+                "{}: layer {} starts on the scan, which deviates {:.3f} to {:.3f} mm from the "
+                "plan, and follows it within {:.3f} mm; {} layers blend back to the plan. {} "
+                "points were used, {} with opposite normals ignored; beads rise by up to {:.1f} "
+                "deg against the plan{}",
                 record.file,
                 record.layer,
                 record.off.min(),
@@ -306,8 +307,8 @@ def _issues(record: Fitted, height: float) -> list[Issue]:
                 WARNING,
                 REMAINS,
                 Text(
-                    "the part has too few layers to lead back to the plan: the last one is up to {:.3f} mm "
-                    "off it; a larger substrate.scan_band leads back in fewer layers",
+                    "the part has too few layers to blend back to the plan: the last one is up "
+                    "to {:.3f} mm off; raise substrate.scan_band to use fewer layers",
                     record.remains,
                 ),
             )

@@ -143,8 +143,8 @@ def _aligned(
             raise InputError(
                 "NOT_ON_PART",
                 where,
-                "{} of its points lie on {}; choose the object that was measured, its unit, or pairs "
-                "of points to begin with",
+                "only {} of its points match {}; choose the measured object, its unit, or "
+                "initial pairs of points",
                 len(on_part),
                 planned.name,
             )
@@ -252,7 +252,7 @@ def _unlike(points: Array, planned: Planned) -> list[Issue]:
             WARNING,
             "SMALL",
             Text(
-                "the points reach over {:.3g} mm, {} over {:.3g} mm; check the unit of the file",
+                "the points extend over {:.3g} mm, {} over {:.3g} mm; check the unit of the file",
                 measured,
                 planned.name,
                 part_size,
@@ -283,21 +283,19 @@ def _issues(
             Issue(
                 NOTE,
                 "PAST_EDGES",
-                Text("{} points lie past the edges of {} and count nowhere", past, planned.name),
+                Text("{} points beyond the edges of {} are ignored", past, planned.name),
             )
         )
     out = int((within & ~fitted).sum())
     if out:
-        text = Text(
-            "{} points were left out of the fit, the farthest off; the figures have them", out
-        )
+        text = Text("the fit excludes the {} farthest points; the results include them", out)
         issues.append(Issue(NOTE, "LEFT_OUT", text))
     if planned.chord > 0.0 and planned.exact is planned.nearest:
         issues.append(
             Issue(
                 NOTE,
                 "CHORD",
-                Text("{} is known to {:g} mm, by triangles", planned.name, planned.chord),
+                Text("{} is accurate to {:g} mm, as a mesh", planned.name, planned.chord),
             )
         )
     return issues

@@ -68,15 +68,13 @@ def ply(data: bytes, where: str) -> Array:
         or not first_element[2].isdecimal()
     ):
         raise InputError(
-            "BAD_FILE", where, "it is no PLY file that begins with its vertices; export it again"
+            "BAD_FILE", where, "it is not a PLY file with vertices first; export it again"
         )
     end = element_lines[1] if len(element_lines) > 1 else len(lines)
     fields = [line for line in lines[element_lines[0] + 1 : end] if line[:1] == ["property"]]
     names = [line[-1] for line in fields]
     if not {"x", "y", "z"} <= set(names) or any(line[1] not in _PLY_TYPES for line in fields):
-        raise InputError(
-            "BAD_FILE", where, "its vertices have no plain x, y and z; export it again"
-        )
+        raise InputError("BAD_FILE", where, "its vertices lack plain x, y and z; export it again")
     count = int(first_element[2])
     if kind == "ascii":
         rows = [line.split() for line in body.splitlines()[:count]]
@@ -96,7 +94,7 @@ def ply(data: bytes, where: str) -> Array:
         raise InputError(
             "BAD_FILE",
             where,
-            "it is cut short after {} of {} vertices; export it again",
+            "it is truncated after {} of {} vertices; export it again",
             len(vertices),
             count,
         )
@@ -108,5 +106,5 @@ def _numbers(texts: list[list[bytes]], where: str) -> Array:
         return np.array(texts, dtype=np.float64).reshape(-1, 3)
     except ValueError:
         raise InputError(
-            "BAD_FILE", where, "a coordinate of its vertices is not a number; export it again"
+            "BAD_FILE", where, "a vertex coordinate is not a number; export it again"
         ) from None

@@ -58,8 +58,8 @@ def read(path: str | Path, unit: str = AUTO) -> Measured:
         raise InputError(
             "UNSUPPORTED_FILE",
             file.name,
-            "{} is not read as points; use {}",
-            suffix or "no ending",
+            "{} is not a supported point format; use {}",
+            suffix or "no extension",
             suffixes,
         )
     try:
@@ -75,7 +75,7 @@ def read(path: str | Path, unit: str = AUTO) -> Measured:
 def parse(data: bytes, label: str, unit: str = AUTO) -> Measured:
     """As `read`, from the bytes of a file with this name."""
     if not data.strip():
-        raise InputError("EMPTY_FILE", label, "it is empty; export the points again")
+        raise InputError("EMPTY_FILE", label, "the file is empty; export the points again")
     suffix = Path(label).suffix.lower()
     if suffix in MESHES:
         points, messages, named = (
@@ -89,11 +89,11 @@ def parse(data: bytes, label: str, unit: str = AUTO) -> Measured:
     finite = np.isfinite(points).all(axis=1)
     if not finite.all():
         messages.append(
-            Text("{} points without finite coordinates are left out", int((~finite).sum()))
+            Text("{} points without finite coordinates are ignored", int((~finite).sum()))
         )
         points, level = points[finite], WARNING
     if not len(points):
-        raise InputError("NO_POINTS", label, "there are no points in it; give rows of x y z")
+        raise InputError("NO_POINTS", label, "the file has no points; give rows of x y z")
     unit_name = unit if unit != AUTO else named or "mm"
     messages.append(
         Text(
@@ -103,7 +103,7 @@ def parse(data: bytes, label: str, unit: str = AUTO) -> Measured:
         )
     )
     if len(points) > MAX_POINTS:
-        messages.append(Text("of {} points {} are kept, evenly", len(points), MAX_POINTS))
+        messages.append(Text("from {} points {} are kept, evenly", len(points), MAX_POINTS))
         points = points[np.linspace(0, len(points) - 1, MAX_POINTS).astype(np.intp)]
     return Measured(
         points * UNITS[unit_name],
@@ -153,7 +153,7 @@ def _table(text: str, label: str) -> tuple[Array, list[str], str]:
         raise InputError(
             "BAD_FILE",
             f"{label} line {bad[0]}",
-            "this and most other lines are not points; give rows of x y z",
+            "most lines, such as this one, are not points; give rows of x y z",
         )
     if bad:
         messages.append(
@@ -177,7 +177,7 @@ def _unit_of_remarks(texts: list[str], label: str) -> str:
             raise InputError(
                 "BAD_UNIT",
                 label,
-                "the unit in {!r} is not read; use mm, cm, m, um or inch",
+                "the unit in {!r} is not supported; use mm, cm, m, um or inch",
                 text[:LONGEST_REMARK],
             )
     return unit
@@ -207,7 +207,8 @@ def _check_widths(
             raise InputError(
                 "BAD_FILE",
                 f"{label} line {number}",
-                "it has {} values, the first row {}: commas may stand before decimals too; export it with decimal points",
+                "the row has {} values, the first {}: commas may be decimal separators too; "
+                "export it with decimal points",
                 len(row),
                 width,
             )
@@ -223,7 +224,7 @@ def _signs(lines: list[str], label: str) -> tuple[str | None, str]:
         scores.append(sum(count >= 3 for count in counts))
     best = int(np.argmax(scores))
     if not lines or scores[best] == 0:
-        raise InputError("NO_POINTS", label, "no line of it has three numbers; give rows of x y z")
+        raise InputError("NO_POINTS", label, "no line contains three numbers; give rows of x y z")
     delimiter, comma = _SIGNS[best]
     if delimiter == ",":
         rows = [_cells(line, delimiter) for line in tail]
@@ -232,8 +233,8 @@ def _signs(lines: list[str], label: str) -> tuple[str | None, str]:
             raise InputError(
                 "AMBIGUOUS",
                 label,
-                "commas stand between columns and before decimals alike; export it with points as "
-                "decimal signs, or semicolons between columns",
+                "commas separate both columns and decimals; export it with decimal points, or "
+                "with semicolons between columns",
             )
     return delimiter, comma
 
@@ -270,7 +271,7 @@ def _columns(
                 raise InputError(
                     "AMBIGUOUS",
                     label,
-                    "several columns are {}: {}; keep the one that was measured",
+                    "several columns are called {}: {}; keep the measured one",
                     twice,
                     ", ".join(cell for cell, name in zip(head, plain) if name == twice),
                 )
@@ -287,7 +288,7 @@ def _columns(
             raise InputError(
                 "AMBIGUOUS",
                 label,
-                "its columns are called {}; call those of the coordinates x, y and z",
+                "its columns are called {}; name the coordinates x, y and z",
                 ", ".join(head),
             )
     full_rows = [row for _, row in rows if len(row) == width]
@@ -322,7 +323,7 @@ def _check_units(names: list[str], label: str) -> None:
             raise InputError(
                 "BAD_UNIT",
                 label,
-                "the unit of the column {!r} is not read; use mm, cm, m, um or inch",
+                "the unit of the column {!r} is not supported; use mm, cm, m, um or inch",
                 name,
             )
     units = {_unit_in(name) for name in names} - {""}
@@ -330,7 +331,7 @@ def _check_units(names: list[str], label: str) -> None:
         raise InputError(
             "BAD_UNIT",
             label,
-            "its columns have different units: {}; export them in one",
+            "its columns have different units: {}; export them in one unit",
             ", ".join(names),
         )
 

@@ -61,7 +61,7 @@ def refuse_too_few(points: Array, where: str) -> None:
         raise InputError(
             "TOO_FEW_POINTS",
             where,
-            "{} points do not hold a part; measure {} or more all over",
+            "{} points cannot locate a part; measure at least {}, spread over it",
             len(points),
             LEAST_POINTS,
         )
@@ -93,7 +93,7 @@ def register(
         raise InputError(
             "OUT_OF_RANGE",
             where,
-            "{:g} of the points cannot be left out; give 0 or more and less than 0.5",
+            "the excluded share {:g} is out of range; use 0 or more and less than 0.5",
             trim,
         )
     best = roughly(points, surface, starts, trim, radius, allowed, free)
@@ -102,7 +102,7 @@ def register(
         raise InfeasibleError(
             "NOT_SETTLED",
             where,
-            "the measured points do not settle on the part; give pairs of points to begin with",
+            "the registration does not converge; give initial pairs of points",
         )
     aligned = _transform(points, motion)
     distance, normal = surface(aligned)
@@ -180,7 +180,7 @@ def by_pairs(measured: Array, planned: Array, where: str) -> Array:
         raise InputError(
             "TOO_FEW_PAIRS",
             where,
-            "{} pairs of points; give three or more",
+            "{} pairs of points are too few; give at least three",
             min(len(measured), len(planned)),
         )
     measured_centre, planned_centre = measured.mean(axis=0), planned.mean(axis=0)
@@ -191,7 +191,8 @@ def by_pairs(measured: Array, planned: Array, where: str) -> Array:
         raise InputError(
             "PAIRS_IN_LINE",
             where,
-            "the pairs of points lie in one line, about which the part can turn; choose others",
+            "the pairs of points are collinear, so the part could rotate about their line; "
+            "choose others",
         )
     turn = u_matrix @ np.diag([1.0, 1.0, np.linalg.det(u_matrix @ right)]) @ right
     return np.asarray(pose(turn, planned_centre - turn @ measured_centre))[None]

@@ -112,7 +112,7 @@ def _algebraic(points: Array, where: str) -> tuple[Array, float]:
         raise InputError(
             "TOO_FEW_POINTS",
             where,
-            "{} points do not make a {}; measure {} or more",
+            "{} points do not define a {}; measure at least {}",
             len(points),
             Word(name),
             dimension + 1,
@@ -125,7 +125,7 @@ def _algebraic(points: Array, where: str) -> tuple[Array, float]:
         raise InputError(
             "FLAT_POINTS",
             where,
-            "all points lie in one {}, which no {} fits; measure further round",
+            "all points are in one {}, and no {} fits; measure over a wider arc",
             Word(shape),
             Word(name),
         )

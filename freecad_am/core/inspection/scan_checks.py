@@ -37,14 +37,14 @@ def refuse_size(points: Array, label: str, body: Body) -> None:
     )
     unit = next(units, "")
     remedy = (
-        Text("in {} it would be about as large, give that as substrate.scan_unit", unit)
+        Text("in {} the size would match; set it as substrate.scan_unit", unit)
         if unit
         else ("check its unit, substrate.scan_unit, and what was scanned")
     )
     raise InputError(
         "SCAN_UNIT",
         label,
-        "the scan reaches over {:.4g} mm, {} over {:.4g} mm; {}",
+        "the scan extends over {:.4g} mm, {} over {:.4g} mm; {}",
         size,
         body.name,
         body_size,
@@ -61,9 +61,9 @@ def refuse_other(points: Array, label: str, body: Body, within: float) -> None:
     raise InputError(
         "SCAN_OTHER",
         label,
-        "{:.0%} of its {} points lie within {:g} mm of {}, at least {:.0%} have to; half of them are "
-        "farther off than {:.3g} mm. It reaches over {:.4g} mm, {} over {:.4g} mm: scan this part, crop the scan to it, "
-        "check its unit, or raise substrate.scan_within",
+        "only {:.0%} of its {} points are within {:g} mm of {}, at least {:.0%} are needed; the "
+        "median distance is {:.3g} mm. The scan extends over {:.4g} mm, {} over {:.4g} mm: scan "
+        "the right part, crop the scan, check its unit, or raise substrate.scan_within",
         share,
         len(points),
         within,

@@ -50,7 +50,7 @@ def align_scan(points: Array, body: Body, label: str) -> Array:
             sample = sample[off <= max(OUTLYING * 1.4826 * float(np.median(off)), 1e-6)]
     except AmError as error:
         raise InputError(
-            "SCAN_OTHER", label, "it cannot be laid onto {}: {}", body.name, error.message
+            "SCAN_OTHER", label, "it cannot be aligned with {}: {}", body.name, error.message
         ) from None
     return start
 
@@ -80,8 +80,8 @@ def _attitude(points: Array, surface: Surface, starts: Array, label: str) -> Arr
         raise InputError(
             "SCAN_AMBIGUOUS",
             label,
-            "it lies as well on the part turned by {:.0f} deg: the scan does not show which; give "
-            "three points of it and where they are on the part as substrate.scan_pairs, or measure it in the part's "
+            "it fits equally well on the part rotated by {:.0f} deg, so its orientation is "
+            "ambiguous; give three pairs of points as substrate.scan_pairs, or measure in part "
             "coordinates",
             angle,
         )

@@ -48,7 +48,7 @@ def planned(source: object, name: str) -> Planned:
     raise InputError(
         "NOT_FOR_FAMILY",
         name,
-        "curves and cladding plan no surface; compare the points with the part",
+        "curves and cladding have no planned surface; compare the points with the part",
     )
 
 
@@ -113,7 +113,7 @@ def _toolpath_surface(toolpath: Toolpath, name: str) -> Planned:
         raise InputError(
             "NOT_FOR_FAMILY",
             name,
-            "its beads fill solids, most are inside; compare the points with the feature",
+            "its beads fill solids, so most are inside; compare the points with the feature",
         )
     samples: list[Array] = []
     normals: list[Array] = []

@@ -364,7 +364,7 @@ def _refuse_otherwise(machine: Machine, arrangement: Arrangement, has_external: 
         raise InputError(
             "WRONG_SETUP",
             "cell.external",
-            "{}: external axes need the tool on the robot; use setup: "
-            "tool-on-robot, or leave external out",
+            "{}: external axes need the tool on the robot; use setup: tool-on-robot, or remove "
+            "external",
             arrangement.setup,
         )

@@ -184,13 +184,12 @@ def _check(loaded: Sequence[tuple[External, Machine]]) -> None:
             raise InputError(
                 "NOT_YET",
                 WHERE,
-                "{} carries the robot and is not a track, which is one axis that slides; "
-                "choose a track",
+                "{} carries the robot but is not a track, a single prismatic axis; choose a track",
                 machine.title,
             )
     if len(tracks) > 1:
         raise InputError(
-            "NOT_YET", WHERE, "{} mechanisms carry the robot; give one track", len(tracks)
+            "NOT_YET", WHERE, "{} mechanisms carry the robot; choose one track", len(tracks)
         )
     carriers = [machine for named_axis, machine in loaded if named_axis.carries == PART]
     for machine in carriers:
@@ -198,14 +197,14 @@ def _check(loaded: Sequence[tuple[External, Machine]]) -> None:
             raise InputError(
                 "NOT_YET",
                 WHERE,
-                "{} has an axis that slides and carries the part, which cannot be planned "
-                "yet; use turning axes",
+                "{} carries the part on a prismatic axis, which cannot be planned yet; use "
+                "revolute axes",
                 machine.title,
             )
     count = sum(machine.chain.axes for machine in carriers)
     if count > 2:
         raise InputError(
-            "NOT_YET", WHERE, "{} axes carry the part; give one or two turning axes", count
+            "NOT_YET", WHERE, "{} axes carry the part; use one or two revolute axes", count
         )
 
 
@@ -216,8 +215,7 @@ def _check_names(robot: Machine, loaded: Sequence[tuple[External, Machine]]) -> 
             raise InputError(
                 "BAD_VALUE",
                 WHERE,
-                "{} is the machine of the cell, which cannot carry itself; name what "
-                "stands beside it",
+                "{} is the machine of the cell and cannot carry itself; name a track or positioner",
                 machine.title,
             )
         for earlier_axis, earlier_machine in loaded[:k]:
@@ -227,8 +225,7 @@ def _check_names(robot: Machine, loaded: Sequence[tuple[External, Machine]]) -> 
                 raise InputError(
                     "BAD_VALUE",
                     WHERE,
-                    "{} and {} are two mechanisms of one name, {!r}; give one of the files "
-                    "another id",
+                    "{} and {} share the name {!r}; change the id of one file",
                     named_axis.machine,
                     earlier_axis.machine,
                     machine.id,
@@ -237,8 +234,7 @@ def _check_names(robot: Machine, loaded: Sequence[tuple[External, Machine]]) -> 
                 raise InputError(
                     "BAD_VALUE",
                     WHERE,
-                    "{!r} stands there twice; leave one of them out, or give a second one "
-                    "of the same kind a pose of its own",
+                    "{!r} is listed twice; remove one, or give the second one its own pose",
                     machine.id,
                 )
 
@@ -270,7 +266,7 @@ def load(name: str, folders: Sequence[str] = ()) -> Machine:
         raise InputError(
             "UNKNOWN_MACHINE",
             WHERE,
-            "{!r} is not known; built in are {}; or give the path of a machine file or a URDF",
+            "unknown mechanism {!r}; use one of {}, or the path of a machine file or a URDF",
             name,
             built_in,
         ) from None

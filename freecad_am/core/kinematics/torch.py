@@ -53,7 +53,7 @@ def torch(body: Body, nozzle: NozzleParameters) -> Torch:
     """
     if inside_of(body) is None:
         raise InputError(
-            CODE, WHERE, "it is open, so that nobody knows what is inside of it; give closed solids"
+            CODE, WHERE, "the shape is open, so its inside is undefined; give closed solids"
         )
     turned_body = body.move(_TURNED)
     corners = turned_body.corners()
@@ -62,8 +62,9 @@ def torch(body: Body, nozzle: NozzleParameters) -> Torch:
         raise InputError(
             CODE,
             WHERE,
-            "it is {:.4g} mm from its origin, which is where the deposit comes out; put the tip "
-            "of the wire or nozzle at the origin of the file, Z out of the nozzle, in mm",
+            "it is {:.4g} mm away from its origin, the point where the material exits; put the "
+            "tip of the wire or nozzle at the origin of the file, with Z pointing out of the "
+            "nozzle, in mm",
             distance,
         )
     low = float(turned_body.vertices[:, 2].min())
@@ -71,8 +72,8 @@ def torch(body: Body, nozzle: NozzleParameters) -> Torch:
         raise InputError(
             CODE,
             WHERE,
-            "it reaches {:.4g} mm beyond its origin along Z, where the deposit is; let Z of the "
-            "file point out of the nozzle, away from the torch, and put the origin at its tip",
+            "it extends {:.4g} mm beyond its origin along Z, into the deposit; point Z of the "
+            "file out of the nozzle, away from the torch, with the origin at the tip",
             -low,
         )
     _refuse_wider(turned_body, nozzle)
@@ -186,7 +187,7 @@ def _refuse_wider(torch_body: Body, nozzle: NozzleParameters) -> None:
     min_angle = float(np.degrees(np.arctan(np.maximum((radii - tip) / high, 0.0).max())))
     remedy = (
         Text(
-            "cell.nozzle.half_angle of {:.4g} deg at least", np.ceil(min_angle * 10.0 + 0.1) / 10.0
+            "cell.nozzle.half_angle of at least {:.4g} deg", np.ceil(min_angle * 10.0 + 0.1) / 10.0
         )
         if min_angle < 89.0
         else ("a larger cell.nozzle.diameter")
@@ -194,8 +195,9 @@ def _refuse_wider(torch_body: Body, nozzle: NozzleParameters) -> None:
     raise InputError(
         CODE,
         WHERE,
-        "{:.4g} mm over its tip it reaches {:.4g} mm from its axis, the nozzle as a cone {:.4g} mm, and it is "
-        "the cone that is kept clear of the deposit; give {}, or a smaller cell.nozzle.length",
+        "{:.4g} mm above its tip the torch extends {:.4g} mm from its axis, but the nozzle cone "
+        "only {:.4g} mm, and only the cone is checked against the deposit; set {}, or a smaller "
+        "cell.nozzle.length",
         corners[worst, 2],
         radii[worst],
         allowed[worst],

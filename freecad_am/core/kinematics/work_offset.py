@@ -61,8 +61,9 @@ def offset_of_cell(parameters: CellParameters, arrangement: Arrangement) -> Work
         raise InputError(
             CODE,
             WHERE,
-            "points are touched of a part that stands still under a tool on the robot; leave them "
-            "out, and measure cell.platform or the pose of what carries the part",
+            "touched points calibrate a part that the robot moves, but here the part is fixed "
+            "and the robot holds the tool; remove them, and measure cell.platform or the pose of "
+            "the positioner",
         )
     return work_offset(points, parameters.touched_tolerance)
 
@@ -77,8 +78,7 @@ def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
         raise InputError(
             CODE,
             WHERE,
-            "{} point(s) do not determine where a part stands; touch {} or more, far from one "
-            "another and not on a line",
+            "{} point(s) cannot locate a part; touch at least {}, spread out and not collinear",
             len(points),
             MIN_POINTS,
         )
@@ -96,9 +96,9 @@ def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
             raise InputError(
                 CODE,
                 WHERE,
-                "the points {} are on a line, or all in one place: they leave open how the "
-                "part is turned about it; touch one off that line",
-                Word("touched" if side == "robot" else "of the part"),
+                "the points {} are collinear or coincide, so the rotation about their line is "
+                "undetermined; touch a point off that line",
+                Word("touched" if side == "robot" else "on the part"),
             )
     _refuse_other_size(float(np.linalg.norm(centred_robot) / np.linalg.norm(centred_part)))
     u, _, vt = np.linalg.svd(centred_part.T @ centred_robot)
@@ -111,9 +111,9 @@ def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
         raise InputError(
             CODE,
             WHERE,
-            "point {} is {:.3g} mm from where it was touched (of all: {} mm), more than cell.touched_tolerance "
-            "of {:g} mm; touch it again, and see that the points stand in the same order, are of this part, and that the "
-            "tip is calibrated",
+            "point {} is {:.3g} mm from its touched position (all points: {} mm), more than "
+            "cell.touched_tolerance = {:g} mm; touch it again, and check the order of the "
+            "points, the part, and the tip calibration",
             worst + 1,
             residual[worst],
             text,
@@ -130,11 +130,11 @@ def _refuse_other_size(ratio: float) -> None:
     raise InputError(
         CODE,
         WHERE,
-        "what was touched is {:.4g} times as large as what is planned; {}",
+        "the touched points are {:.4g} times as far apart as planned; {}",
         ratio,
         Word(
-            Text("one of them is in {}, give both in mm", unit)
+            Text("one set is in {}; give both in mm", unit)
             if unit
-            else "these are points of another part, or in another order"
+            else "the points belong to another part, or are in another order"
         ),
     )

@@ -130,7 +130,7 @@ def _searched(
                     Issue(
                         NOTE,
                         REMEDY,
-                        Text("with {} this job is feasible; tried, not applied", change.remedy),
+                        Text("the job is feasible with {}; tested, not applied", change.remedy),
                     )
                 ]
             if not full_plans_left:

@@ -106,7 +106,9 @@ class NamePage(Page):
         title = self.title_of.text().strip()
         if not title:
             raise InputError(
-                "BAD_NAME", tr("Maker and model"), tr("it is empty; give maker and model")
+                "BAD_NAME",
+                tr("Maker and model"),
+                tr("the field is empty; give manufacturer and model"),
             )
         sources = tuple(dict.fromkeys((*self.owner.geometry_sources, f"check poses: {source}")))
         draft = replace(

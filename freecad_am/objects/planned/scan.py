@@ -47,8 +47,7 @@ def fit_of(obj: Any, parameters: ScanParameters) -> Fit | None:
         raise InputError(
             "BAD_VALUE",
             f"{scan.Label}.Fit",
-            "{}: only a scan in the part's own coordinates shows how far a part has "
-            "grown; give none",
+            "{}: only a scan in the coordinates of the part shows how far it has grown; remove it",
             how,
         )
     inspected = scan.Proxy.value(scan)

@@ -63,8 +63,8 @@ def _refuse_other(path: str, extension: str) -> None:
         raise InputError(
             "UNSUPPORTED_FILE",
             os.path.basename(path),
-            "{} is not read; use {}",
-            extension or "no ending",
+            "{} files are not supported; use {}",
+            extension or "no extension",
             ", ".join(PART_FILES),
         )
 

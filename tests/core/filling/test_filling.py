@@ -249,7 +249,7 @@ def test_scale_changes_nothing_and_neither_does_doing_it_again(pattern):
 
 
 def test_unknown_patterns_are_refused():
-    with pytest.raises(InputError, match="there is no pattern 'fractal'"):
+    with pytest.raises(InputError, match="unknown pattern 'fractal'"):
         filled("circle", "fractal")
 
 

@@ -53,7 +53,7 @@ def test_faces_that_turn_opposite_ways_are_refused():
     mesh = sheet()
     mixed = mesh.faces.copy()
     mixed[::2] = mixed[::2, ::-1]
-    with pytest.raises(InputError, match="opposite ways"):
+    with pytest.raises(InputError, match="opposite orientations"):
         Mesh(mesh.vertices, mixed).level_lines(mesh.vertices[:, 0] - 0.3, everything(mesh))
 
 

@@ -41,7 +41,7 @@ def test_loose_triangles_are_put_together(noise):
     loose = loose + np.random.default_rng(1).uniform(-0.5, 0.5, loose.shape) * noise
     found = repair_mesh(loose, np.arange(len(loose)).reshape(-1, 3), "ball")
     assert len(found.solids) == 1 and len(found.solids[0].vertices) == len(points)
-    assert ("were made one" in told(found)) == (noise > 1e-5)
+    assert ("were merged" in told(found)) == (noise > 1e-5)
 
 
 def test_what_is_there_twice_flat_or_turned_is_mended():
@@ -53,7 +53,7 @@ def test_what_is_there_twice_flat_or_turned_is_mended():
     found = repair_mesh(points, wrong, "ball")
     assert found.solids[0].volume == pytest.approx(volume)
     assert len(found.solids[0].triangles) == len(faces)
-    for words in ("without an area", "there twice", "to agree with their neighbours"):
+    for words in ("degenerate", "duplicate", "to match their neighbours"):
         assert words in told(found)
 
 
@@ -161,7 +161,7 @@ def test_small_holes_are_closed_and_larger_ones_named():
     with pytest.raises(InputError) as caught:
         repair_mesh(points, faces[~gone], "ball", hole=0.5)
     assert caught.value.code == "OPEN_MESH" and f"{widest:.4g} mm across" in caught.value.message
-    assert "and 1 more" in caught.value.message and "strategy.mend, 0.5 mm" in caught.value.message
+    assert "and 1 more" in caught.value.message and "strategy.mend = 0.5 mm" in caught.value.message
 
 
 def test_a_fin_and_triangles_that_cross_change_no_volume():
@@ -171,14 +171,14 @@ def test_a_fin_and_triangles_that_cross_change_no_volume():
     fin = np.vstack([points, 0.6 * (points[a] + points[b])])
     found = repair_mesh(fin, np.vstack([faces, [[a, b, len(points)]]]), "fin", hole=30.0)
     assert [solid.volume for solid in found.solids] == pytest.approx([whole])
-    assert "enclose nothing" in told(found)
+    assert "enclose no volume" in told(found)
     pushed = points.copy()
     pushed[0] *= -1.2  # through the other side
     with pytest.raises(InputError) as caught:
         repair_mesh(pushed, faces, "pushed")
     assert caught.value.code == "SELF_CROSSING"
     found = repair_mesh(pushed, faces, "pushed", crossing=True)
-    assert "pairs of triangles cross" in told(found) and found.issues[-1].level == "warning"
+    assert "pairs of triangles intersect" in told(found) and found.issues[-1].level == "warning"
 
 
 def test_what_stands_in_the_box_of_another_is_no_cavity():

@@ -124,21 +124,25 @@ def test_inches_are_read_until_millimetres_follow():
     ("text", "line", "words"),
     [
         ("", "part.gcode", "no bead"),
-        ("G0 X1 Y1 Z1\nG1 X5\n", "part.gcode", "no move of it extrudes"),
-        ("G21 X5\n", "line 1", "G21 has the word X"),
+        ("G0 X1 Y1 Z1\nG1 X5\n", "part.gcode", "none of its moves extrudes"),
+        ("G21 X5\n", "line 1", "G21 is followed by the word X"),
         ("G1 X1 Y1 Z1\nG18\nG2 X2 Z2 I1 E1\n", "line 3", "plane of X and Z"),
         (
             "G1 X1 Y1 Z1\nG19\nG2 Y2 Z2 I1 E1\n",
             "line 3",
-            "I is no word of an arc in G19; give J and K",
+            "I does not belong to an arc in G19; use J and K",
         ),
-        ("G1 X1 Y1 Z1\nG2 X2 Y2 K1 E1\n", "line 2", "K is no word of an arc in G17; give I and J"),
-        ("G1 X1 Y1 Z1\nG1 X2 Y2 K1 E1\n", "line 2", "G1 has no word K"),
+        (
+            "G1 X1 Y1 Z1\nG2 X2 Y2 K1 E1\n",
+            "line 2",
+            "K does not belong to an arc in G17; use I and J",
+        ),
+        ("G1 X1 Y1 Z1\nG1 X2 Y2 K1 E1\n", "line 2", "G1 lacks the word K"),
         ("G1 X1 Y1 Z1 E0\nG1 X2 E1 G20\n", "line 2", "follows a move"),
-        ("G1 X1 E1\n", "line 1", "before the program says where"),
-        ("G0 X0 Y0 Z0\nG2 X5 Y5 E1\n", "line 2", "give the middle of the arc or its radius"),
-        ("G0 X0 Y0 Z0\nG2 X5 Y5 I1 J0 E1\n", "line 2", "from its middle"),
-        ("G0 X0 Y0 Z0\nG3 X9 Y0 R2 E1\n", "line 2", "makes no arc"),
+        ("G1 X1 E1\n", "line 1", "before its position is defined"),
+        ("G0 X0 Y0 Z0\nG2 X5 Y5 E1\n", "line 2", "give the centre of the arc or its radius"),
+        ("G0 X0 Y0 Z0\nG2 X5 Y5 I1 J0 E1\n", "line 2", "from its centre"),
+        ("G0 X0 Y0 Z0\nG3 X9 Y0 R2 E1\n", "line 2", "cannot join points"),
         ("G5 X1 Y1\n", "line 1", "splines"),
         ("G0 X99999999\n", "line 1", "at most"),
     ],
@@ -424,8 +428,8 @@ def test_a_toolpath_of_adaone():
     for damaged, words in (
         (data[:40], "damaged"),
         (b"G1 X0", "damaged"),
-        (b"", "no segment"),
-        (toolpath([(0, [(False, line, down)])]), "no segment"),
+        (b"", "none of its segments"),
+        (toolpath([(0, [(False, line, down)])]), "none of its segments"),
         (toolpath([(0, [(True, [[0, 0, 1], [float("nan"), 0, 0]], down[:2])])]), "not a number"),
     ):
         with pytest.raises(InputError) as told:
@@ -473,4 +477,4 @@ def test_codes_of_makers_are_noted_and_positions_given_anew():
     )
     with pytest.raises(InputError) as told:
         gcode.read(HEAD + "G380 S2 Z30\nG1 X5 E1\n", "p", 0.01)
-    assert "before the program says where" in told.value.message
+    assert "before its position is defined" in told.value.message

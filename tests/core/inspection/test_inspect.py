@@ -351,6 +351,6 @@ def test_points_in_another_unit_fit_anywhere_which_is_told(unit):
 
 
 def test_three_points_are_told_to_be_too_few():
-    with pytest.raises(InputError, match="3 points do not hold a part") as caught:
+    with pytest.raises(InputError, match="3 points cannot locate a part") as caught:
         inspected(np.eye(3) * R0, planned(hemisphere(), "dome"))
     assert caught.value.code == "TOO_FEW_POINTS"

@@ -149,7 +149,7 @@ def test_large_scans_are_thinned_evenly(monkeypatch):
     found = point_file.parse(table(",").encode(), "scan.csv")
     assert (
         found.points == POINTS[np.linspace(0, 39, 10).astype(int)]
-    ).all() and "of 40 points 10 are kept" in told(found)
+    ).all() and "from 40 points 10 are kept" in told(found)
 
 
 @pytest.mark.parametrize(
@@ -175,7 +175,7 @@ def test_what_is_no_points_is_refused(data, name, code):
 
 
 def test_files_are_told_by_their_ending_and_missing_ones_by_their_path(tmp_path):
-    with pytest.raises(InputError, match="docx is not read as points"):
+    with pytest.raises(InputError, match="docx is not a supported point format"):
         point_file.read(tmp_path / "scan.docx")
     with pytest.raises(InputError) as caught:
         point_file.read(tmp_path / "scan.csv")

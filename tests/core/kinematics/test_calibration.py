@@ -141,15 +141,15 @@ def test_every_solution_gives_its_pose_and_none_is_lost_where_the_arm_can_move(r
             "x: -0.6131245",
             "x: -0.6131245\n    x: 1",
             "line 19",
-            "the key kinematics.forearm.x is there twice",
+            "the key kinematics.forearm.x is duplicated",
         ),
         ("x: -0.6131245", "x: -0.425", "kinematics.forearm", "it is 188 mm and"),
-        ("x: -0.6131245", "x: -613.1", "kinematics.forearm", "name the machine that it is of"),
+        ("x: -0.6131245", "x: -613.1", "kinematics.forearm", "choose the calibrated machine"),
         (
             "roll: 1.5713123",
             "roll: 90.02",
             "kinematics.upper_arm",
-            "deg from where the machine file has this joint",
+            "deg from the joint in the machine file",
         ),
     ],
 )
@@ -168,13 +168,13 @@ def test_what_takes_no_calibration_says_so(calibration, tmp_path):
         (
             f"fanuc-arcmate120ic calibration={calibration}",
             "BAD_CALIBRATION",
-            "takes no calibration",
+            "has no calibration",
         ),
-        (f"ur-ur5e calibration={calibration}", "BAD_CALIBRATION", "name the machine that it is of"),
+        (f"ur-ur5e calibration={calibration}", "BAD_CALIBRATION", "choose the calibrated machine"),
         (
             f"ur-ur10e calibration={tmp_path / 'none.yaml'}",
             "UNKNOWN_MACHINE",
-            "there is no calibration",
+            "the calibration",
         ),
         (f"ur-ur11 calibration={calibration}", "UNKNOWN_MACHINE", "did you mean"),
     ):

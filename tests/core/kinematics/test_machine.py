@@ -128,7 +128,7 @@ def test_the_user_s_folder_goes_first(tmp_path):
     assert machine.load("fanuc-arcmate120ic").title != "Mine"
     content["id"] = "other"
     (tmp_path / "fanuc-arcmate120ic.json").write_text(json.dumps(content), encoding="utf-8")
-    with pytest.raises(InputError, match="not the name of the file"):
+    with pytest.raises(InputError, match="differs from the file name"):
         machine.load("fanuc-arcmate120ic", [tmp_path])
 
 
@@ -217,7 +217,7 @@ BAD = {
     "limits upside down": (
         changed("limits", "maker", "axes", 1, value=[160, -100]),
         "limits.maker.axes[1]",
-        "smaller one first",
+        "smaller value first",
     ),
     "no maker limits": (changed("limits", "maker", remove=True), "limits", "'maker' is missing"),
     "coupled without a label": (
@@ -253,7 +253,7 @@ BAD = {
     "shape of a wrong format": (
         changed("shapes", value={"joint_2": {"file": "a.dae"}}),
         "shapes.joint_2.file",
-        "a.dae is not a shape",
+        "a.dae is not a supported shape format",
     ),
     "shape of no size": (
         changed("shapes", value={"base": {"file": "a.stl", "scale": 0}}),
@@ -268,7 +268,7 @@ BAD = {
     "warning of nothing known": (
         changed("warnings", value=[{"applies_to": "speed", "text": "from memory"}]),
         "warnings[0].applies_to",
-        "'speed' is not what a warning applies to; use base, joint, limits, speeds, limits.maker",
+        "'speed' is not a valid target of a warning; use base, joint, limits, speeds, limits.maker",
     ),
     "warning of a set that is not there": (
         changed("warnings", value=[{"applies_to": "limits.papper", "text": "from memory"}]),
@@ -307,7 +307,7 @@ def test_a_key_that_stands_twice_is_refused(tmp_path):
     path.write_text(json.dumps(GOOD)[:-1] + ', "title": "Another"}', encoding="utf-8")
     with pytest.raises(InputError) as info:
         machine.load(path)
-    assert info.value.code == "BAD_MACHINE" and "'title' stands there twice" in info.value.message
+    assert info.value.code == "BAD_MACHINE" and "'title' appears twice" in info.value.message
 
 
 def test_a_mark_of_byte_order_is_passed_over(tmp_path):

@@ -261,7 +261,7 @@ def test_every_machine_can_be_copied(name, tmp_path):
             "correct the geometry or the pose",
         ),
         (lambda one: {"id": "my robot"}, "cannot be the name"),
-        (lambda one: {"title": ""}, "give maker and model"),
+        (lambda one: {"title": ""}, "give manufacturer and model"),
     ],
 )
 def test_no_file_without_what_it_needs(tmp_path, change, words):
@@ -293,9 +293,7 @@ def test_rounded_poses_say_so_and_rounding_has_an_end(tmp_path):
 
     x, y, z = content["check_poses"][1]["origin"]
     assert load_with().id == "mine"
-    with pytest.raises(
-        InputError, match=r"check_poses\[1\].within.mm: 2 is more than the rounding"
-    ):
+    with pytest.raises(InputError, match=r"check_poses\[1\].within.mm: 2 exceeds the rounding"):
         load_with(within={"mm": 2.0, "deg": 0.0})
     with pytest.raises(InputError, match=r"the key 'cm' is not known"):
         load_with(within={"cm": 0.1})

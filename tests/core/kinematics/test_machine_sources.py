@@ -225,7 +225,7 @@ def test_flanges_and_counts_that_will_not_do():
         opw_recognition.recognise(
             Chain(chain.origins, chain.directions, chain.flange @ shift(x=5.0))
         )
-    with pytest.raises(InputError, match="it has 5 axes, 3 of which slide"):
+    with pytest.raises(InputError, match="it has 5 axes, 3 prismatic"):
         opw_recognition.recognise(machine.load("table-xyzac").chain)
 
 
@@ -400,9 +400,9 @@ def test_a_urdf_is_a_machine_and_says_what_it_does_not_tell(tmp_path):
         assert "does not say what the controller shows" in found.controller_remark
     for name, words in (
         (f"{path} tip=hand", "arm.urdf has no link 'hand'; name one of base_link"),
-        (f"{path} base=tool0", "moves anything"),
+        (f"{path} base=tool0", "moves relative to"),
         (f"{path} tip=link_5", "from base_link to link_5: .* it has 5 axes"),
-        (tmp_path / "no.urdf", "there is no URDF"),
+        (tmp_path / "no.urdf", "does not exist"),
     ):
         with pytest.raises(InputError, match=words):
             machine.load(name)
@@ -412,7 +412,7 @@ def test_a_urdf_is_a_machine_and_says_what_it_does_not_tell(tmp_path):
     "old,new,line,words",
     [
         ('"0 0 2"', '"0 0 x"', 14, "'x', which is not a number"),
-        ('"0 0 2"', '"0 0"', 14, "is not 3 numbers"),
+        ('"0 0 2"', '"0 0"', 14, "needs 3 numbers"),
         ('"0 0 2"', '"0 0 0"', 14, "has no direction"),
         ('type="revolute"', 'type="floating"', 13, "is floating"),
         (
@@ -423,15 +423,15 @@ def test_a_urdf_is_a_machine_and_says_what_it_does_not_tell(tmp_path):
         ),
         ('lower="-2.967" upper="2.9671"', "", 15, "run from 0 to 0; give the lower one first"),
         ('lower="-2.967" upper="2.9671"', 'lower="1" upper="-1"', 15, "give the lower one first"),
-        ('<child link="hand"/>', '<child link="arm"/>', 17, "is moved by 'turn' already"),
-        ('<child link="hand"/>', '<child link="fist"/>', 17, "there is no link 'fist'"),
+        ('<child link="hand"/>', '<child link="arm"/>', 17, "already has a parent joint, 'turn'"),
+        ('<child link="hand"/>', '<child link="fist"/>', 17, "the link 'fist' does not exist"),
         ('<child link="hand"/>', "", 17, "<joint> 'spin' has no <child>"),
         ('name="bolted" ', "", 16, "<joint> has no name"),
         (
             '<link name="hand"/>',
             '<link name="arm"/>',
             10,
-            "there is a link 'arm' already, in line 8",
+            "a link 'arm' already exists, in line 8",
         ),
         (
             '</joint>\n  <joint name="bolted"',
@@ -456,7 +456,7 @@ def test_mistakes_in_a_urdf_are_told_with_their_line(tmp_path, old, new, line, w
 
 
 def test_chains_that_cannot_be_are_refused(tmp_path):
-    with pytest.raises(InputError, match=r"line 19: the joint 'grip' follows another one"):
+    with pytest.raises(InputError, match=r"line 19: the joint 'grip' mimics another joint"):
         read(tmp_path, ARM, "base_link", "finger")
     with pytest.raises(InputError, match="'hand' does not carry 'arm'"):
         read(tmp_path, ARM, "hand", "arm")

@@ -92,17 +92,16 @@ def test_what_is_cut_is_all_there(seed):
 @pytest.mark.parametrize(
     ("body", "says"),
     [
-        (Body("torch", NECK.vertices, NECK.triangles[1:]), "it is open"),
-        (at((12.0, 12.0, 100.0), 0.0, 0.0, -111.0), r"it is 61 mm from its origin"),
-        (at((12.0, 12.0, 100.0), 90.0, 0.0, -20.0), r"it is 84 mm from its origin"),
-        (at((12.0, 12.0, 100.0), 0.0, 0.0, 55.0), r"it reaches 105 mm beyond its origin along Z"),
-        (at((3.0, 3.0, 100.0), 0.0, 0.0, -48.0), r"it reaches 2 mm beyond its origin"),
+        (Body("torch", NECK.vertices, NECK.triangles[1:]), "the shape is open"),
+        (at((12.0, 12.0, 100.0), 0.0, 0.0, -111.0), r"it is 61 mm away from its origin"),
+        (at((12.0, 12.0, 100.0), 90.0, 0.0, -20.0), r"it is 84 mm away from its origin"),
+        (at((12.0, 12.0, 100.0), 0.0, 0.0, 55.0), r"it extends 105 mm beyond its origin along Z"),
+        (at((3.0, 3.0, 100.0), 0.0, 0.0, -48.0), r"it extends 2 mm beyond its origin"),
         (
             at((30.0, 30.0, 100.0), 0.0, 0.0, -65.0),
-            r"15 mm over its tip it reaches 21.2\d mm from its axis, .* as a cone 10.66 "
-            r"mm, .*half_angle of 52.1 deg at least",
+            r"15 mm above its tip the torch extends 21.2\d mm from its axis, .* cone only 10.66 mm, .*half_angle of at least 52.1 deg",
         ),
-        (at((30.0, 30.0, 100.0), 0.0, 0.0, -50.0), r"give a larger cell.nozzle.diameter"),
+        (at((30.0, 30.0, 100.0), 0.0, 0.0, -50.0), r"set a larger cell.nozzle.diameter"),
     ],
 )
 def test_what_is_refused(body, says):

@@ -68,13 +68,13 @@ def test_tool_part_and_base_are_where_the_tree_has_them(tmp_path, track, positio
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (whole_cell(more=SEVENTH), "there is no robot in it: no chain has six turning axes"),
+        (whole_cell(more=SEVENTH), "the file has no robot: no chain has six revolute axes"),
         (
             whole_cell(
                 more=with_prefix(external.load("motoman-motopos-d500"), "second_")
                 + fixed("world", "second_base_link")
             ),
-            "2 chains move beside the robot .positioner_E1 - positioner_E2, second_E1 - second_E2",
+            "the file has 2 chains .positioner_E1 - positioner_E2, second_E1 - second_E2",
         ),
         (
             whole_cell().replace(
@@ -104,16 +104,16 @@ def test_two_robots_are_named(tmp_path):
         "world", "other_base_link", "0 3 0"
     )
     with pytest.raises(
-        InputError, match=r"there are 2 robots in it, the last axes of which are other_.*, robot_"
+        InputError, match=r"the file has 2 robots, with the last axes other_.*, robot_"
     ):
         UrdfCell(written(tmp_path, text.replace("</robot>", second + "</robot>")))
 
 
 def test_links_of_a_mechanism_are_not_named_as_well(tmp_path):
     path = written(tmp_path, whole_cell())
-    with pytest.raises(InputError, match="leave out base and tip"):
+    with pytest.raises(InputError, match="remove base and tip"):
         texts_of(Reference(str(path), "robot_base_link"))
-    with pytest.raises(InputError, match="there is no URDF"):
+    with pytest.raises(InputError, match="does not exist"):
         texts_of(Reference(str(path) + "x.urdf"))
 
 
@@ -130,6 +130,6 @@ def test_a_mechanism_of_a_urdf_needs_no_cell_of_its_own(tmp_path):
     refused = dataclasses.replace(
         CellParameters(), machine=f"{path} base=positioner_base_link tip=positioner_tool0"
     )
-    with pytest.raises(InputError, match="it has 2 axes, 0 of which slide") as found:
+    with pytest.raises(InputError, match="it has 2 axes, 0 prismatic") as found:
         cells.resolve(refused, np.eye(4))
     assert found.value.code == "NO_CLOSED_FORM"

@@ -225,7 +225,7 @@ def test_rounded_right_angles_are_right_angles(robot, written, noted, tmp_path):
     q = np.random.default_rng(5).uniform(-2.5, 2.5, (20, 6))
     np.testing.assert_allclose(described.chain.forward(q), machine_of.chain.forward(q), atol=1e-9)
     assert type(arm) is type(machine_of.arm)
-    assert any("read as a right angle" in note for note in described.notes) == bool(noted)
+    assert any("treated as a right angle" in note for note in described.notes) == bool(noted)
 
 
 @pytest.mark.parametrize("robot", [*WRISTS, "kuka-kr16-2"])
@@ -286,7 +286,7 @@ def test_angles_in_reasons_have_digits_that_differ(tmp_path):
         ('rpy="[^"]*"', 'quat_xyzw="0 0 0.7 0.7"', "no attribute quat_xyzw"),
         ('lower="[^"]+" upper="[^"]+"', 'lower="-180" upper="180"', "convert degrees"),
         ('velocity="[^"]+"', 'velocity="-1"', "is negative"),
-        ('<origin xyz="[^"]+"', '<origin xyz="0 0 450"', "divide what is in mm"),
+        ('<origin xyz="[^"]+"', '<origin xyz="0 0 450"', "divide millimetres"),
     ],
 )
 def test_what_may_change_where_links_are_is_refused_with_its_line(pattern, by, words, tmp_path):
@@ -311,8 +311,4 @@ def test_limits_that_are_left_out_or_soft_are_noted(tmp_path):
     path.write_text(text, encoding="utf-8")
     described, _ = urdf_machine.describe(Reference(str(path), None, None))
     notes = " / ".join(described.notes)
-    assert (
-        described.upper[0] == 0.0
-        and "no upper, which counts as 0" in notes
-        and "soft limits" in notes
-    )
+    assert described.upper[0] == 0.0 and "no upper; 0 is used" in notes and "soft limits" in notes

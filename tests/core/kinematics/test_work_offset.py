@@ -59,19 +59,18 @@ def test_plane_points_are_not_mirrored():
         (
             POINTS[[0, 1, 1]] * [[1], [1], [2]],
             POINTS[[0, 1, 1]] * [[1], [1], [2]],
-            "points of the part are on a line",
+            "points on the part are collinear",
         ),
-        (POINTS, POINTS[[0, 1, 1, 1]] * [[1], [1], [2], [3]], "points touched are on a line"),
-        (POINTS, POINTS * 25.4, "25.4 times as large as what is planned; one of them is in inches"),
-        (POINTS, POINTS * 1e-3, "one of them is in m,"),
-        (POINTS, POINTS * 1.3, "points of another part"),
-        (POINTS, POINTS * [1.0, 1.0, -1.0], r"point \d is \d\.\d+ mm from where it was touched"),
-        (POINTS, POINTS[[1, 0, 2, 3]], r"point \d is \d+\.?\d* mm from where it was touched"),
+        (POINTS, POINTS[[0, 1, 1, 1]] * [[1], [1], [2], [3]], "points touched are collinear"),
+        (POINTS, POINTS * 25.4, "25.4 times as far apart as planned; one set is in inches"),
+        (POINTS, POINTS * 1e-3, "one set is in m;"),
+        (POINTS, POINTS * 1.3, "belong to another part"),
+        (POINTS, POINTS * [1.0, 1.0, -1.0], r"point \d is \d\.\d+ mm from its touched position"),
+        (POINTS, POINTS[[1, 0, 2, 3]], r"point \d is \d+\.?\d* mm from its touched position"),
         (
             POINTS,
             POINTS + [[0, 0, 0], [0, 0, 0], [0, 0, 6.0], [0, 0, 0]],
-            r"point \d is 1\.\d+ mm .* more than "
-            "cell.touched_tolerance of 1 mm",
+            r"point \d is 1\.\d+ mm .* more than cell.touched_tolerance = 1 mm",
         ),
     ],
 )
@@ -112,5 +111,5 @@ def test_points_of_the_toolpath_are_met_where_they_were_touched():
 def test_only_a_part_that_stands_is_touched(values):
     text = "; ".join(map(str, pairs(POINTS, POINTS + 700.0)))
     settings = dataclasses.replace(CellParameters(setup="tool-on-robot", touched=text), **values)
-    with pytest.raises(InputError, match="a part that stands still"):
+    with pytest.raises(InputError, match="but here the part is fixed"):
         cells.resolve(settings, np.eye(4))

@@ -97,14 +97,14 @@ def squared(text):
 def is_so(text, axes, message):
     """Whether what a file is refused for is what the tree of it shows."""
     if any(joint.find("mimic") is not None for joint in axes):
-        return "follows another one" in message
+        return "mimics another joint" in message
     children = [joint.find("child").get("link") for joint in joints_of(text)]
     twice = [link for link, count in collections.Counter(children).items() if count > 1]
     if twice:
-        return any(f"the link {link!r} is moved by" in message for link in twice)
+        return any(f"the link {link!r} already has a parent joint" in message for link in twice)
     slide = sum(joint.get("type") == "prismatic" for joint in axes)
     if len(axes) != 6 or slide:
-        return f"it has {len(axes)} axes, {slide} of which slide" in message
+        return f"it has {len(axes)} axes, {slide} prismatic" in message
     # six that turn: the end that is named lies beside axis 6
     name = re.search(r"from \S+ to (\S+):", message)
     told = name is not None and "the flange's origin does not lie on axis 6" in message

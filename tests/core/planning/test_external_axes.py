@@ -331,9 +331,7 @@ def test_two_mechanisms_of_one_name(hemisphere, skew, tmp_path):
     other = tmp_path / "other.json"
     other.write_text(json.dumps(one_axis), encoding="utf-8")
     at = " ".join(map(str, STANDS))
-    with pytest.raises(
-        InputError, match="are two mechanisms of one name, 'skew'; give one of the files another id"
-    ):
+    with pytest.raises(InputError, match="share the name 'skew'; change the id of one file"):
         cell_for(
             hemisphere,
             external=f"{other} at {at} carries part; {skew} at 1400 0 300 0 0 0 carries part",

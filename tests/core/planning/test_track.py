@@ -267,9 +267,13 @@ def test_a_track_that_is_too_short_is_told(track, tmp_path):
         (
             "motoman-motopos-d500 at 0 0 0 0 0 0 carries robot",
             "NOT_YET",
-            "carries the robot and is not a track",
+            "carries the robot but is not a track",
         ),
-        ("kuka-kl100-2 at 0 0 0 0 0 0 carries part", "NOT_YET", "slides and carries the part"),
+        (
+            "kuka-kl100-2 at 0 0 0 0 0 0 carries part",
+            "NOT_YET",
+            "carries the part on a prismatic axis",
+        ),
         (
             "kuka-kl100-2 at 0 0 0 0 0 0 carries robot; kuka-kl100-2 at 0 900 0 0 0 0 carries robot",
             "NOT_YET",

@@ -542,7 +542,7 @@ def test_faces_where_touching_solids_meet_lean_over_nothing():
         return solids.groups[0].base.frame[:3, 2], issue.message
 
     def along_z(message):
-        return float(message.split("along (0, 0, 1) it would be ")[1].split(" mm^2")[0])
+        return float(message.split("along (0, 0, 1) they would be ")[1].split(" mm^2")[0])
 
     plate = box((-40, -10, 30), (40, 10, 40))
     for stem in (box((-5, -10, 0), (5, 10, 30)), box((-5, -10, 0), (5, 10, 31))):

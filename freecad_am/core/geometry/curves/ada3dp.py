@@ -110,21 +110,21 @@ def read(data: bytes, where: str, roles: str = roles_of.PART) -> ReadCurves:
         raise InputError(
             CODE,
             where,
-            "it is not a toolpath of AdaOne, or it is damaged ({}); export it again",
+            "it is not an AdaOne toolpath, or it is damaged ({}); export it again",
             error,
         ) from None
     if not runs:
         raise InputError(
             CODE,
             where,
-            "no segment of it deposits, so there is no bead; export a toolpath that deposits",
+            "none of its segments deposits material; export a toolpath that deposits",
         )
     for run in runs:
         if not (np.isfinite(run.points).all() and np.abs(run.points).max() <= MAX_MM):
             raise InputError(
                 CODE,
                 where,
-                "a position is not a number of at most {:g} mm; export it again",
+                "a position is not a number up to {:g} mm; export it again",
                 MAX_MM,
             )
     runs, issues = roles_of.choose_runs(runs, roles, where, CODE)
@@ -138,19 +138,17 @@ def _notes(unread: _Seen, where: str) -> list[Issue]:
     if unread.unknown:
         names = ", ".join(f"{count} of a {name}" for name, count in unread.unknown.items())
         messages.append(
-            Text(
-                "{}: fields that the published schema does not have are not read: {}", where, names
-            )
+            Text("{}: fields outside the published schema are ignored: {}", where, names)
         )
     for what, numbers in (("tools", unread.tools), ("materials", unread.materials)):
         if len(numbers) > 1:
             listed = ", ".join(map(str, sorted(numbers)))
             messages.append(
-                Text("{}: {} {} are taken for the one of the cell", where, Text(what), listed)
+                Text("{}: all {} {} are mapped to that of the cell", where, Text(what), listed)
             )
     if unread.turns_part:
         messages.append(
-            Text("{}: values of external axes are not read; the cell's own are planned anew", where)
+            Text("{}: values of external axes are ignored; the cell plans its own", where)
         )
     return [Issue(NOTE, roles_of.NOT_READ, message) for message in messages]
 
@@ -171,7 +169,7 @@ def _check_parameters(data: bytes, where: str, unread: _Seen) -> None:
             raise InputError(
                 CODE,
                 where,
-                "one of its operations is {}, which deposits nothing; export the operations that deposit alone",
+                "its operation {} deposits nothing; export only the operations that deposit",
                 Text(NO_DEPOSIT[int(value)]),
             )
         unread.turns_part |= number in DYNAMIC_AXES and bool(value)

@@ -51,7 +51,7 @@ def curves_of(text: str, where: str) -> tuple[BeadCurve, ...]:
             raise InputError(
                 CODE,
                 location,
-                "bead {:g} begins again; keep the lines of a bead together",
+                "bead {:g} starts a second time; keep the lines of a bead together",
                 bead[start],
             )
         beads_read.add(float(bead[start]))
@@ -87,7 +87,7 @@ def _numbers(cells: Sequence[str], columns: Sequence[str], where: str) -> list[f
             if not any(cells)
             else Text("it has {} numbers in place of {}", sum(map(bool, cells)), len(columns))
         )
-        raise InputError(CODE, where, "{}; fill the gap, or leave the line out", Word(lacking))
+        raise InputError(CODE, where, "{}; fill the gap, or remove the line", Word(lacking))
     values = []
     for cell, name in zip(cells, columns):
         try:
@@ -98,7 +98,7 @@ def _numbers(cells: Sequence[str], columns: Sequence[str], where: str) -> list[f
             raise InputError(
                 CODE,
                 where,
-                "{!r} is not a number; give {} as a number with a point",
+                "{!r} is not a number; give {} as a number with a decimal point",
                 cell[:40],
                 name,
             ) from None
@@ -113,13 +113,11 @@ def _numbers(cells: Sequence[str], columns: Sequence[str], where: str) -> list[f
 def _curve(rows: Array, columns: Sequence[str], location: str, line: int, where: str) -> BeadCurve:
     points = rows[:, [columns.index(name) for name in COLUMNS[:3]]]
     if len(points) < 2:
-        raise InputError(
-            CODE, location, "a bead of one point has no way to go; give it two points or more"
-        )
+        raise InputError(CODE, location, "the bead has only one point; give at least two")
     repeated = np.flatnonzero(np.linalg.norm(np.diff(points, axis=0), axis=1) < MIN_STEP_MM)
     if len(repeated):
         location = f"{where} line {line + int(repeated[0]) + 1}"
-        raise InputError(CODE, location, "the point is that of the line before; leave it out")
+        raise InputError(CODE, location, "the point repeats the previous line; remove it")
     if "i" not in columns:
         return BeadCurve(points)
     directions = rows[:, [columns.index(name) for name in COLUMNS[3:6]]]

@@ -393,7 +393,7 @@ def read(
         BAD_GCODE with the line; BAD_VALUE for roles that the file does not have.
     """
     if text.startswith("GCDE"):
-        raise InputError(CODE, where, "it is binary G-code; let the slicer export G-code as text")
+        raise InputError(CODE, where, "it is binary G-code; export G-code as text from the slicer")
     reader = _Reader(where, chord_error, rotary)
     for number, line in enumerate(text.lstrip("\ufeff").splitlines(), 1):
         reader.take(line, number)
@@ -452,11 +452,11 @@ class _Reader:
                 command = Command("", command.words)
             if command.name == "" and command is not commands[-1]:
                 raise self._error(
-                    Text("{} stands before a command; write the command first", command.words[0][0])
+                    Text("{} comes before a command; write the command first", command.words[0][0])
                 )
             if moved and command.name in ("G90", "G91", "G53", "M82", "M83", *PLANES, *UNITS):
                 raise self._error(
-                    Text("{} follows a move in its line; give it a line of its own", command.name)
+                    Text("{} follows a move on the same line; put it on its own line", command.name)
                 )
             moved |= command.name in (*MOTIONS, "")
             self._run(command, machine_frame)
@@ -502,7 +502,7 @@ class _Reader:
             return ""
         if letter in "OPNDHLQ" or not self.motion:
             raise self._error(
-                Text("{} stands without a command before it; begin the line with G, M or T", letter)
+                Text("{} has no command before it; begin the line with G, M or T", letter)
             )
         return self.motion
 
@@ -541,7 +541,7 @@ class _Reader:
         if command.words:
             raise self._error(
                 Text(
-                    "{} has the word {} after it; give it a line of its own",
+                    "{} is followed by the word {}; put it on its own line",
                     command.name,
                     command.words[0][0],
                 )
@@ -572,9 +572,7 @@ class _Reader:
         self._end()
         letters = {letter for letter, _ in command.words}
         if letters & set("XYZABCL"):
-            raise self._error(
-                Text("{} sets offsets, which are not known; leave it out", command.name)
-            )
+            raise self._error(Text("{} sets unknown offsets; remove it", command.name))
 
     def _other(self, command: Command) -> None:
         """Handle codes and macros of the machine: they leave the path unchanged, and unknown ones
@@ -591,7 +589,7 @@ class _Reader:
         elif name in ("M120", "M121"):
             self._push_or_pop(name)
         elif name[0] == "G" and name[1:2].isdigit():
-            raise self._error(Text("{} is not known; {}", name, Text(FORM)))
+            raise self._error(Text("unknown command {}; {}", name, Text(FORM)))
         elif name in ("M98", "M32"):  # another file of the machine
             self._end()
             self.not_read.setdefault(f"{name} {command.arguments}".strip(), []).append(self.line)
@@ -610,7 +608,7 @@ class _Reader:
         stored = self.stored.get(self._state_name(command))
         if stored is None:
             raise self._error(
-                Text("{} names a state that was not stored; store it first", command.name)
+                Text("{} restores a state that was never stored; store it first", command.name)
             )
         self._end()
         position, state = self.state.place, stored.copied()
@@ -641,14 +639,14 @@ class _Reader:
             elif letter not in allowed:
                 raise self._error(
                     Text(
-                        "{} has no word {}; give {}, or correct the line",
+                        "{} lacks the word {}; add {}, or correct the line",
                         self.motion,
                         letter,
                         " ".join(sorted(allowed)),
                     )
                 )
             if value is None:
-                raise self._error(Text("{} has no number; give one", letter))
+                raise self._error(Text("{} has no number; add one", letter))
             if letter in LENGTH_WORDS:
                 value *= self.unit
             if letter != "F" and abs(value) > MAX_MM:
@@ -665,8 +663,8 @@ class _Reader:
         if letter not in axes and value != 0.0:
             raise self._error(
                 Text(
-                    "{} turns an axis, and strategy.rotary is {}; name there how A, B and C turn the tool ({}), "
-                    "or leave them out",
+                    "{} rotates an axis, but strategy.rotary is {}; set how A, B and C turn the "
+                    "tool ({}), or remove these words",
                     letter,
                     self.rotary,
                     ", ".join(ROTARY[1:]),
@@ -683,7 +681,7 @@ class _Reader:
         for letter, value in command.words:
             if letter not in "XYZEABC" or value is None:
                 raise self._error(
-                    Text("G92 has no word {}; give X, Y, Z or E with a number", letter)
+                    Text("G92 lacks the word {}; add X, Y, Z or E with a number", letter)
                 )
             if letter in "ABC":
                 self._check_rotary(letter, value - self.state.coordinates[letter])
@@ -763,14 +761,14 @@ class _Reader:
         if self.ended:
             raise self._error(
                 Text(
-                    "it extrudes after {}, which ends the program; leave out what follows",
+                    "it extrudes after {}, which ends the program; remove the lines after it",
                     self.ended,
                 )
             )
         if len(self.known) < 3:
             raise self._error(
                 Text(
-                    "it extrudes before the program says where: X, Y and Z have to be given first; {}",
+                    "it extrudes before its position is defined; set X, Y and Z first; {}",
                     FORM,
                 )
             )
@@ -805,7 +803,7 @@ class _Reader:
             if letter in words:
                 raise self._error(
                     Text(
-                        "{} is no word of an arc in {}; give {} and {}",
+                        "{} does not belong to an arc in {}; use {} and {}",
                         letter,
                         self.plane,
                         letters[0],
@@ -820,8 +818,8 @@ class _Reader:
         ):
             raise self._error(
                 Text(
-                    "the ends of the arc are {:.4g} and {:.4g} mm from its middle; give {} and {} from its start to its "
-                    "middle",
+                    "the ends of the arc are {:.4g} and {:.4g} mm from its centre; give {} and "
+                    "{} from its start to its centre",
                     radius,
                     np.hypot(*end_radius),
                     letters[0],
@@ -858,13 +856,13 @@ class _Reader:
         if words.keys() & {*letters}:
             if "R" in words:
                 raise self._error(
-                    Text("the arc has {} or {}, and R; give one of them", letters[0], letters[1])
+                    Text("the arc has both {} or {} and R; use one form", letters[0], letters[1])
                 )
             return np.asarray(start[:2] + np.array([words.get(letter, 0.0) for letter in letters]))
         if "R" not in words:
             raise self._error(
                 Text(
-                    "{} has neither {} and {} nor R; give the middle of the arc or its radius",
+                    "{} has neither {} and {} nor R; give the centre of the arc or its radius",
                     name,
                     letters[0],
                     letters[1],
@@ -875,7 +873,7 @@ class _Reader:
         if length < MIN_STEP_MM or abs(2.0 * radius) < length * (1.0 - 1e-6):
             raise self._error(
                 Text(
-                    "a radius of {:g} mm makes no arc between points {:.4g} mm apart; give {} and {}",
+                    "a radius of {:g} mm cannot join points {:.4g} mm apart; use {} and {}",
                     radius,
                     length,
                     letters[0],
@@ -909,7 +907,7 @@ class _Reader:
         self._end()
         if not self.runs:
             raise InputError(
-                CODE, self.where, "no move of it extrudes, so there is no bead; {}", FORM
+                CODE, self.where, "none of its moves extrudes, so it has no bead; {}", FORM
             )
         if any(run.role is not None for run in self.runs):
             self.runs = [
@@ -936,14 +934,15 @@ class _Reader:
                 ),
             )
             message = Text(
-                "{}: {} not read: codes and macros of the machine, taken as if they moved nothing and deposited nothing",
+                "{}: {} ignored: machine codes and macros, assumed to cause no motion and no "
+                "deposit",
                 self.where,
                 names,
             )
             issues.append(Issue(NOTE, NOT_READ, message))
         if len(self.tools) > 1:
             message = Text(
-                "{}: tools {} deposit, all of which are taken for the one of the cell",
+                "{}: tools {} all deposit, and are mapped to the tool of the cell",
                 self.where,
                 ", ".join(sorted(self.tools)),
             )

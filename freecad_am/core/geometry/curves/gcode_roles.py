@@ -156,7 +156,7 @@ def choose_runs(
         raise InputError(
             "BAD_VALUE",
             "strategy.roles",
-            "{!r} is neither a group ({}) nor a type of {} ({}); use one of them",
+            "{!r} is neither a group ({}) nor a type of {} ({}); choose a listed one",
             unknown[0],
             ", ".join((PART, ALL, *(group for group, _ in GROUPS))),
             where,
@@ -169,14 +169,15 @@ def choose_runs(
         raise InputError(
             code,
             where,
-            "its moves are {}, and strategy.roles is {}: nothing is left to deposit; name other roles",
+            "its moves are {}, and strategy.roles is {}, so nothing remains to deposit; choose "
+            "other roles",
             lengths,
             roles,
         )
     issues = []
     if omitted:
         message = Text(
-            "{}: {} left out, as strategy.roles is {}; name other roles to deposit more",
+            "{}: {} ignored by strategy.roles = {}; add roles to deposit more",
             where,
             lengths,
             roles,
@@ -185,8 +186,8 @@ def choose_runs(
     strange = [name for name in names if not group_of(name)]
     if strange and PART in entries:
         message = Text(
-            "{}: the types {} are not known and are deposited as the part; name roles in strategy.roles "
-            "to leave them out",
+            "{}: the unknown types {} are deposited as the part; list roles in strategy.roles to "
+            "exclude them",
             where,
             ", ".join(strange),
         )

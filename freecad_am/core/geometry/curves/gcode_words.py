@@ -121,9 +121,7 @@ def split_comments(line: str) -> tuple[str, list[str]]:
             end = line.find(")", position)
             if end < 0:
                 raise BadWords(
-                    Text(
-                        "{!r} is a comment that does not end; close it with )", line[position:][:40]
-                    )
+                    Text("the comment {!r} has no end; close it with )", line[position:][:40])
                 )
             comments.append(line[position + 1 : end])
             code, position = code + " ", end + 1
@@ -151,7 +149,7 @@ def commands_of(code: str) -> list[Command]:
     if name is not None and _COMMAND.match(code) is None and not _is_words(code):
         if name[1].lower() in META:
             raise BadWords(
-                Text("{!r} is a condition, a loop or a variable; write the moves out", code[:60])
+                Text("{!r} is a condition, a loop or a variable; write out the moves", code[:60])
             )
         return [Command(name[1].upper(), arguments=code[name.end() :].strip())]
     return _split_commands(code)
@@ -253,7 +251,7 @@ def _read_words(code: str, position: int) -> tuple[tuple[tuple[str, float | None
             break
         value, position = _read_value(code, match, letter)
         if letter in (name for name, _ in words):
-            raise BadWords(Text("{} stands twice in {!r}; leave one out", letter, code[:60]))
+            raise BadWords(Text("{} appears twice in {!r}; remove one", letter, code[:60]))
         words.append((letter, value))
     return tuple(words), position
 
@@ -295,7 +293,8 @@ def _is_exponent(code: str, match: re.Match[str], exponent: re.Match[str], lette
         return False
     raise BadWords(
         Text(
-            "{!r} may be a number with an exponent, or two words; write the number without exponent, or a space before E",
+            "{!r} is ambiguous: a number with an exponent, or two words; write the number "
+            "without exponent, or a space before E",
             code[match.start(1) : exponent.end()],
         )
     )
@@ -304,5 +303,5 @@ def _is_exponent(code: str, match: re.Match[str], exponent: re.Match[str], lette
 def _bad_words(code: str, position: int, end: int | None = None) -> BadWords:
     text = code[position:end].strip()[:40]
     if re.match(r"[A-Za-z]\s*[-+]?\d+,\d", text):
-        return BadWords(Text("{!r} has a decimal comma; write numbers with a point", text))
-    return BadWords(Text("{!r} is not understood; give letters with numbers such as X-1.5", text))
+        return BadWords(Text("{!r} has a decimal comma; use a decimal point", text))
+    return BadWords(Text("{!r} is not understood; use letters with numbers, such as X-1.5", text))

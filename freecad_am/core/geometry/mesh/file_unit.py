@@ -57,7 +57,8 @@ def unit_issues(data: bytes, suffix: str, scale: float, where: str) -> tuple[Iss
     if length == 1.0:
         return ()
     message = Text(
-        "{} says that its unit is {!r}, and is read in mm; give part.scale: {:g} mm, if that is true",
+        "{} states the unit {!r}, but is read in mm; set part.scale to {:g} mm if the unit is "
+        "right",
         where,
         name,
         length,
@@ -75,13 +76,13 @@ def refuse_scale(scale: float, path: str, key: str) -> None:
         raise InputError(
             "BAD_VALUE",
             key,
-            "{:g} mm is not a unit; give the length of one unit of the file, as 25.4 mm",
+            "{:g} mm is not a unit; give the length of one unit of the file, such as 25.4 mm",
             scale,
         )
     if scale != 1.0 and not path.lower().endswith(UNITLESS_ENDINGS):
         raise InputError(
             "BAD_VALUE",
             key,
-            "{} states its own unit; leave out the scale, which is for STL and OBJ",
+            "{} states its own unit; remove the scale, which is for STL and OBJ",
             os.path.basename(path),
         )

@@ -49,7 +49,7 @@ def orient_triangles(
         raise InputError(
             "NOT_ORIENTABLE",
             label,
-            "the mesh has no inside, as at {}; model the solid again",
+            "the mesh has no consistent inside, as at {}; model the solid again",
             where,
         )
     return turned
@@ -71,7 +71,7 @@ def orient_across(corners: Index, edges: Edges, two: Index, messages: list[str])
     flip = _flips(len(corners), face_a, face_b, against)
     messages.append(
         Text(
-            "{} triangles were turned to agree with their neighbours",
+            "{} triangles were flipped to match their neighbours",
             int(min(flip.sum(), (~flip).sum())),
         )
     )
@@ -111,7 +111,7 @@ def split_solids(vertices: Array, corners: Index, messages: list[str]) -> tuple[
     volume = np.array([SolidMesh(vertices, shell).volume for shell in components])
     bulky = np.abs(volume) > MIN_VOLUME_SHARE * np.linalg.norm(high - low, axis=1) ** 3
     if not bulky.all():
-        messages.append(Text("{} pieces that enclose nothing were dropped", int((~bulky).sum())))
+        messages.append(Text("{} pieces that enclose no volume were removed", int((~bulky).sum())))
     about = {}
     for k in np.flatnonzero(bulky & (volume < 0.0)).tolist():
         wider = np.flatnonzero(
@@ -127,7 +127,7 @@ def split_solids(vertices: Array, corners: Index, messages: list[str]) -> tuple[
     outer = [k for k in np.flatnonzero(bulky).tolist() if k not in about]
     turned = [k for k in outer if volume[k] < 0.0]
     if turned:
-        message = Text("{} solids were inside out and were turned", len(turned))
+        message = Text("{} inside-out solids were reversed", len(turned))
         messages.append("a solid was inside out and was turned" if len(turned) == 1 else message)
     solids = []
     for k in outer:

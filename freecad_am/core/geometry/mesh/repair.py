@@ -57,13 +57,13 @@ def repair_mesh(
         raise InputError(
             "BAD_FILE",
             label,
-            "the mesh has no triangles, or points that are not numbers; export it again",
+            "the mesh has no triangles, or points with invalid coordinates; export it again",
         )
     messages: list[str] = []
     mended: list[str] = []
     vertices, corners = _weld_closed(points, triangles, messages)
     if not len(corners):
-        raise InputError("NO_SOLID", label, "the mesh encloses nothing; export the solid again")
+        raise InputError("NO_SOLID", label, "the mesh encloses no volume; export the solid again")
     edges = Edges(corners)
     if (edges.count != 2).any():
         vertices, corners = _close_holes(vertices, corners, label, hole, messages, mended)
@@ -71,7 +71,7 @@ def repair_mesh(
     corners = orient_triangles(vertices, corners, edges, label, messages)
     solids = split_solids(vertices, corners, messages)
     if not solids:
-        raise InputError("NO_SOLID", label, "the mesh encloses nothing; export the solid again")
+        raise InputError("NO_SOLID", label, "the mesh encloses no volume; export the solid again")
     for solid in solids:
         if crossing:
             mended += crossing_messages(solid, WELDS_MM[-1])
@@ -120,7 +120,7 @@ def connected_triangles(points: Array, triangles: Index, label: str, hole: float
     vertices, corners = _weld_closed(points, triangles, messages)
     if not len(corners):
         raise InputError(
-            "NO_SOLID", label, "all triangles of the mesh cancel one another; export it again"
+            "NO_SOLID", label, "all triangles of the mesh cancel each other; export it again"
         )
     edges = Edges(corners)
     corners = orient_across(corners, edges, np.flatnonzero(edges.count == 2), messages)
@@ -167,7 +167,8 @@ def crossing_messages(solid: SolidMesh, min_length: float) -> list[str]:
         return []
     return [
         Text(
-            "{} pairs of triangles cross, as at {}, and what any of them enclose counts as inside",
+            "{} pairs of triangles intersect, as at {}; the union of the enclosed volumes counts "
+            "as inside",
             len(pairs.pairs),
             place(pairs.positions[pairs.length.argmax()]),
         )
@@ -201,19 +202,19 @@ def _close_holes(
         raise InputError(
             "OPEN_MESH",
             label,
-            "the mesh has a hole: {} edges, {:.4g} mm across, at {}{}{}; fill holes (Mesh, Close holes) "
-            "or export it again, or deposit it as a wall if it is one",
+            "the mesh has a hole: {} edges, {:.4g} mm across, at {}{}{}; close the holes (Mesh, "
+            "Close holes) or export it again, or deposit it as a wall",
             len(large[0].loop),
             large[0].size,
             place(large[0].middle),
             Word(Text(", and {} more", len(large) - 1) if len(large) > 1 else ""),
-            Word(Text("; up to strategy.mend, {:g} mm, holes are closed", size) if size else ""),
+            Word(Text("; holes up to strategy.mend = {:g} mm are closed", size) if size else ""),
         )
     if manifold.split:
         position = place(vertices[edges.ends[np.argmax(edges.count > 2)]].mean(axis=0))
         mended.append(
             Text(
-                "{} edges of more than two triangles were divided, as at {}",
+                "{} edges of more than two triangles were split, as at {}",
                 manifold.split,
                 position,
             )
@@ -251,7 +252,7 @@ def _weld_closed(points: Array, triangles: Index, messages: list[str]) -> tuple[
         vertices, corners = _weld_points(points, triangles, weld, notes)
         corners = _fill_single_triangles(corners, notes)
         if weld > WELDS_MM[0]:
-            notes.insert(0, Text("points up to {:g} mm apart were made one", weld))
+            notes.insert(0, Text("points up to {:g} mm apart were merged", weld))
         open_count = int((Edges(corners).count != 2).sum()) if len(corners) else len(triangles)
         if best is None or open_count < best[0]:
             best = (open_count, vertices, corners, notes)
@@ -273,7 +274,7 @@ def _weld_points(
     corners = same[triangles]
     has_area = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
     if not has_area.all():
-        notes.append(Text("{} triangles without an area were dropped", int((~has_area).sum())))
+        notes.append(Text("{} degenerate triangles were removed", int((~has_area).sum())))
     corners = corners[has_area]
     # triangles with the same three points: opposite ones cancel
     ranked = np.sort(corners, axis=1)
@@ -290,7 +291,7 @@ def _weld_points(
     if len(unique_triangles) < len(corners):
         notes.append(
             Text(
-                "{} triangles that were there twice were dropped",
+                "{} duplicate triangles were removed",
                 len(corners) - len(unique_triangles),
             )
         )
@@ -324,5 +325,5 @@ def _fill_single_triangles(corners: Index, notes: list[str]) -> Index:
     }
     if any(tuple(sorted(corner)) in loose_triangles for corner in missing):
         return corners  # the border of a loose triangle
-    notes.append(Text("{} missing triangles were put in", len(missing)))
+    notes.append(Text("{} missing triangles were added", len(missing)))
     return np.vstack([corners, np.array(missing, dtype=np.intp)])

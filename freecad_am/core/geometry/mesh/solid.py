@@ -101,15 +101,15 @@ class SolidMesh:
             raise InputError(
                 "INSIDE_OUT",
                 label,
-                "neighbouring triangles face opposite ways, for instance at {}; turn them alike (Mesh, "
-                "Harmonize normals)",
+                "neighbouring triangles face opposite ways, for instance at {}; make their "
+                "orientation consistent (Mesh, Harmonize normals)",
                 where,
             )
         if self.volume <= 0.0:
             raise InputError(
                 "INSIDE_OUT",
                 label,
-                "the solid is turned inside out (volume {:.4g} mm3, near {}); flip its normals (Mesh, "
+                "the solid is inside out (volume {:.4g} mm3, near {}); flip its normals (Mesh, "
                 "Flip normals)",
                 self.volume,
                 place(self.vertices.mean(axis=0)),
@@ -125,9 +125,9 @@ class SolidMesh:
             raise InputError(
                 "SELF_CROSSING",
                 label,
-                "it cuts itself: {} pairs of its triangles cross, for instance at {}, so that what "
-                "is inside is not known; fuse what overlaps where the part was drawn, or repair the mesh (Mesh, Analyze, "
-                "Self-intersections)",
+                "the mesh intersects itself: {} pairs of triangles cross, for instance at {}, so "
+                "its inside is undefined; fuse the overlapping solids in the CAD system, or "
+                "repair the mesh (Mesh, Analyze, Self-intersections)",
                 len(pairs.pairs),
                 where,
             )

@@ -185,7 +185,7 @@ class Mesh:
             raise InputError(
                 "MESH",
                 "wall",
-                "faces of the wall's mesh turn opposite ways: orient the faces alike",
+                "faces of the wall mesh have opposite orientations; orient them consistently",
             )
         start_value, end_value = values[edges].T
         t = np.clip(start_value / (start_value - end_value), 1e-6, 1.0 - 1e-6)[:, None]

@@ -57,8 +57,9 @@ def shapely() -> Shapely:
         raise InputError(
             "MISSING_LIBRARY",
             "filling",
-            "solids are filled with the Python package shapely (1.8 or newer), which is not "
-            "installed; on Debian: apt-get install python3-shapely, elsewhere: pip install shapely",
+            "filling solids needs the Python package shapely (1.8 or newer), which is not "
+            "installed; on Debian: apt-get install python3-shapely, elsewhere: pip install "
+            "shapely",
         ) from None
     return Shapely(
         geometry, ops, "resolution" if package.__version__.startswith("1.") else "quad_segs"
@@ -231,7 +232,7 @@ class Mended(NamedTuple):
         found = []
         if self.changed > 0.0:
             text = Text(
-                "contours that cross or touch were mended; {:.3g} mm^2 changed", self.changed
+                "contours that cross or touch were repaired; {:.3g} mm^2 changed", self.changed
             )
             found.append(Issue(NOTE, "REGION_MENDED", text, layer))
         if self.dropped > 0.0:
@@ -239,7 +240,7 @@ class Mended(NamedTuple):
                 Issue(
                     NOTE,
                     "REGION_SLIVERS",
-                    Text("slivers of {:.3g} mm^2 were dropped", self.dropped),
+                    Text("slivers of {:.3g} mm^2 were removed", self.dropped),
                     layer,
                 )
             )

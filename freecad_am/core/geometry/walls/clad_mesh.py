@@ -32,8 +32,8 @@ def clad_mesh(points: Array, triangles: Index, spacing: float, back: bool, label
         raise InputError(
             "NO_FACES",
             label,
-            "it is a closed mesh, which has no faces to choose; cut out of it what is to be covered "
-            "(Mesh, Cutting), or take the file that it was made of",
+            "it is a closed mesh without selectable faces; cut out the surface to cover (Mesh, "
+            "Cutting), or use the original CAD file",
         )
     front = _faces_as(points, triangles, wall)
     sheet = wall if front != back else replace(wall, triangles=wall.triangles[:, ::-1].copy())

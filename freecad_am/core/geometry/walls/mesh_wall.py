@@ -121,7 +121,7 @@ def mesh_wall(points: Array, triangles: Index, edge: float, label: str, mend: fl
                 NOTE,
                 "SMOOTHED",
                 Text(
-                    "{}: where facets meet at an angle the wall runs smoothly, up to {} mm off them, at {}",
+                    "{}: the wall is smoothed across facets, by up to {} mm, at {}",
                     label,
                     format_deviation(max_offset),
                     place(farthest),
@@ -158,8 +158,8 @@ def _mesh_wall(source: _Read, owner: Index, facets: Search, edge: float, label: 
         raise InputError(
             "TOO_FINE",
             label,
-            "with edges of {:.3g} mm, a layer height, the mesh of the wall has more than {} triangles; "
-            "use a larger layer height, or deposit the wall in parts",
+            "with edges of {:.3g} mm, the layer height, the wall mesh needs more than {} "
+            "triangles; use a larger layer height, or deposit the wall in parts",
             edge,
             MAX_TRIANGLES,
         )
@@ -214,7 +214,7 @@ def _read(points: Array, triangles: Index, label: str, mend: float) -> _Read:
         raise InputError(
             "BAD_FILE",
             label,
-            "the mesh has no triangles, or points that are not numbers; export it again",
+            "the mesh has no triangles, or points with invalid coordinates; export it again",
         )
     surface = connected_triangles(points, triangles, label, mend)
     mended = list(surface.mended)
@@ -228,16 +228,17 @@ def _read(points: Array, triangles: Index, label: str, mend: float) -> _Read:
             raise InputError(
                 "SELF_INTERSECTION",
                 label,
-                "the wall cuts itself: {} pairs of its triangles cross, for instance at {}; "
-                "repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid, with holes of up to "
-                "strategy.mend closed",
+                "the wall intersects itself: {} pairs of triangles cross, for instance at {}; "
+                "repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid "
+                "with holes up to strategy.mend closed",
                 len(crossed.pairs),
                 position,
             )
         size = max((hole.size for hole in plain.closed), default=0.0)
         mended.append(
             Text(
-                "{} triangles that cross were cut out, as at {}, which left holes of up to {:.3g} mm across",
+                "{} intersecting triangles were removed, as at {}, leaving holes up to {:.3g} mm "
+                "across",
                 plain.cut_out,
                 position,
                 size,

@@ -75,7 +75,7 @@ def recognise(chain: Chain) -> OpwArm:
                 "robot`",
             )
         raise refused(
-            Text("it has {} axes, {} of which slide", chain.axes, slides),
+            Text("it has {} axes, {} prismatic", chain.axes, slides),
             "choose a robot with six that turn; those beside it are `cell.external`",
         )
     at_rest = chain.frames(np.zeros(6))
@@ -86,7 +86,7 @@ def recognise(chain: Chain) -> OpwArm:
     if off[:, :3, 3].max() > POSITION or off[:, :3, :3].max() > ROTATION:
         raise refused(
             Text(
-                "its closed form is {:.3g} mm and {:.2g} (entries of the rotation) off",
+                "its closed form is off by {:.3g} mm and {:.2g} (rotation matrix entries)",
                 off[:, :3, 3].max(),
                 off[:, :3, :3].max(),
             ),
@@ -279,7 +279,7 @@ def refused(reason: str, remedy: str = "", where: str = "geometry") -> InputErro
     return InputError(
         "NO_CLOSED_FORM",
         where,
-        "this cannot be planned for: {}; {}",
+        "its kinematics cannot be planned: {}; {}",
         reason,
         remedy or OTHER_GEOMETRY,
     )

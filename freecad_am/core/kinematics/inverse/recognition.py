@@ -51,7 +51,8 @@ def arm_of(chain: Chain) -> SerialArm:
     if not _agrees(arm, chain, MAX_LOST_SHARE):
         raise opw_recognition.refused(
             Text(
-                "its axes are up to {:.3g} deg off right angles, and its solutions do not give back its poses",
+                "its axes are up to {:.3g} deg off right angles, and its inverse solutions do "
+                "not reproduce its poses",
                 math.degrees(off_square(chain)),
             )
         )

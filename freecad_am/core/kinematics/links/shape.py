@@ -48,7 +48,7 @@ def shape_of(node: Node) -> LinkShape:
     path = Path(node["file"].text())
     if path.suffix.lower() not in FORMATS:
         raise node["file"].bad(
-            Text("{} is not a shape that can be drawn; use {}", path.name, ", ".join(FORMATS))
+            Text("{} is not a supported shape format; use {}", path.name, ", ".join(FORMATS))
         )
     pose = np.eye(4)
     if node.has("origin") or node.has("rpy"):
@@ -62,7 +62,7 @@ def shape_of(node: Node) -> LinkShape:
         if ((values < 0.0) | (values > 1.0)).any():
             raise node["colour"].bad(
                 Text(
-                    "{} is not a colour; give red, green and blue from 0 to 1", node["colour"].value
+                    "{} is not a colour; use red, green and blue from 0 to 1", node["colour"].value
                 )
             )
         colour = (float(values[0]), float(values[1]), float(values[2]))

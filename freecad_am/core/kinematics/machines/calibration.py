@@ -59,8 +59,8 @@ def read(path: Path) -> tuple[Array, str]:
         raise InputError(
             "UNKNOWN_MACHINE",
             "cell.machine",
-            "there is no calibration {}; give the path of the YAML file "
-            "that ur_calibration wrote of this arm",
+            "the calibration {} does not exist; give the path of the YAML file that "
+            "ur_calibration wrote for the arm",
             path,
         )
     try:
@@ -69,7 +69,7 @@ def read(path: Path) -> tuple[Array, str]:
         raise InputError(
             "BAD_CALIBRATION",
             str(path),
-            "cannot be read as a calibration: {}; give the file as ur_calibration wrote it",
+            "cannot be read as a calibration: {}; use the file as ur_calibration wrote it",
             error,
         ) from None
     entries = _entries(text, path)
@@ -94,8 +94,8 @@ def calibrated(chain: Chain, base: Array, poses: Array, path: Path) -> Chain:
             raise InputError(
                 "BAD_CALIBRATION",
                 f"{path}: kinematics.{joint}",
-                "it is {:.3g} mm and {:.3g} deg from where the machine "
-                "file has this joint, which is more than a calibration corrects; name the machine that it is of",
+                "it is {:.3g} mm and {:.3g} deg from the joint in the machine file, more than a "
+                "calibration corrects; choose the calibrated machine",
                 off,
                 math.degrees(turned),
             )
@@ -115,7 +115,7 @@ def _entries(text: str, path: Path) -> dict[str, str]:
             raise InputError(
                 "BAD_CALIBRATION",
                 f"{path}: line {number}",
-                "{} is not `key: value`; give the file as ur_calibration wrote it",
+                "{} is not `key: value`; use the file as ur_calibration wrote it",
                 _short(line),
             )
         indent = len(entry["indent"])
@@ -126,7 +126,7 @@ def _entries(text: str, path: Path) -> dict[str, str]:
             raise InputError(
                 "BAD_CALIBRATION",
                 f"{path}: line {number}",
-                "the key {} is there twice; give the file as ur_calibration wrote it",
+                "the key {} is duplicated; use the file as ur_calibration wrote it",
                 key,
             )
         values[key] = entry["value"] or ""
@@ -142,7 +142,7 @@ def _pose(entries: dict[str, str], joint: str, path: Path) -> Array:
             raise InputError(
                 "BAD_CALIBRATION",
                 f"{path}: {key}",
-                "this key is missing; give the file as ur_calibration wrote it",
+                "this key is missing; use the file as ur_calibration wrote it",
             )
         try:
             number = float(entries[key])
@@ -152,7 +152,7 @@ def _pose(entries: dict[str, str], joint: str, path: Path) -> Array:
             raise InputError(
                 "BAD_CALIBRATION",
                 f"{path}: {key}",
-                "{} is not a number; give the file as ur_calibration wrote it",
+                "{} is not a number; use the file as ur_calibration wrote it",
                 _short(entries[key]),
             )
         numbers.append(number)

@@ -69,7 +69,7 @@ def select_machines(
         raise InputError(
             "USAGE",
             "freecad-am machines",
-            "no machine known is of {!r}; use one of {}",
+            "no known machine is from {!r}; use one of {}",
             maker,
             makers,
         )

@@ -25,7 +25,9 @@ def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
     poses = [pose.only("q", "origin", "rotation", "within") for pose in node.items()]
     if len(poses) < 3:
         raise node.bad(
-            Text("there are {}; give at least 3 joint vectors with their flange poses", len(poses))
+            Text(
+                "the file has {}; give at least 3 joint vectors with their flange poses", len(poses)
+            )
         )
     q = np.array([pose["q"].numbers(chain.axes) for pose in poses]) * np.where(
         chain.sliding, 1.0, math.radians(1.0)
@@ -69,7 +71,7 @@ def _tolerance_of(pose: Node) -> tuple[float, float]:
         if not 0.0 <= value <= max_value:
             raise node[key].bad(
                 Text(
-                    "{:g} is more than the rounding of a display leaves; give 0 to {:g}",
+                    "{:g} exceeds the rounding of a display; give 0 to {:g}",
                     value,
                     max_value,
                 )

@@ -87,7 +87,7 @@ def table_of(chain: Chain, modified: bool = False) -> Table:
 
 def _check(table: Table) -> None:
     if not table.rows:
-        raise InputError("BAD_TABLE", "table", "there is no row; give one per joint")
+        raise InputError("BAD_TABLE", "table", "the table is empty; give one row per joint")
     for number, row in enumerate(table.rows, 1):
         where = Text("table, row {}", number)
         if not np.isfinite([row.theta, row.d, row.a, row.alpha]).all():

@@ -179,7 +179,7 @@ def text(draft: Draft) -> str:
             draft.id,
         )
     if not draft.title:
-        raise InputError("BAD_NAME", "title", "it is empty; give maker and model")
+        raise InputError("BAD_NAME", "title", "the field is empty; give manufacturer and model")
     content: dict[str, Any] = {
         "id": draft.id,
         "title": draft.title,
@@ -248,7 +248,7 @@ def _display_of(machine: Machine) -> Shown:
     raise InputError(
         "BAD_MACHINE",
         Text("{}: controller.matrix", machine.id),
-        "it is none of signs and a coupling of axes 2 and 3; copy the file itself",
+        "it is not made of signs and a coupling of axes 2 and 3; copy the original file",
     )
 
 

@@ -47,7 +47,7 @@ def _warning(node: Node, top: Node) -> MachineWarning:
     if applies_to not in (*WARNED, *sets):
         raise node["applies_to"].bad(
             Text(
-                "{!r} is not what a warning applies to; use {}",
+                "{!r} is not a valid target of a warning; use {}",
                 applies_to,
                 ", ".join([*WARNED, *sets]),
             )
@@ -64,7 +64,8 @@ def pulses_of(controller: Node, count: int) -> tuple[float, ...]:
     if (pulses == 0.0).any():
         raise node.bad(
             Text(
-                "{} has a 0; give the pulses of a degree of each axis, negative where they count down",
+                "{} contains a 0; give the pulses per degree of each axis, negative where they "
+                "count down",
                 node.value,
             )
         )
@@ -74,7 +75,7 @@ def pulses_of(controller: Node, count: int) -> tuple[float, ...]:
 def speed_unit_of(node: Node) -> str:
     if node.text() not in SPEED_UNITS:
         raise node.bad(
-            Text("{!r} is not a unit of path speeds; use {}", node.value, ", ".join(SPEED_UNITS))
+            Text("{!r} is not a unit of path speed; use {}", node.value, ", ".join(SPEED_UNITS))
         )
     return node.text()
 
@@ -90,16 +91,14 @@ def unit_of(node: Node) -> Array:
     axis = node.numbers(3)
     length = float(np.linalg.norm(axis))
     if abs(length - 1.0) > 1e-6:
-        raise node.bad(Text("{} is not a unit vector; give one of length 1", node.value))
+        raise node.bad(Text("{} is not a unit vector; give a vector of length 1", node.value))
     return axis / length
 
 
 def slides(joint: Node) -> bool:
     kind = joint["type"].text() if joint.has("type") else "revolute"
     if kind not in ("revolute", "prismatic"):
-        raise joint["type"].bad(
-            Text("{!r} is not a type of joint; use revolute or prismatic", kind)
-        )
+        raise joint["type"].bad(Text("{!r} is not a joint type; use revolute or prismatic", kind))
     return kind == "prismatic"
 
 
@@ -141,7 +140,7 @@ def opw_arm(node: Node, count: int) -> OpwArm:
     node.only(*lengths, "offsets", "signs")
     if count != 6:
         raise node.bad(
-            Text("the closed form is for six joints, there are {}; leave opw out", count)
+            Text("the closed form is for six joints, but the machine has {}; remove opw", count)
         )
     signs = node["signs"].numbers(6)
     if (np.abs(signs) != 1.0).any():
@@ -152,7 +151,7 @@ def opw_arm(node: Node, count: int) -> OpwArm:
     if (np.abs(offsets) > 180.0).any():
         raise node["offsets"].bad(
             Text(
-                "{} must lie within +-180; give the same angles in that range",
+                "{} must be within +-180; give equivalent angles in that range",
                 node["offsets"].value,
             )
         )

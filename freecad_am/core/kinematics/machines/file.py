@@ -40,7 +40,7 @@ class Node:
         if not isinstance(self.value, dict):
             raise self.bad(
                 Text(
-                    "{} is not an object with the keys {}; write it as one in braces",
+                    "{} is not an object with the keys {}; write one in braces",
                     _short(self.value),
                     ", ".join(allowed),
                 )
@@ -124,7 +124,8 @@ class Node:
         if not lower < upper:
             raise self.bad(
                 Text(
-                    "{} is not a range; give the smaller one first, or null for endless",
+                    "{} is not a range; give the smaller value first, or null for a continuous "
+                    "axis",
                     _short(self.value),
                 )
             )
@@ -145,7 +146,7 @@ def _once(pairs: list[tuple[str, Any]], path: Path) -> dict[str, Any]:
     for key, value in pairs:
         if key in entries:
             raise InputError(
-                "BAD_MACHINE", str(path), "the key {!r} stands there twice; remove one", key
+                "BAD_MACHINE", str(path), "the key {!r} appears twice; remove one", key
             )
         entries[key] = value
     return entries
@@ -165,13 +166,13 @@ def read(path: Path) -> Node:
         raise InputError(
             "BAD_MACHINE",
             str(path),
-            "it is nested too deeply to be a machine file; choose another file",
+            "it is nested too deeply for a machine file; choose another file",
         ) from None
     except (OSError, ValueError) as error:
         raise InputError(
             "BAD_MACHINE",
             str(path),
-            "cannot be read as a machine file: {}; mend that place, or choose another file",
+            "cannot be read as a machine file: {}; correct it, or choose another file",
             error,
         ) from None
 

@@ -166,7 +166,7 @@ class Machine:
             raise InputError(
                 "UNKNOWN_LIMITS",
                 "cell.limits",
-                "{} has no limits {!r}; use {}",
+                "{} has no set of limits {!r}; use {}",
                 self.id,
                 name,
                 ", ".join(self.limit_sets),
@@ -227,7 +227,7 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
             raise InputError(
                 "UNKNOWN_MACHINE",
                 "cell.machine",
-                "there is no machine file {}; check the path",
+                "machine file {} does not exist; check the path",
                 text,
             )
         return _parse(read(path))
@@ -244,7 +244,7 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
         raise InputError(
             "BAD_MACHINE",
             f"{path}: id",
-            "{!r} is not the name of the file, {!r}; rename it",
+            "{!r} differs from the file name, {!r}; rename it",
             machine.id,
             text,
         )
@@ -385,7 +385,7 @@ def _calibrated(machine: Machine, path: Path) -> Machine:
         raise InputError(
             "BAD_CALIBRATION",
             "cell.machine",
-            "{} takes no calibration; those of Universal Robots do: leave it out",
+            "{} has no calibration, only Universal Robots arms do; remove it",
             machine.title,
         )
     poses, robot = calibration.read(path)

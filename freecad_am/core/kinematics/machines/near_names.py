@@ -12,7 +12,7 @@ from ...issues import InputError, Text
 def unknown(name: str, names: Sequence[str]) -> InputError:
     """UNKNOWN_MACHINE, of the names that there are."""
     return InputError(
-        "UNKNOWN_MACHINE", "cell.machine", "{!r} is not known; {}", name, _near(name, names)
+        "UNKNOWN_MACHINE", "cell.machine", "unknown name {!r}; {}", name, _near(name, names)
     )
 
 
@@ -27,8 +27,8 @@ def _near(name: str, names: Sequence[str]) -> str:
         name_of_maker.partition("-")[0]: name_of_maker for name_of_maker in reversed(names)
     }
     return Text(
-        "none of {} machines has a name like it; use one that `freecad-am machines` lists, such as {}, or the path of a "
-        "machine file or URDF",
+        "none of {} machines has a similar name; use a name that `freecad-am machines` lists, "
+        "such as {}, or the path of a machine file or URDF",
         len(names),
         ", ".join(sorted(of_makers.values())),
     )

@@ -129,7 +129,8 @@ class UrdfCell:
             if joint_names[0] == robot[0]:
                 self._refuse(
                     Text(
-                        "{!r} is carried by {!r}, as the robot is; let the positioner stand on the floor",
+                        "{!r} is carried by {!r}, as the robot is; attach the positioner to the "
+                        "floor",
                         joint_names[-1],
                         joint_names[0],
                     )
@@ -138,8 +139,8 @@ class UrdfCell:
             names = ", ".join(" - ".join(joint_names) for joint_names in other_chains)
             self._refuse(
                 Text(
-                    "{} chains move beside the robot ({}), and one can carry the part; name it in `{}`, with base "
-                    "and tip",
+                    "besides the robot the file has {} chains ({}), and only one can carry the "
+                    "part; name it in `{}`, with base and tip",
                     len(other_chains),
                     names,
                     WHERE,
@@ -187,15 +188,15 @@ class UrdfCell:
     def _no_robot(self) -> str:
         longest = max(self.farthest, key=len, default=())
         return Text(
-            "there is no robot in it: no chain has six turning axes on nothing but axes that slide; the longest is "
-            "{}",
+            "the file has no robot: no chain has six revolute axes on a fixed base or prismatic "
+            "axes; the longest is {}",
             " - ".join(longest) or "none",
         )
 
     def _several(self, robots: Sequence[Way]) -> str:
         return Text(
-            "there are {} robots in it, the last axes of which are {}; name one in `cell.machine`, with base and "
-            "tip, and what stands beside it in `{}`",
+            "the file has {} robots, with the last axes {}; name one in `cell.machine`, with "
+            "base and tip, and its external axes in `{}`",
             len(robots),
             ", ".join(robot_joints[-1] for robot_joints in robots),
             WHERE,
@@ -216,15 +217,14 @@ def texts_of(cell_reference: Reference) -> tuple[str, str]:
         raise InputError(
             "BAD_VALUE",
             WHERE,
-            "{} takes all of the file; leave out base and tip of the machine, or name the "
-            "mechanisms one by one",
+            "{} uses the whole file; remove base and tip of the machine, or list the mechanisms",
             WHOLE_CELL,
         )
     if not is_there(cell_reference.file):
         raise InputError(
             "UNKNOWN_MACHINE",
             "cell.machine",
-            "there is no URDF {}; check the path",
+            "URDF {} does not exist; check the path",
             cell_reference.file,
         )
     urdf_cell = UrdfCell(cell_reference.file)
@@ -241,8 +241,8 @@ def texts_of_machine(machine: object) -> tuple[str, str]:
         raise InputError(
             "BAD_VALUE",
             WHERE,
-            "{} is for a machine that is the URDF of the whole cell, such as machine: "
-            "bay.urdf; or give a list of mechanisms",
+            "{} needs a machine that is the URDF of the whole cell, such as machine: bay.urdf; "
+            "otherwise give a list of mechanisms",
             WHOLE_CELL,
         )
     return texts_of(cell_reference)

@@ -94,6 +94,6 @@ def _solid(element: Element) -> Solid | None:
 def _sizes(element: Element, sizes: Array) -> Array:
     if (sizes <= 0.0).any():
         raise element.bad(
-            Text("<{}> has a size that is not larger than 0; give its sizes in m", element.tag)
+            Text("<{}> has a size that is not positive; give its sizes in m", element.tag)
         )
     return sizes

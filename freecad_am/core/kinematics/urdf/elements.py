@@ -67,7 +67,7 @@ class Element:
         if len(words) != count:
             raise self.bad(
                 Text(
-                    "{}={!r} of <{}> is not {} numbers; write so many, with blanks between",
+                    "{}={!r} of <{}> needs {} numbers; separate them with spaces",
                     name,
                     self.attributes.get(name, ""),
                     self.tag,
@@ -136,7 +136,7 @@ def read(path: Path) -> Element:
         raise InputError(
             CODE,
             f"{path.name}: line {parser.CurrentLineNumber}",
-            "entities such as {!r} are not read; write out what they stand for",
+            "entities such as {!r} are not supported; write out their content",
             name,
         )
 
@@ -147,7 +147,7 @@ def read(path: Path) -> Element:
         parser.Parse(read_content(path, MAX_FILE_MB, CODE, str(path)), True)
     except OSError as error:
         raise InputError(
-            CODE, str(path), "cannot be read: {}; choose a file that can", error.strerror or error
+            CODE, str(path), "cannot be read: {}; choose another file", error.strerror or error
         ) from None
     except xml.parsers.expat.ExpatError as error:
         text = xml.parsers.expat.errors.messages[error.code]

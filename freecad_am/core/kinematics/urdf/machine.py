@@ -50,7 +50,7 @@ def describe(machine_reference: Reference) -> tuple[Description, SerialArm | Non
             ""
             if not track
             else Text(
-                "; the robot begins at the link {!r}; or write `external: {}`, which takes track "
+                "; the robot begins at the link {!r}; or write `external: {}` to use the track "
                 "and positioner of the file",
                 robot.moved_by(description.joints[track - 1]),
                 WHOLE_CELL,
@@ -74,7 +74,8 @@ def _note_deviation(arm: SerialArm) -> list[str]:
         return []
     return [
         Text(
-            "its axes are up to {:.2g} deg off right angles: joint angles are solved for the axes as they are",
+            "its axes are up to {:.2g} deg off right angles: joint angles are solved for the "
+            "actual axes",
             math.degrees(recognition.off_square(arm.chain)),
         )
     ]
@@ -104,7 +105,7 @@ def _ends(chain_reference: Reference, where: str) -> tuple[Urdf, str, str]:
     path = Path(chain_reference.file).expanduser()
     if not is_there(path):
         raise InputError(
-            "UNKNOWN_MACHINE", where, "there is no URDF {}; check the path", chain_reference.file
+            "UNKNOWN_MACHINE", where, "URDF {} does not exist; check the path", chain_reference.file
         )
     robot = Urdf(path)
     base = chain_reference.base or robot.bases()[0]
@@ -124,7 +125,7 @@ def _ends(chain_reference: Reference, where: str) -> tuple[Urdf, str, str]:
         raise InputError(
             "BAD_URDF",
             where,
-            "no joint of {} moves anything against {!r}; name another link as base",
+            "no joint of {} moves relative to {!r}; choose another link as base",
             path.name,
             base,
         )

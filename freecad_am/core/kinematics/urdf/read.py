@@ -77,13 +77,13 @@ class Urdf:
             raise InputError(
                 CODE,
                 self.path.name,
-                "this is xacro; make a URDF of it first, with the program xacro of ROS",
+                "this is xacro; convert it to URDF first, with the ROS program xacro",
             )
         self.top = urdf_xml.read(self.path)
         if self.top.tag != "robot":
             raise self.top.bad(
                 Text(
-                    "this is <{}>, not the <robot> of a URDF; choose the URDF of a robot",
+                    "this is <{}>, not the <robot> of a URDF; choose a robot URDF",
                     self.top.tag,
                 )
             )
@@ -91,7 +91,7 @@ class Urdf:
         unexpanded = _xacro_in(self.top)
         if unexpanded is not None:
             raise unexpanded.bad(
-                "this is xacro; make a URDF of it first, with the program xacro of ROS"
+                "this is xacro; convert it to URDF first, with the ROS program xacro"
             )
         self.name = self.top.attributes.get("name", self.path.stem)
         self.links = self._named("link")
@@ -101,13 +101,13 @@ class Urdf:
                 link = joint.one(end).text("link")
                 if link not in self.links:
                     raise joint.one(end).bad(
-                        Text("there is no link {!r}; name one that is there", link)
+                        Text("the link {!r} does not exist; choose an existing one", link)
                     )
             child = joint.one("child").text("link")
             if child in self.parent:
                 raise joint.bad(
                     Text(
-                        "the link {!r} is moved by {!r} already",
+                        "the link {!r} already has a parent joint, {!r}",
                         child,
                         self.parent[child].text("name"),
                     )
@@ -121,7 +121,7 @@ class Urdf:
             if name in elements:
                 raise element.bad(
                     Text(
-                        "there is a {} {!r} already, in line {}; rename one of the two",
+                        "a {} {!r} already exists, in line {}; rename one",
                         tag,
                         name,
                         elements[name].line,
@@ -129,7 +129,7 @@ class Urdf:
                 )
             elements[name] = element
         if not elements:
-            raise self.top.bad(Text("there is no <{}>; choose the URDF of a robot", tag))
+            raise self.top.bad(Text("the file has no <{}>; choose a robot URDF", tag))
         return elements
 
     def bases(self) -> list[str]:
@@ -193,7 +193,7 @@ class Urdf:
             raise InputError(
                 CODE,
                 self.path.name,
-                "no joint moves {!r} against {!r}; choose another link",
+                "no joint moves {!r} relative to {!r}; choose another link",
                 tip,
                 base,
             )
@@ -271,7 +271,8 @@ class Urdf:
             if mimic is not None:
                 raise mimic.bad(
                     Text(
-                        "the joint {!r} follows another one, which a serial chain cannot",
+                        "the joint {!r} mimics another joint, which a serial chain cannot; "
+                        "remove the mimic tag",
                         joint.text("name"),
                     )
                 )
@@ -367,7 +368,8 @@ def _turn_out(to_tip: Array, axis: Array, tip: str, notes: list[str]) -> Array:
         return to_tip
     notes.append(
         Text(
-            "the X of {} points out of the flange, not its Z: it is turned there, as tool0 stands to flange",
+            "the X of {} points out of the flange, not its Z; the flange frame is rotated, as "
+            "tool0 is from flange",
             tip,
         )
     )
@@ -402,7 +404,7 @@ def _check_joint(joint: Element) -> None:
         if child.tag not in JOINT_TAGS:
             raise child.bad(
                 Text(
-                    "<{}> in the joint {!r} is not known and may change where links are; remove it",
+                    "unknown <{}> in the joint {!r}, which may move links; remove it",
                     child.tag,
                     joint.text("name"),
                 )
@@ -410,7 +412,7 @@ def _check_joint(joint: Element) -> None:
         if child.tag in SINGLE_TAGS and len(list(joint.all(child.tag))) > 1:
             raise child.bad(
                 Text(
-                    "the joint {!r} has several <{}>; keep one of them",
+                    "the joint {!r} has several <{}>; keep one",
                     joint.text("name"),
                     child.tag,
                 )
@@ -427,7 +429,8 @@ def _check_joint(joint: Element) -> None:
     if distance_m > FARTHEST_M:
         raise joint.bad(
             Text(
-                "the origin of the joint {!r} is {:g} m away; a URDF is in metres: divide what is in mm by 1000",
+                "the origin of the joint {!r} is {:g} m away; a URDF uses metres: divide "
+                "millimetres by 1000",
                 joint.text("name"),
                 distance_m,
             )
@@ -442,7 +445,7 @@ def _joint_notes(joints: Sequence[Element]) -> list[str]:
         if limit is not None and joint.text("type") != "continuous":
             missing = [name for name in ("lower", "upper") if name not in limit.attributes]
             notes += [
-                Text("line {}: the limit has no {}, which counts as 0", limit.line, name)
+                Text("line {}: the limit has no {}; 0 is used", limit.line, name)
                 for name in missing
             ]
         if soft is not None and {"soft_lower_limit", "soft_upper_limit"} & set(soft.attributes):
@@ -459,7 +462,7 @@ def _rounded_angles(joints: Sequence[Element]) -> list[str]:
             off = abs(urdf_xml.unrounded(word) - float(word))
             if off >= 10.0 ** -len(word.partition(".")[2]):
                 line = joint.line if origin is None else origin.line
-                notes.append(Text("line {}: {} is read as a right angle", line, word))
+                notes.append(Text("line {}: {} is treated as a right angle", line, word))
     return notes
 
 
@@ -481,7 +484,7 @@ def _limits(joint: Element) -> tuple[float, float, float]:
         if kind != "continuous":
             raise joint.bad(
                 Text(
-                    "the joint {!r} has no <limit>; one that turns without end is continuous",
+                    "the joint {!r} has no <limit>; add one, or make the joint continuous",
                     joint.text("name"),
                 )
             )
@@ -500,8 +503,8 @@ def _limits(joint: Element) -> tuple[float, float, float]:
     if kind == "revolute" and max(abs(lower), abs(upper)) > MOST_RAD:
         raise limit.bad(
             Text(
-                "the limits of {!r} run from {:g} to {:g} rad, which are many turns; a URDF is in radians: convert degrees, or "
-                "make the joint continuous",
+                "the limits of {!r} run from {:g} to {:g} rad, many turns; a URDF uses radians: "
+                "convert degrees, or make the joint continuous",
                 joint.text("name"),
                 lower,
                 upper,

@@ -176,7 +176,7 @@ def centre_line(bodies: Sequence[Body], start: Array, direction: Array, depth: f
         raise _not_found(
             name,
             Text(
-                "the line of {:.4g} mm leads through {:.3g} % of the volume",
+                "the line of {:.4g} mm covers only {:.3g} % of the volume",
                 length,
                 100.0 * volume_share,
             ),
@@ -188,8 +188,8 @@ def _not_found(name: str, why: str) -> InputError:
     return InputError(
         "GUIDE_NOT_FOUND",
         "strategy.guide",
-        "auto finds no centre line of {} from where it stands: {}; choose an edge, a "
-        "wire or a sketch as guide, or set strategy.direction so that the part stands on one of its ends",
+        "auto finds no centre line of {} from its support: {}; choose an edge, a wire or a "
+        "sketch as guide, or set strategy.direction along the part from one of its ends",
         name,
         why,
     )

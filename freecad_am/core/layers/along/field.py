@@ -53,8 +53,8 @@ class AlongCuts(PlaneCuts):
                     "GUIDE_TIGHT",
                     body.name,
                     "the guide bends more tightly at {} than the part is wide there: planes "
-                    "normal to it cross one another within the part, at {}; choose a guide nearer to the inside of the bend "
-                    "or with a larger radius, or strategy.layers: geodesic",
+                    "normal to it intersect within the part, at {}; choose a guide nearer to the "
+                    "inside of the bend or with a larger radius, or strategy.layers: geodesic",
                     base.where(guide.at(guide.distance(point[None]))[0][0]),
                     base.where(point),
                 )
@@ -102,8 +102,8 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> lis
         raise InputError(
             "TOO_LOW",
             "strategy.layer_height",
-            "{:g} mm is too much for {}, {:.4g} mm long along the guide: no layer is "
-            "cut in its {}; give at most {:.3g} mm",
+            "{:g} mm is too high for {}, {:.4g} mm long along the guide: no layer is cut in its "
+            "{}; use at most {:.3g} mm",
             height,
             ", ".join(body.name for body in bodies),
             top,
@@ -166,9 +166,9 @@ def _refuse_uneven(layers: Sequence[Slice], strategy: SolidParameters) -> None:
     point = points[int(np.abs(off).argmax())]
     need = float(np.abs(off).max()) / height
     message = Text(
-        "{} of {} layers are not as high everywhere as asked for: layer {} is {:.3g} to {:.3g} mm high, farthest off the "
-        "{:g} mm at {}; strategy.band allows {:.3g} %, and {:.3g} % would be needed: raise it, or choose a guide in the "
-        "middle of the part or one that bends less",
+        "{} of {} layers deviate from the layer height: layer {} is {:.3g} to {:.3g} mm high, "
+        "farthest off the {:g} mm at {}; strategy.band allows {:.3g} %, but {:.3g} % is needed: "
+        "raise it, or choose a guide in the middle of the part or with a gentler bend",
         len(uneven),
         len(layers),
         worst.number,

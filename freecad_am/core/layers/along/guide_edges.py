@@ -45,7 +45,7 @@ def chain_edges(edges: Sequence[Nodes]) -> Nodes:
         raise InputError(
             "GUIDE_OPEN",
             WHERE,
-            "the guide has no edge with a length; choose edges, a wire or a sketch",
+            "the guide has no edge with any length; choose edges, a wire or a sketch",
         )
     chain = [remaining.pop(0)]
     while remaining:
@@ -70,8 +70,8 @@ def chain_edges(edges: Sequence[Nodes]) -> Nodes:
             raise InputError(
                 "GUIDE_OPEN",
                 WHERE,
-                "its edges are not one curve: {} of {} do not go on from where the others end, at {} "
-                "and {}, and the nearest is {:.3g} mm off; choose edges that meet end to end",
+                "its edges do not form one curve: {} of {} are disconnected, at {} and {}, and "
+                "the smallest gap is {:.3g} mm; choose edges that meet end to end",
                 len(remaining),
                 len(edges),
                 place(ends[0]),
@@ -86,8 +86,8 @@ def chain_edges(edges: Sequence[Nodes]) -> Nodes:
         raise InputError(
             "GUIDE_CLOSED",
             WHERE,
-            "it comes back to where it begins, at {}: the last layer would lie on the first; leave "
-            "an edge of it out",
+            "it returns to its start, at {}, so the last layer would overlap the first; remove "
+            "one edge",
             place(chain[0].points[0]),
         )
     return Nodes(
@@ -104,8 +104,8 @@ def _refuse_corners(chain: Sequence[Nodes]) -> None:
             raise InputError(
                 "GUIDE_DOUBLES_BACK",
                 WHERE,
-                "it turns back by {:.4g} deg at {}: layers would go through what was "
-                "deposited; choose edges that lead on",
+                "it turns back by {:.4g} deg at {}: layers would cut through the deposit; choose "
+                "edges that lead forward",
                 np.degrees(turn),
                 position,
             )
@@ -113,7 +113,7 @@ def _refuse_corners(chain: Sequence[Nodes]) -> None:
             raise InputError(
                 "GUIDE_CORNER",
                 WHERE,
-                "it has a corner of {:.3g} deg at {}, where layers would have no height on the "
+                "it has a corner of {:.3g} deg at {}, where layers would have zero height on the "
                 "inside; round it with a radius, or choose guide: auto",
                 np.degrees(turn),
                 position,

@@ -73,8 +73,8 @@ def _note(nodes: Nodes, label: str) -> Issue:
         NOTE,
         "GUIDE",
         Text(
-            "layers of {} stand normal to its centre line, {:.4g} mm from {} to {}, which turns by {:.3g} "
-            "deg in all",
+            "layers of {} are normal to its centre line, {:.4g} mm from {} to {}, turning by "
+            "{:.3g} deg in total",
             label,
             length,
             place(nodes.points[0]),

@@ -52,8 +52,8 @@ def slices(solids: SolidsOnHub, group: Group, strategy: SolidParameters) -> Iter
         raise InputError(
             "TOO_FINE",
             "strategy.layer_height",
-            "{:g} mm is too fine for curved layers of {}, {:.4g} cm3; give at least "
-            "{:.2g} mm, or layers: planes",
+            "{:g} mm is too fine for curved layers of {}, {:.4g} cm3; use at least {:.2g} mm, or "
+            "layers: planes",
             height,
             name,
             volume / 1000.0,
@@ -78,8 +78,8 @@ def slices(solids: SolidsOnHub, group: Group, strategy: SolidParameters) -> Iter
                         NOTE if stretch <= 3.0 * REPORTED_DISTORTION else WARNING,
                         "DISTORTED",
                         Text(
-                            "a curved layer cannot be laid flat without distortion: beads are up to {:.2g} % nearer together "
-                            "or farther apart than the bead spacing",
+                            "a curved layer cannot be flattened without distortion: the bead "
+                            "spacing varies by up to {:.2g} %",
                             100.0 * stretch,
                         ),
                         number,
@@ -105,7 +105,7 @@ def _refuse(strategy: SolidParameters) -> None:
             raise InputError(
                 "NOT_FOR_FAMILY",
                 f"strategy.{key}",
-                "it is for plane layers, not for curved ones; use {}, or layers: planes",
+                "it needs planar layers; use {}, or layers: planes",
                 instead,
             )
 
@@ -143,8 +143,8 @@ def _field(
             raise InputError(
                 "NOT_STANDING",
                 "strategy.start_faces",
-                "no face of {} lies on the faces chosen to start from, which are "
-                "{:.4g} mm away; choose faces that it touches, or none",
+                "no face of {} touches the start faces, which are {:.4g} mm away; choose faces "
+                "in contact, or none",
                 name,
                 gap,
             )
@@ -154,16 +154,16 @@ def _field(
         raise InputError(
             "NOT_STANDING",
             name,
-            "no face of it lies on the plane through its lowest place along strategy.direction, or "
-            "on the substrate, so that there is nothing to begin on; turn the part, set strategy.direction, or give a "
-            "substrate that it touches",
+            "the part has no face to start from: none is on the plane through its lowest point "
+            "along strategy.direction, or on the substrate; turn the part, set "
+            "strategy.direction, or choose a substrate in contact",
         ) from None
     if field.unreached > UNREACHED:
         raise InputError(
             "NOT_CONNECTED",
             name,
-            "{:.3g} % of it hang together with nothing that stands on the platform or the substrate; "
-            "deposit these by themselves, or set strategy.direction",
+            "{:.3g} % of the solid is not connected to the platform or the substrate; deposit "
+            "that part separately, or set strategy.direction",
             100.0 * field.unreached,
         )
     return field

@@ -167,8 +167,8 @@ def _refuse_folded(
     raise InputError(
         "FOLDED",
         "strategy.layers",
-        "layer {} of {} would lie {:.4g} mm above the faces, as far as a hollow reaches at {}, "
-        "and fold there; lay at most {} layer(s), or leave out what is so hollow",
+        "layer {} of {} is {:.4g} mm above the faces, the depth of the hollow at {}, and would "
+        "fold there; deposit at most {} layer(s), or exclude the hollow face",
         layer,
         label,
         layer * strategy.layer_height,

@@ -61,8 +61,8 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Ite
         raise InputError(
             "TOO_LOW",
             "strategy.layer_height",
-            "{:g} mm is too much for {}, {:.4g} mm high along strategy.direction (the "
-            "highest place is at {}): no layer is cut in its {}; give at most {:.3g} mm",
+            "{:g} mm is too high for {}, {:.4g} mm high along strategy.direction (top at {}): no "
+            "layer is cut in its {}; use at most {:.3g} mm",
             strategy.layer_height,
             ", ".join(body.name for body in bodies),
             top,

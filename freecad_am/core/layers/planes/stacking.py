@@ -283,7 +283,7 @@ def _note(ranking: Sequence[Stacked], label: str, lean: float) -> Issue:
         if best_direction is upright_one
         else (
             Text(
-                "; along (0, 0, 1) it would be {:.4g} mm^2 and {:.4g} mm",
+                "; along (0, 0, 1) they would be {:.4g} mm^2 and {:.4g} mm",
                 upright_one.area,
                 upright_one.height,
             )
@@ -294,8 +294,8 @@ def _note(ranking: Sequence[Stacked], label: str, lean: float) -> Issue:
         NOTE,
         "DIRECTION",
         Text(
-            "{} is stacked along ({:g}, {:g}, {:g}): {:.4g} mm^2 of it lean over nothing by more than "
-            "{:.4g} deg, and it is {:.4g} mm high{}",
+            "{} is stacked along ({:g}, {:g}, {:g}): {:.4g} mm^2 overhang by more than {:.4g} "
+            "deg, and the height is {:.4g} mm{}",
             label,
             x,
             y,

@@ -48,8 +48,8 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
             raise InputError(
                 "APEX_INSIDE",
                 where,
-                "the solid reaches over the end of the hub's axis, at {}, where equidistant surfaces "
-                "have an apex or an end; let it end beside the axis",
+                "the solid crosses the hub axis beyond its end, at {}, where equidistant "
+                "surfaces have an apex or an end; end the solid before the axis",
                 base.where(_apex(loops, surface)),
             )
         below.append(loops)
