@@ -68,16 +68,15 @@ def tables(report: dict[str, Any]) -> str:
         lines.append(
             f"| {name} | {outcome(entry, report)} | {' | '.join(figures)} | {entry['planning_time_s']:.1f} |"
         )
-    lines += [
-        "",
-        f"| largest | method | {axes[0]} to {axes[-2]} | {axes[-1]} |",
-        "| --- | --- | --- | --- |",
-    ]
+    head = f"largest of {axes[0]} to {axes[-2]} / of {axes[-1]}"
+    lines += ["", f"| {head} | {' | '.join(METHODS.values())} |", "| --- | --- | --- | --- |"]
     for key, what in PER_AXIS.items():
-        for method, name in METHODS.items():
+        cells = []
+        for method in METHODS:
             *others, last = found[method][key] or [None, None]
             largest = None if None in others else max(others)
-            lines.append(f"| {what} | {name} | {angle(largest)} | {angle(last)} |")
+            cells.append(f"{angle(largest)} / {angle(last)}")
+        lines.append(f"| {what} | {' | '.join(cells)} |")
     return "\n".join(lines)
 
 
