@@ -64,7 +64,7 @@ def verify(
     """
     read, rows = post.read(files), np.flatnonzero(motion.moves)
     if len(read.deposit) != len(rows):
-        message = Text("the text has {} moves, planned are {}", len(read.deposit), len(rows))
+        message = Text("the text has {} moves, but {} are planned", len(read.deposit), len(rows))
         return Verification((Issue(ERROR, "VERIFY_COUNT", message),), np.inf, np.inf, np.inf, ())
     planned = Planned(motion, rows)
     issues = event_issues(planned, program, read) + way_issues(cell, planned, program, read)

@@ -39,7 +39,7 @@ def command_parsers() -> tuple[Parser, dict[str, Parser]]:
         "-o",
         "--output",
         metavar="DIR",
-        help="folder of the outputs; without it out/<name> beside the job",
+        help="folder of the outputs; default: out/<name> next to the job",
     )
     parsers = {}
     for name, (summary, has_outputs, add_arguments) in COMMANDS.items():
@@ -110,7 +110,7 @@ def _add_check(parser: Parser) -> None:
     parser.add_argument(
         "--post",
         metavar="NAME",
-        help="the post that reads it; without it that of the job or of the machine",
+        help="the post that reads it; default: the post of the job or of the machine",
     )
 
 
@@ -142,13 +142,15 @@ def _add_machines(parser: Parser) -> None:
         ("--modified-dh", "modified-dh", "the same by Craig"),
     ):
         forms.add_argument(option, action="store_const", const=form, dest="form", help=words)
-    parser.add_argument("--maker", metavar="NAME", help="list those of this maker")
-    parser.add_argument("--reach", metavar="LENGTH", help="list those that reach at least so far")
+    parser.add_argument("--maker", metavar="NAME", help="list machines of this manufacturer")
+    parser.add_argument("--reach", metavar="LENGTH", help="list machines with at least this reach")
     parser.add_argument(
-        "--payload", metavar="MASS", help="list those that are known to carry at least so much"
+        "--payload", metavar="MASS", help="list machines with at least this payload"
     )
     parser.add_argument(
-        "--post", metavar="NAME", help="list those whose controllers read the programs of this post"
+        "--post",
+        metavar="NAME",
+        help="list machines with controllers that read the programs of this post",
     )
 
 
@@ -164,9 +166,13 @@ COMMANDS: dict[str, tuple[str, bool, Callable[[Parser], None]]] = {
     "plan": ("plan one job, from part to programs", True, _add_plan),
     "export": ("recompute a saved document and write its programs", True, _add_export),
     "batch": ("plan one job per row of a table of job keys", True, _add_batch),
-    "inspect": ("compare measured points with what is planned", True, _add_inspect),
+    "inspect": ("compare measured points with the plan", True, _add_inspect),
     "check": ("drive a program that was edited, or written elsewhere, in a cell", True, _add_check),
-    "place": ("find where the part can stand, and the best pose of its cell", True, _add_place),
+    "place": (
+        "find feasible positions of the part, and the best pose in its cell",
+        True,
+        _add_place,
+    ),
     "machines": (
         "list the known machines, or write one as URDF or as a table",
         False,

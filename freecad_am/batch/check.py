@@ -270,10 +270,11 @@ def _promises(motion: Motion, cell: Cell, context: Known) -> list[Promise]:
         DIGITS,
     )
     promises[1] = replace(
-        promises[1], how="inverse kinematics of what the text tells in positions, and joints driven"
+        promises[1],
+        how="inverse kinematics of the positions in the text, and joint values simulated",
     )
     if context.bead is None:
-        how = "not checked: a cell alone does not tell how wide and high beads are; give a job"
+        how = "not checked: a cell does not define the width and height of beads; give a job"
         return [*promises, Promise(clearance.ON_RAPIDS, how, None)]
     rapid_check = rapid_look.looked_at(
         motion, driven.beads(motion), cell, [], *context.bead, RAPID_PLACES

@@ -193,7 +193,10 @@ class Cluster:
         """What a row has come to, its outputs in place and written down, Ctrl-C or not."""
         if future.status != "finished":
             if future.status == "error" and type(future.exception()).__name__ == "KilledWorker":
-                message = "each worker that planned it was lost; look into their memory, and plan this row alone"
+                message = (
+                    "each worker that planned it was lost; check their memory, and plan "
+                    "this row separately"
+                )
                 return {"exit": 1, "message": message, "lines": [f"error[LOST] row: {message}"]}
             raise InputError(
                 CODE,

@@ -26,7 +26,7 @@ def export(
     """
     label = os.path.basename(path)
     if not os.path.isfile(path):
-        raise InputError("NO_FILE", path, "there is no such file; check the path")
+        raise InputError("NO_FILE", path, "the file does not exist; check the path")
     if not path.lower().endswith(".fcstd"):
         raise InputError(
             "UNSUPPORTED_FILE", label, "programs are in FreeCAD documents; give a .FCStd file"
@@ -87,7 +87,7 @@ def _chosen(
             message = "no {} is called {!r}; name one of {}"
             raise InputError("NO_OBJECT", label, message, kinds[0], name, labels)
         if len(matches) > 1:
-            message = "{!r} is the label of several {}s; use the name of one of them"
+            message = "{!r} is the label of several {}s; use the name of one"
             raise InputError("NO_OBJECT", label, message, name, kinds[0])
         selected += matches
     selected = selected or next(objects for objects in of_kinds if objects)

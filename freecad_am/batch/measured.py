@@ -134,7 +134,7 @@ def _open_document(path: str, name: str) -> tuple[Any, Any]:
 
     label = os.path.basename(path)
     if not os.path.isfile(path):
-        raise InputError("NO_FILE", path, "there is no such file; check the path")
+        raise InputError("NO_FILE", path, "the file does not exist; check the path")
     document = document_file.opened(path, label)
     candidates = api.stages_of(document, "feature") if not name else list(document.Objects)
     matches = (

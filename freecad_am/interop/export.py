@@ -30,7 +30,7 @@ def write_wires(obj: Any, path: str, rapids: bool) -> str:
         raise InputError(
             "UNSUPPORTED_FILE",
             path,
-            "wires are written as .step or .dxf; end the name with one of them",
+            "wires are written as .step or .dxf; use one of these extensions",
         )
     lines = lines_of(obj, rapids)
     return _whole(path, lambda unfinished: _write(lines, unfinished, ending, obj.Label))
@@ -44,7 +44,7 @@ def write_waypoints(obj: Any, path: str) -> str:
     """
     if os.path.splitext(path)[1].lower() != ".csv":
         raise InputError(
-            "UNSUPPORTED_FILE", path, "waypoints are written as .csv; end the name with it"
+            "UNSUPPORTED_FILE", path, "waypoints are written as .csv; use this extension"
         )
     motion, columns, units = motion_of(obj)
 
@@ -62,7 +62,7 @@ def write_page(path: str, page: Callable[[], str], title: str) -> str:
     """
     if os.path.splitext(path)[1].lower() != PAGE:
         raise InputError(
-            "UNSUPPORTED_FILE", path, "reports are written as .html; end the name with it"
+            "UNSUPPORTED_FILE", path, "reports are written as .html; use the extension .html"
         )
 
     def write(unfinished: str) -> None:
@@ -81,7 +81,7 @@ def write_cell(obj: Any, path: str) -> str:
     """
     if os.path.splitext(path)[1].lower() not in CELL:
         raise InputError(
-            "UNSUPPORTED_FILE", path, "cells are written as .yaml; end the name with it"
+            "UNSUPPORTED_FILE", path, "cells are written as .yaml; use the extension .yaml"
         )
     if getattr(getattr(obj, "Proxy", None), "kind", "") != "cell":
         raise InputError("WRONG_KIND", obj.Label, "this is not a cell; choose one")
@@ -102,7 +102,7 @@ def _whole(path: str, write: Callable[[str], None]) -> str:
     folder = os.path.dirname(os.path.abspath(path))
     if not os.path.isdir(folder):
         raise InputError(
-            "NO_FOLDER", path, "there is no folder {}; make it, or choose another", folder
+            "NO_FOLDER", path, "the folder {} does not exist; create it, or choose another", folder
         )
     try:
         with tempfile.TemporaryDirectory(prefix=".unfinished-", dir=folder) as temporary:
@@ -111,7 +111,7 @@ def _whole(path: str, write: Callable[[str], None]) -> str:
             os.replace(unfinished, path)
     except OSError as error:
         raise InputError(
-            "NOT_WRITABLE", path, "{}; choose a file you can write", error.strerror or error
+            "NOT_WRITABLE", path, "{}; choose a writable file", error.strerror or error
         ) from None
     return path
 
@@ -125,7 +125,9 @@ def add_trajectory(obj: Any, tolerance: float, turn: float) -> Any:
     """The lines of a stage as a trajectory of the Robot workbench, in its document: within `tolerance` mm and `turn` rad."""
     for name, value in (("tolerance", tolerance), ("turn", turn)):
         if not value > 0.0:
-            raise InputError("OUT_OF_RANGE", name, "{:g} is not above 0; give a larger one", value)
+            raise InputError(
+                "OUT_OF_RANGE", name, "{:g} is not positive; give a larger value", value
+            )
     return robot_trajectory.add(
         obj.Document, lines_of(obj), f"{obj.Label} (trajectory)", tolerance, turn
     )
@@ -138,7 +140,7 @@ def _write(lines: Sequence[Line], path: str, ending: str, label: str) -> None:
             raise InputError(
                 "NOT_WRITTEN",
                 label,
-                "FreeCAD wrote no STEP file; see the report view, or write DXF instead",
+                "FreeCAD wrote no STEP file; see the report view, or use DXF instead",
             )
     else:
         with open(path, "w", encoding="ascii", newline="") as stream:

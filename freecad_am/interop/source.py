@@ -51,7 +51,7 @@ def _path_of(obj: Any) -> Any:
         )
     path = obj if stage.kind != "program" else obj.JointPath
     if path is None:
-        raise InputError("NO_INPUT", obj.Label, "its joint path is gone; choose a joint path")
+        raise InputError("NO_INPUT", obj.Label, "its joint path was deleted; choose a joint path")
     if path.Key:
         check_current(path)
     return path

@@ -30,7 +30,7 @@ def write(lines: Sequence[Line], path: str, label: str) -> None:
         import Import
     except ImportError:
         raise InputError(
-            "NO_MODULE", "STEP", "this FreeCAD has no module Import; write DXF instead"
+            "NO_MODULE", "STEP", "this FreeCAD lacks the module Import; use DXF instead"
         ) from None
     active = App.ActiveDocument
     document = App.newDocument("RoboticAM_Export", label, True, True)

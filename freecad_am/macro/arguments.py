@@ -21,7 +21,7 @@ def checked_document(doc: Any, where: str = "doc") -> Any:
         raise InputError(
             "BAD_INPUT",
             where,
-            "{} is not a document; give one, such as FreeCAD.ActiveDocument",
+            "{} is not a document; pass one, such as FreeCAD.ActiveDocument",
             named(doc),
         )
     return doc
@@ -31,20 +31,22 @@ def checked_object(value: Any, where: str, doc: Any = None) -> Any:
     """The object, of a document where that is given. InputError BAD_INPUT for anything else, by the name of the argument."""
     if isinstance(value, (tuple, list)) and value and isinstance(value[0], App.DocumentObject):
         raise InputError(
-            "BAD_INPUT", where, "it takes one object alone; give that, and names of its faces apart"
+            "BAD_INPUT",
+            where,
+            "it takes a single object; pass it, and the names of its faces separately",
         )
     if not isinstance(value, App.DocumentObject) or is_gone(value):
         raise InputError(
             "BAD_INPUT",
             where,
-            "{} is not an object of a document; give one, such as doc.Body",
+            "{} is not an object of a document; pass one, such as doc.Body",
             named(value),
         )
     if doc is not None and value.Document != doc:
         raise InputError(
             "BAD_INPUT",
             where,
-            "{} is an object of another document, {}; give one of {}, such as a copy of it",
+            "{} belongs to another document, {}; pass an object of {}, such as a copy",
             value.Label,
             value.Document.Label,
             doc.Label,
@@ -60,7 +62,7 @@ def checked_objects(values: Any, where: str, doc: Any = None) -> list[Any]:
         raise InputError(
             "BAD_INPUT",
             where,
-            "{} is not a list of objects; give one, such as [doc.Clamp]",
+            "{} is not a list of objects; pass one, such as [doc.Clamp]",
             named(values),
         )
     return [checked_object(value, where, doc) for value in values]
@@ -73,7 +75,7 @@ def checked_names(names: Any, where: str) -> list[str]:
         raise InputError(
             "BAD_INPUT",
             where,
-            '{} are not names of faces or edges; give a list of texts, such as ["Face1"]',
+            '{} are not names of faces or edges; pass a list of texts, such as ["Face1"]',
             named(names),
         )
     return list(found)
@@ -82,14 +84,14 @@ def checked_names(names: Any, where: str) -> list[str]:
 def checked_text(value: Any, where: str) -> str:
     """The text. InputError BAD_INPUT for anything else, by the name of the argument."""
     if not is_text(value):
-        raise InputError("BAD_INPUT", where, "{} is not a text; give one in quotes", named(value))
+        raise InputError("BAD_INPUT", where, "{} is not a text; put it in quotes", named(value))
     return value
 
 
 def checked_number(value: Any, where: str) -> float:
     """The number. InputError BAD_INPUT for anything else, by the name of the argument."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real) or math.isnan(value):
-        raise InputError("BAD_INPUT", where, "{} is not a number; give one such as 2", named(value))
+        raise InputError("BAD_INPUT", where, "{} is not a number; pass one such as 2", named(value))
     return float(value)
 
 
@@ -99,7 +101,7 @@ def checked_keywords(values: Any, where: str) -> dict[str, Any]:
         return {}
     if not isinstance(values, Mapping) or not all(isinstance(key, str) for key in values):
         raise InputError(
-            "BAD_INPUT", where, "{} are not values by key; give a mapping", named(values)
+            "BAD_INPUT", where, "{} is not a mapping of keys to values; pass one", named(values)
         )
     return dict(values)
 
@@ -110,7 +112,7 @@ def checked_list(values: Any, where: str) -> list[Any]:
         return []
     if not isinstance(values, (list, tuple)):
         raise InputError(
-            "BAD_INPUT", where, "{} is not a list; give one, such as []", named(values)
+            "BAD_INPUT", where, "{} is not a list; pass one, such as []", named(values)
         )
     return list(values)
 
@@ -122,7 +124,7 @@ def checked_target(path: Any, where: str) -> str:
         raise InputError(
             "BAD_INPUT",
             where,
-            '{} is not a path; give one as a text, such as "cup.step"',
+            '{} is not a path; pass one as a text, such as "cup.step"',
             named(path),
         )
     return text
@@ -135,7 +137,7 @@ def checked_path(path: Any, where: str) -> str:
         raise InputError(
             "BAD_INPUT",
             where,
-            '{} is not a path; give one as a text, such as "cup.step"',
+            '{} is not a path; pass one as a text, such as "cup.step"',
             named(path),
         )
     return text

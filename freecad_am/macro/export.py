@@ -33,7 +33,7 @@ def export(program: Any, folder: str) -> list[str]:
     try:
         return written.write(folder, files)
     except OSError as error:
-        message = Text("{}; choose a folder you can write to", error.strerror or error)
+        message = Text("{}; choose a writable folder", error.strerror or error)
         raise InputError("NOT_WRITABLE", error.filename or folder, message) from None
 
 

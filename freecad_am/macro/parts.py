@@ -43,7 +43,7 @@ def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
         part = add_part(doc, shape, label, issues)
         if hasattr(shape, "Topology"):
             part.addProperty(
-                "App::PropertyLength", "FileScale", "Part", "How long one unit of the file is.", 1
+                "App::PropertyLength", "FileScale", "Part", "Length of one unit of the file.", 1
             )
             part.FileScale = scale
         part.purgeTouched()

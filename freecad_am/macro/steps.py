@@ -61,7 +61,7 @@ def owned(owner: Any, names: Any, key: str) -> Any:
         raise InputError(
             "BAD_INPUT",
             key,
-            "{} are names without an object that they are of; give it too",
+            "{} are names without an object; pass the object too",
             ", ".join(names),
         )
     return (owner, names) if names else None
@@ -77,7 +77,7 @@ def checked_stage(obj: Any) -> stages.Stage:
     """The proxy of a stage. InputError BAD_INPUT for any other object."""
     proxy = None if is_gone(obj) else stages.stage_of(obj)
     if proxy is None:
-        raise InputError("BAD_INPUT", named(obj), "it is not a stage of this workbench; choose one")
+        raise InputError("BAD_INPUT", named(obj), "it is not a stage of the workbench; choose one")
     return proxy
 
 

@@ -155,7 +155,7 @@ def refuse_otherwise(kind: str, layers: str) -> None:
     """InputError where a feature of this kind has no layers to choose, or these, '' for none, are none of them."""
     if layers and kind != "solid":
         raise InputError(
-            "BAD_VALUE", "layers_otherwise", "it is for kind: solid, not for {}; leave it out", kind
+            "BAD_VALUE", "layers_otherwise", "it is for kind: solid, not for {}; remove it", kind
         )
     if layers:
         SolidParameters(layers=layers)

@@ -31,7 +31,7 @@ class CladdingFeature(FeatureStage):
     )
     links = (
         Link("Source", "", "The faces to cover.", type_name="App::PropertyLinkSub"),
-        Link("Substrate", "", "A further part that the nozzle is kept clear of.", required=False),
+        Link("Substrate", "", "Another part that the nozzle must clear.", required=False),
         FIXTURES,
     )
     figures = (
@@ -49,7 +49,7 @@ class CladdingFeature(FeatureStage):
         source_body, fixtures = snapshot_of(source), fixtures_of(obj)
         if source_body.shape is None and faces:
             raise InputError(
-                "UNKNOWN_FACE", source.Label, "a mesh has no faces to choose; leave them out"
+                "UNKNOWN_FACE", source.Label, "a mesh has no selectable faces; remove them"
             )
         ground = () if obj.Substrate is None else (snapshot_of(obj.Substrate),)
         own_body = (

@@ -60,7 +60,7 @@ def reason_outdated(obj: Any) -> str:
         return message_of(obj)
     if is_of_earlier_version(obj):
         return Text("an earlier version computed it; read Migrating in the changelog")
-    return Text("{}: an input changed since it was computed", obj.Label)
+    return Text("{}: an input changed after the computation", obj.Label)
 
 
 def is_stale(obj: Any) -> bool:
@@ -86,7 +86,7 @@ def check_recomputed(obj: Any, code: str = "NO_RESULT") -> None:
             raise InputError(
                 code,
                 obj.Label,
-                "{} was changed and is not recomputed yet; recompute the document first",
+                "{} was changed but not yet recomputed; recompute the document first",
                 source.Label,
             )
 

@@ -30,14 +30,14 @@ class CurvesFeature(FeatureStage):
         Link(
             "Source",
             "",
-            "The edges, wire, sketch or table of points to lay as beads; faces beside edges give the "
-            "directions.",
+            "The edges, wire, sketch or table of points to deposit as beads; faces next to edges "
+            "set the directions.",
             type_name="App::PropertyLinkSub",
         ),
         Link(
             "Substrate",
             "",
-            "The part that they are laid on; none is needed on a platform.",
+            "Part below the curves; not needed on a platform.",
             required=False,
         ),
         FIXTURES,

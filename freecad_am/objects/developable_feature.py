@@ -64,7 +64,7 @@ class DevelopableFeature(FeatureStage):
         FIXTURES,
     )
     figures = (
-        ("Bases", "App::PropertyStringList", "The surfaces that solids stand on."),
+        ("Bases", "App::PropertyStringList", "The surfaces below the solids."),
         ("Solids", "App::PropertyInteger", "Number of solids."),
     )
 
@@ -221,8 +221,8 @@ def _bases(
         raise InputError(
             "NO_HUB",
             inputs.label,
-            "the hub, a cylinder or cone that the solids stand on, is not known: choose it as "
-            "substrate, choose faces of it, or give strategy.base; what stands on a flat base is deposited by kind: solid",
+            "the hub, a cylinder or cone below the solids, is unknown: choose it as substrate, "
+            "choose its faces, or set strategy.base; for a flat base use kind: solid",
         )
     seats_of_solids = [seats(solid_faces, False) for solid_faces in owned]
     hub = hub_among(solids, seats_of_solids, SHARE * strategy.chord_error, inputs.label)
@@ -245,7 +245,8 @@ def _faces(source: Taken, solid: Any = None) -> list[tuple[str, Any]]:
         raise InputError(
             "NO_BASE",
             source.label,
-            "a mesh has no cylinders and cones; give strategy.base, or a solid part as substrate",
+            "a mesh has no cylinders or cones; set strategy.base, or choose a solid part as "
+            "substrate",
         )
     shape = source.shape if solid is None else solid
     return [(f"{source.label} Face{number + 1}", face) for number, face in enumerate(shape.Faces)]

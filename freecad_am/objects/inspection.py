@@ -74,7 +74,7 @@ class Inspection(Stage):
                 "App::PropertyString",
                 "FileDigest",
                 "Inputs",
-                "What was in the file.",
+                "Content of the file.",
                 HIDDEN | OUTPUT,
             )
         super().complete(obj)
@@ -87,7 +87,7 @@ class Inspection(Stage):
             f"{obj.Label}.File",
         )
         if not path:
-            raise InputError("NO_FILE", where, "no file of measured points is given; choose one")
+            raise InputError("NO_FILE", where, "the file of measured points is missing; choose one")
         if is_predicted(obj):
             return self._predicted(obj, linked, parameters)
         obj.FileDigest = _digest(path, where)

@@ -264,8 +264,8 @@ def _fit_notes(cell: cells.Cell) -> list[Issue]:
             NOTE,
             "WORK_OFFSET",
             Text(
-                "by {} touched points the part's coordinates are at [{}] mm and deg in the robot's base; "
-                "left at the points: {} mm, {:.3g} mm in the mean of squares",
+                "{} touched points put the part at [{}] mm and deg in the robot base; residuals "
+                "at the points: {} mm, {:.3g} mm root mean square",
                 len(residual),
                 pose,
                 residuals,
@@ -285,8 +285,8 @@ def _not_kept(cell: cells.Cell) -> list[Issue]:
             NOTE,
             "OBSTACLES_NOT_KEPT",
             Text(
-                "{}: checked for the nozzle while planning, for links and part only once the path is planned; give "
-                "cell.arm_clearance so that planning keeps these clear of it",
+                "{}: checked against the nozzle during planning, against links and part only "
+                "after planning; set cell.arm_clearance to check these during planning too",
                 names,
             ),
         )
@@ -306,8 +306,8 @@ def _not_known(cell: cells.Cell) -> list[Issue]:
             NOTE,
             "BODIES_NOT_KNOWN",
             Text(
-                "no file says what {} is made of, so nozzle, torch and robot are not kept clear of "
-                "it; give its machine file bodies, or name what of it stands still in cell.obstacles",
+                "the shape of {} is unknown, so nozzle, torch and robot are not checked against "
+                "it; add bodies to its machine file, or list its fixed parts in cell.obstacles",
                 lacking,
             ),
         )

@@ -95,7 +95,7 @@ class Program(Stage):
         """Read the inputs. Raises InputError and InfeasibleError without valid inputs."""
         if not obj.ProgramName:
             raise InputError(
-                "NO_NAME", f"{obj.Label}.ProgramName", "the program has no name; give one"
+                "NO_NAME", f"{obj.Label}.ProgramName", "the program has no name; enter one"
             )
         path = self.linked(obj)["JointPath"]
         linked = path.Proxy.linked(path)
@@ -223,7 +223,7 @@ def _write_program(job: Job, label: str) -> Outcome:
         raise InfeasibleError(
             "NOT_VERIFIED",
             label,
-            "reading the program back does not give the planned path; do not use it",
+            "the program does not read back as the planned path; do not use it",
             issues=tuple(checked.issues),
         )
     issues = (

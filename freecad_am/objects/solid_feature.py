@@ -49,21 +49,21 @@ class SolidFeature(FeatureStage):
         Link(
             "Substrate",
             "",
-            "The part that they stand on; none is needed on a platform.",
+            "Part below the solids; not needed on a platform.",
             required=False,
         ),
         Link(
             "Guide",
             "",
-            "The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the "
-            "solid.",
+            "Edges, wire or sketch as a guide; layers are normal to it; none: the centre line of "
+            "the solid.",
             required=False,
             type_name="App::PropertyLinkSub",
         ),
         Link(
             "StartFaces",
             "",
-            "The faces on which the first of geodesic and offset layers lies; none: where they stand.",
+            "Start faces of geodesic and offset layers; none: the base of the solid.",
             required=False,
             type_name="App::PropertyLinkSub",
         ),
@@ -90,7 +90,7 @@ class SolidFeature(FeatureStage):
             ("along",),
             (
                 Text(
-                    "layers: {} have no guide; use layers: along, or leave the guide out",
+                    "layers: {} do not use a guide; use layers: along, or remove the guide",
                     strategy.layers,
                 )
             ),
@@ -102,7 +102,8 @@ class SolidFeature(FeatureStage):
             ("geodesic", "offset"),
             (
                 Text(
-                    "layers: {} have no start faces; use layers: geodesic or offset, or leave the faces out",
+                    "layers: {} do not use start faces; use layers: geodesic or offset, or "
+                    "remove the faces",
                     strategy.layers,
                 )
             ),
@@ -185,7 +186,7 @@ def _select_elements(
         raise InputError(
             "NO_SHAPE",
             f"{obj.Label}.{name}",
-            "{} is a mesh, which has no edges or faces; choose a shape",
+            "{} is a mesh without edges or faces; choose a shape",
             owner.Label,
         )
     return global_shape(owner), names_of(getattr(obj, name)), owner.Label

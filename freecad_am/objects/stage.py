@@ -100,7 +100,7 @@ class Stage(Stored):
             "App::PropertyString",
             "Message",
             _RESULT,
-            "What is wrong, and what to do.",
+            "The problem and its remedy.",
             READ_ONLY | OUTPUT,
         )
         for name, type_name, help in self.figures:
@@ -123,7 +123,7 @@ class Stage(Stored):
         )
         add("App::PropertyFloat", "Seconds", _RESULT, "How long computing took.", hidden)
         add("App::PropertyFloatList", "ResultData", _RESULT, "Arrays of the result.", hidden)
-        add("App::PropertyString", "ResultLayout", _RESULT, "What is where in the arrays.", hidden)
+        add("App::PropertyString", "ResultLayout", _RESULT, "Contents of the arrays.", hidden)
         if add(
             "App::PropertyString",
             CLASS_PROPERTY,
@@ -133,7 +133,7 @@ class Stage(Stored):
         ):
             setattr(obj, CLASS_PROPERTY, f"{type(self).__module__}.{type(self).__name__}")
         if add(
-            "App::PropertyInteger", "SchemaVersion", _RESULT, "Version of these properties.", hidden
+            "App::PropertyInteger", "SchemaVersion", _RESULT, "Version of the properties.", hidden
         ):
             obj.SchemaVersion = SCHEMA_VERSION
 
@@ -155,7 +155,7 @@ class Stage(Stored):
             raise InputError(
                 "BUSY",
                 obj.Label,
-                "something else is being computed; wait until that is done, or cancel it",
+                "another computation is running; wait until it ends, or cancel it",
             )
         try:
             with one_thread(), faults.kernel(obj):
@@ -342,13 +342,14 @@ def _lost_link(obj: Any, label: str, link: str) -> Text:
     for linked in obj.Document.getObjectsByLabel(label):
         if linked.Name in missing:
             return Text(
-                "{} links to {}, which is not there; put the file there and open the document again, or choose another {}",
+                "{} links to {}, which does not exist; restore the file and open the document "
+                "again, or choose another {}",
                 label,
                 missing[linked.Name],
                 link,
             )
     return Text(
-        "{} links to nothing, what it showed is gone or was not loaded; choose another {}",
+        "{} links to nothing, as its target was deleted or is not loaded; choose another {}",
         label,
         link,
     )
@@ -387,7 +388,7 @@ def _checked(obj: Any, link: Link, linked: Any) -> Any:
             link.kind,
         )
     if linked.Status == INFEASIBLE:
-        why = Text("{} cannot be carried out: {}", linked.Label, reason_of(linked))
+        why = Text("{} is infeasible: {}", linked.Label, reason_of(linked))
         raise InfeasibleError("INPUT_INFEASIBLE", obj.Label, why, issues=issues_of(linked))
     if linked.Status == FAILED or not linked.Key:
         raise InputError(

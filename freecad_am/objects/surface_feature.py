@@ -72,12 +72,12 @@ class SurfaceFeature(FeatureStage):
             raise InputError(
                 "OWN_SUBSTRATE",
                 f"{obj.Label}.Substrate",
-                "the wall and what it grows on are the same, {}; choose the part "
-                "that is there before it, or none where the wall starts on the platform or from edges",
+                "the wall and its substrate are the same object, {}; choose the part below the "
+                "wall, or none if the wall starts on the platform or from edges",
                 label,
             )
         if source_body.shape is None and faces:
-            raise InputError("UNKNOWN_FACE", label, "a mesh has no faces to choose; leave them out")
+            raise InputError("UNKNOWN_FACE", label, "a mesh has no selectable faces; remove them")
 
         def work() -> Outcome:
             ground = bodies(substrates)
@@ -145,7 +145,7 @@ def _start_edges(obj: Any) -> tuple[str, ...]:
         raise InputError(
             "BAD_EDGES",
             f"{obj.Label}.StartEdges",
-            "{} is not an edge of {}; choose edges of it",
+            "{} is not an edge of {}; choose its edges",
             text,
             obj.Source[0].Label,
         )

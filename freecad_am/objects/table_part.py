@@ -55,11 +55,11 @@ def open_points(document: Any, path: str) -> Any:
     table_object = document.addObject("Part::Feature", "Table")
     table_object.Label = os.path.splitext(name)[0]
     table_object.addProperty(
-        "App::PropertyStringList", _PROPERTY, "Table", "The points as they were read.", 1
+        "App::PropertyStringList", _PROPERTY, "Table", "The points read from the file.", 1
     )
     setattr(table_object, _PROPERTY, content.text.splitlines())
     if content.form != CSV:
-        table_object.addProperty("App::PropertyString", _FORM, "Table", "What the file is.", 1)
+        table_object.addProperty("App::PropertyString", _FORM, "Table", "Type of the file.", 1)
         setattr(table_object, _FORM, content.form)
     table_object.Shape = Part.Compound(
         [Part.makePolygon([App.Vector(*row) for row in curve.points.tolist()]) for curve in curves]
@@ -76,7 +76,7 @@ def refuse_gcode_keys(label: str, roles: str, rotary: str) -> None:
     for key, (value, allowed) in defaults.items():
         if value not in allowed:
             raise InputError(
-                "NOT_USED", key, "{!r} is for G-code, which {} is not; leave it out", value, label
+                "NOT_USED", key, "{!r} is for G-code, but {} is not G-code; remove it", value, label
             )
 
 

@@ -64,7 +64,7 @@ class Toolpath(Stage):
         Link(
             "Scan",
             "inspection",
-            "An inspection of the substrate by a scan of it, which the first layers are fitted to.",
+            "An inspection with a scan of the substrate, to which the first layers are fitted.",
             required=False,
         ),
     )
@@ -81,14 +81,14 @@ class Toolpath(Stage):
                 "App::PropertyEnumeration",
                 "Sequence",
                 "Inputs",
-                "Several features: one after the other, or the lowest layer of all first.",
+                "Several features: one after the other, or the lowest layer of any feature first.",
             )
             obj.Sequence = [BY_FEATURE, BY_HEIGHT]
             obj.addProperty(
                 "App::PropertyStringList",
                 "FeatureProcess",
                 "Inputs",
-                "Several features: what of the process differs for each, as JSON.",
+                "Several features: process settings that differ for each, as JSON.",
             )
         super().complete(obj)
 
@@ -119,8 +119,8 @@ class Toolpath(Stage):
                 raise InputError(
                     "NOT_YET",
                     f"{obj.Label}.Scan",
-                    "several features in one go are not fitted to a scan yet; "
-                    "leave it out, or deposit them one by one",
+                    "several features together cannot be fitted to a scan yet; remove it, or "
+                    "deposit them one by one",
                 )
             members = [
                 member(feature, entry, features)
@@ -298,7 +298,7 @@ def own_process(process: ProcessParameters, of_job: ProcessParameters) -> str:
         raise InputError(
             "NOT_FOR_FEATURE",
             f"process.{shared[0]}",
-            "it holds for the whole program, not for one of its features; give it at the top level",
+            "it applies to the whole program, not to one feature; set it at the top level",
         )
     return json.dumps(differences) if differences else ""
 

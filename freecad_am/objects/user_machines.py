@@ -50,7 +50,7 @@ def save(name: str, text: str) -> str:
     path = os.path.join(folder, f"{name}.json")
     if os.path.exists(path) or (machine.BUILT_IN / f"{name}.json").exists():
         raise InputError(
-            "NOT_WRITTEN", "id", "there is a machine {!r} already; choose another name", name
+            "NOT_WRITTEN", "id", "a machine {!r} already exists; choose another name", name
         )
     try:
         os.makedirs(folder, exist_ok=True)

@@ -23,7 +23,7 @@ class Entry:
     along: Callable[[Source, Rows], Charts] | None = None
     of: Callable[[Source, tuple[int, int]], Charts] | None = None
     machine: bool = False
-    lacking: str = "there is nothing to be seen in these layers"
+    lacking: str = "these layers have nothing to show"
 
 
 def _fit(source: Source, layers: tuple[int, int]) -> Charts:
@@ -31,7 +31,7 @@ def _fit(source: Source, layers: tuple[int, int]) -> Charts:
     return () if found is None else (fit(*found, source.process.bead_width),)
 
 
-_NO_PLANES = "only solids in plane layers have sections and volumes of layers"
+_NO_PLANES = "only solids in planar layers have sections and volumes of layers"
 _NO_MODEL = "no bead model sets the speeds (process.bead_model)"
 PICTURES = {
     "angles": Entry("Joint angles", joints.angles, machine=True),
@@ -47,7 +47,7 @@ PICTURES = {
     "spacing": Entry(
         "Distance between layers",
         of=process.spacing,
-        lacking="none of these layers lies on another",
+        lacking="none of these layers rests on another",
     ),
     "volumes": Entry("Volume by layer", of=process.by_layer, lacking=_NO_PLANES),
     "section": Entry("Section of the last layer", of=process.section, lacking=_NO_PLANES),

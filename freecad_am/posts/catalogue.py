@@ -106,7 +106,7 @@ def load(name: str) -> Post:
     if name not in NAMES:
         names = ", ".join(NAMES)
         raise InputError(
-            "UNKNOWN_POST", "program.post", "{!r} is not known; use one of {}, or none", name, names
+            "UNKNOWN_POST", "program.post", "unknown post {!r}; use one of {}, or none", name, names
         )
     post: Any = importlib.import_module(f".{name}.post", __package__)
     post_module: Post = post

@@ -151,8 +151,9 @@ def continued(
             raise InputError(
                 "BEAD_TOO_LONG",
                 "program.max_points",
-                "{} is woven and has {} points with its approach, and whether a "
-                "weave goes on in another program was not confirmed; allow more points in one, or a larger chord error",
+                "{} is woven and has {} points with its approach, but whether a weave continues "
+                "in another program was not confirmed; allow more points per program, or a "
+                "larger chord error",
                 place(runs[-1].moves),
                 sum(map(len, runs)),
             )

@@ -82,7 +82,8 @@ def refuse_cooling(program: Program, last_input: int, why: str = "") -> None:
         raise InputError(
             "ANALOGUE_INPUT",
             "process.cooling.input",
-            "the controller's program reads analogue inputs 1 to {}, not {}; use one of these",
+            "the controller program reads analogue inputs 1 to {}, not {}; choose one in this "
+            "range",
             last_input,
             waits[0].number,
         )
@@ -103,15 +104,16 @@ def refuse_schedules(
         raise InputError(
             "SCHEDULE",
             "process.start.schedule",
-            "beads change their schedule, and as far as is known this controller sets outputs between moves ahead of the"
-            " motion; give start and end nothing but other speeds, or use another controller",
+            "beads change their schedule, but this controller appears to set outputs between "
+            "moves ahead of the motion; let start and end change only the speed, or use another "
+            "controller",
         )
     numbers = [block.number for block in program.blocks if isinstance(block, Schedule)]
     if numbers and not 1 <= program.schedule_output <= last_output:
         raise InputError(
             "SCHEDULE",
             "program.schedule.output",
-            "the number of a schedule is set on one of 1 to {}, not {}; use one of these",
+            "the schedule number needs an output from 1 to {}, not {}; choose one in this range",
             last_output,
             program.schedule_output,
         )
@@ -129,8 +131,8 @@ def refuse_schedules(
         raise InputError(
             "SCHEDULE",
             "process.schedule",
-            "the controller takes schedules up to {}, not {}; use another number, there "
-            "or in process.classes",
+            "the controller supports schedules up to {}, not {}; use another number, there or in "
+            "process.classes",
             max_schedule,
             largest,
         )
@@ -164,14 +166,18 @@ def weave_refused(why: str, where: str = "process.weave") -> InputError:
 def schedule_refused(by: str, why: str) -> InputError:
     """The error for a controller that does not support schedules by `by`."""
     return InputError(
-        "SCHEDULE", "program.schedule.by", "{}: {}; use another way, or another controller", by, why
+        "SCHEDULE",
+        "program.schedule.by",
+        "{}: {}; use another method, or another controller",
+        by,
+        why,
     )
 
 
 def trigger_refused(why: str) -> InputError:
     """The error for a controller, or a program, in which the deposit cannot be switched ahead of a place."""
     return InputError(
-        "TRIGGER", "program.trigger.lead", "{}; leave it out, or use another controller", why
+        "TRIGGER", "program.trigger.lead", "{}; remove it, or use another controller", why
     )
 
 
@@ -225,9 +231,9 @@ def refuse_leads(ahead: Sequence[Ahead]) -> None:
         raise InputError(
             "TRIGGER_LEAD",
             place(shortest.moves),
-            "the corner before the move at the end of which the deposit is switched is rounded, and leaves {:.4g} s of it, "
-            "less than the {:.4g} s that it would be switched ahead; use a program.trigger.lead of {:g} s at most, a "
-            "smaller program.blend, or a larger strategy.chord_error",
+            "the corner before the switching point is rounded, which leaves {:.4g} s, less than "
+            "the lead of {:.4g} s; use a program.trigger.lead of at most {:g} s, a smaller "
+            "program.blend, or a larger strategy.chord_error",
             shortest.seconds,
             shortest.lead,
             max_lead,
@@ -235,9 +241,9 @@ def refuse_leads(ahead: Sequence[Ahead]) -> None:
     raise InputError(
         "TRIGGER_LEAD",
         place(shortest.moves),
-        "the move at the end of which the deposit is switched takes {:.4g} s, less than the {:.4g} s that it would be "
-        "switched ahead; use a program.trigger.lead of {:g} s at most, a larger retract distance where it is switched on, "
-        "or a larger strategy.chord_error where it is switched off",
+        "the move before the switching point takes {:.4g} s, less than the lead of {:.4g} s; use "
+        "a program.trigger.lead of at most {:g} s, a larger retract distance before switching "
+        "on, or a larger strategy.chord_error before switching off",
         shortest.seconds,
         shortest.lead,
         max_lead,
@@ -254,9 +260,7 @@ def refuse_incomplete(program: Program, post: str, axes: int) -> None:
     """Raises InputError NOTHING_TO_WRITE, UNSUPPORTED_AXES (other than `axes` axes) or UNREACHABLE."""
     moves = program.moves
     if not sum(len(run) for run in moves):
-        raise InputError(
-            "NOTHING_TO_WRITE", "program", "the program holds no moves; check where it starts"
-        )
+        raise InputError("NOTHING_TO_WRITE", "program", "the program has no moves; check its start")
     if any(run.joints.shape[1] != axes for run in moves) or len(program.continuous) != axes:
         raise InputError(
             "UNSUPPORTED_AXES",
@@ -269,7 +273,7 @@ def refuse_incomplete(program: Program, post: str, axes: int) -> None:
         raise InputError(
             "UNREACHABLE",
             "program",
-            "some points have no joint values; plan a joint path that reaches them all",
+            "some points have no joint values; plan a joint path that reaches all points",
         )
 
 
@@ -284,7 +288,8 @@ def refuse_external(program: Program, last_axis: int, unit: str, form: str) -> N
         raise InputError(
             "UNSUPPORTED_AXES",
             "program.axes.first",
-            "the external axes would end with number {}, and the controller has {}; use a smaller first one",
+            "the external axes would end with number {}, but the controller has {}; use a "
+            "smaller first number",
             end,
             last_axis,
         )
@@ -292,7 +297,7 @@ def refuse_external(program: Program, last_axis: int, unit: str, form: str) -> N
         raise InputError(
             "UNSUPPORTED_AXES",
             "program.axes.unit",
-            "{!r} is not a positioner of this controller; give {}",
+            "{!r} is not a valid positioner for the controller; use {}",
             program.unit,
             form,
         )
@@ -304,7 +309,7 @@ def refuse_named_track(program: Program, what: str) -> None:
         raise InputError(
             "UNSUPPORTED_AXES",
             "program.axes.unit",
-            "a track has no name of its own here, it is {}; leave unit out",
+            "a track has no name here, it is {}; remove unit",
             what,
         )
 
@@ -318,8 +323,8 @@ def refuse_continuous(program: Program) -> None:
         raise InputError(
             "ENDLESS_AXIS",
             "cell.limits",
-            "axis {} has no limits, but joint values of this controller count every turn up to a limit; use limits that "
-            "have one for axis {}",
+            "axis {} has no limits, but joint values of the controller count every turn up to a "
+            "limit; use a limit set with one for axis {}",
             axis,
             axis,
         )
@@ -372,7 +377,7 @@ def refuse_calls_of_own(
             raise InputError(
                 "PROGRAM_NAME",
                 block.where,
-                "{!r} is a program of this very job; call another one, or rename the job",
+                "{!r} is also a program of the job; use another name, or rename the job",
                 block.program,
             )
 
@@ -387,7 +392,7 @@ def refuse_names_of_data(program: Program, names: Collection[str], data: Collect
             raise InputError(
                 "PROGRAM_NAME",
                 where,
-                "{!r} is also the name of data or a signal that the program uses; call it otherwise",
+                "{!r} clashes with a variable or signal of the program; choose another name",
                 name,
             )
 

@@ -50,7 +50,7 @@ def _refuse_links(path: str, folder: str) -> None:
     while len(parent) > len(folder):
         if os.path.islink(parent):
             raise NotADirectoryError(
-                20, "a link stands where a folder of the program belongs", parent
+                20, "a link takes the place of a folder of the program", parent
             )
         parent = os.path.dirname(parent)
 

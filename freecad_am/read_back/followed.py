@@ -97,8 +97,8 @@ def _arm(cell: Cell, text: ReadMoves, flanges: Array, rows: slice, previous: Arr
             raise InputError(
                 "NO_CONFIGURATION",
                 "program",
-                "it begins with a position and names no configuration of the arm; say it in "
-                "the cell, branch: [front, up, flip]",
+                "it starts with a position without a configuration of the arm; set it in the "
+                "cell, branch: [front, up, flip]",
             )
         previous = joint_solutions[0, cell.branch]
     return _nearest(
@@ -138,8 +138,8 @@ def _as_named(cell: Cell, text: ReadMoves, solutions: Array, words: Index, rows:
         raise InputError(
             "NOT_YET",
             "program",
-            "it names turns of other axes than the last one, which cannot be followed; "
-            "give these positions in joints",
+            "it names turns of axes other than the last one, which cannot be simulated; use "
+            "joint values for these positions",
         )
     named_values = controller_values[np.arange(len(solutions)), named.argmax(axis=1)]
     named_values -= TURN * np.rint(named_values / TURN)

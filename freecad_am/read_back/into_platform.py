@@ -27,10 +27,15 @@ def into_platform(motion: Motion, cell: Cell) -> list[Finding]:
         return []
     low, count = int(np.where(below, points[:, 2], np.inf).argmin()), int(below.sum())
     text = Text(
-        "the nozzle deposits at 1 point below the platform, by {1:.3g} mm; correct its height, or the cell's platform"
+        (
+            "the nozzle deposits at 1 point below the platform, by {1:.3g} mm; correct its height, "
+            "or the platform of the cell"
+        )
         if count == 1
-        else "the nozzle deposits at {0} points below the platform, here {1:.3g} mm; correct their heights, "
-        "or the cell's platform",
+        else (
+            "the nozzle deposits at {0} points below the platform, here {1:.3g} mm; correct "
+            "their heights, or the platform of the cell"
+        ),
         count,
         -points[low, 2],
     )

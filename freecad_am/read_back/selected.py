@@ -52,8 +52,8 @@ def _numbers(
         changed = numbered[numbers[numbered] != first_number]
         if len(changed):
             message = Text(
-                "{} {:.0f} is selected, moves before are in {:.0f}: only one of them is known here, and all moves are driven "
-                "in that; give a program of one alone",
+                "{} {:.0f} is selected after moves in {:.0f}: only one is known here, and all "
+                "moves are simulated in it; use a program with a single one",
                 kind,
                 numbers[changed[0]],
                 first_number,
@@ -61,8 +61,8 @@ def _numbers(
             yield _finding_at(ERROR, "FRAME_NUMBER", message, motion, int(rows[changed[0]]))
         elif number is not None and first_number != number:
             message = Text(
-                "{} {:.0f} is selected, the job has {}: moves are driven in that of the cell; compare the two, and correct "
-                "the program's number or that of the job",
+                "{} {:.0f} is selected, but the job has {}: moves are simulated with the cell's "
+                "own; compare the two, and correct the program or the job",
                 kind,
                 first_number,
                 number,
@@ -79,8 +79,8 @@ def _calls(motion: Motion, text: ReadMoves) -> Iterator[Finding]:
             first_calls.setdefault(str(event.value[0]), event.row)
     for name, row in first_calls.items():
         message = Text(
-            "{} is called, which is not among the files: what it moves, switches or sets is not driven; give its file too, or "
-            "look at it at the controller",
+            "the program calls {}, which is missing, so its motions and signals are not "
+            "simulated; add its file, or check it on the controller",
             name,
         )
         yield _finding_at(

@@ -35,21 +35,21 @@ def _findings(motion: Motion, text: ReadMoves) -> Iterator[Finding]:
         if event.kind not in ("on", "off"):
             continue
         if on and event.kind == "on":
-            message = Text("the deposit is switched on where it is on already")
+            message = Text("the deposit is switched on although it is already on")
             yield _finding("DEPOSIT_SWITCH", message, motion, rows, event.row)
         on = event.kind == "on"
         seconds = _time_of_its_move(event, motion.duration[rows])
         if seconds is not None:
             message = Text(
-                "the move at the end of which the deposit is switched takes {:.3g} s, less than the {:.3g} s that it "
-                "would be switched ahead; use a program.trigger.lead no longer than that, a larger retract distance "
-                "where it is switched on, or a larger strategy.chord_error where it is switched off",
+                "the last move before the switching point takes {:.3g} s, less than the lead of "
+                "{:.3g} s; use a program.trigger.lead up to that time, a larger retract distance "
+                "before switching on, or a larger strategy.chord_error before switching off",
                 seconds,
                 event.ahead,
             )
             yield _finding("TRIGGER_LEAD", message, motion, rows, event.row - 1)
     if on:
-        message = Text("the deposit is still on where the program ends")
+        message = Text("the deposit is still on at the end of the program")
         yield _finding("DEPOSIT_SWITCH", message, motion, rows, len(rows))
 
 

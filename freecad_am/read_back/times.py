@@ -68,7 +68,7 @@ def time_issues(cell: Cell, planned: Planned, text: ReadMoves) -> list[Issue]:
     is_slow_first = (
         abs(share - FIRST_SHARE) <= 1e-6 or abs(text_times[0] - FIRST_TIME) <= allowed[0] + 1e-6
     )
-    message = "the first move, from wherever the machine stands, is not as slow as it has to be"
+    message = "the first move, from the unknown start position, is too fast"
     issues += planned.issue(
         "VERIFY_TIME", np.arange(len(timed)) == (-1 if is_slow_first else 0), message
     )

@@ -137,7 +137,7 @@ def _frame_issues(
                 ERROR,
                 "VERIFY_FRAME",
                 Text(
-                    "the text moves {} from axis {} on, the program {} from axis {} on",
+                    "the text moves {} from axis {} on, but the program {} from axis {} on",
                     text.unit or "no positioner",
                     text.first_external,
                     program.unit,
@@ -174,7 +174,7 @@ def _configuration_issues(
             Issue(
                 ERROR,
                 "VERIFY_CONFIGURATION",
-                "the text names configurations of an arm, and the machine has none",
+                "the text names arm configurations, which the machine does not have",
             )
         ]
     names = np.array([opw.branch_name(index) for index in range(8)])[arm.branch_of(planned.joints)]

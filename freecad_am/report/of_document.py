@@ -89,7 +89,7 @@ def _stages(obj: Any) -> tuple[Any, Any, Any]:
     program = obj if stage.kind == "program" else None
     path = obj if stage.kind == "joint path" else None if program is None else program.JointPath
     if program is not None and path is None:
-        raise InputError("NO_INPUT", obj.Label, "its joint path is gone; choose a joint path")
+        raise InputError("NO_INPUT", obj.Label, "its joint path was deleted; choose a joint path")
     toolpath = obj if path is None else path.Toolpath
     if path is not None:
         planned_of(path, obj.Label)
@@ -145,7 +145,7 @@ def _steps(job: Job, results: Results, cell: cells.Cell | None) -> Made:
     @contextlib.contextmanager
     def timed(stage: str) -> Iterator[None]:
         if stage == "preflight":
-            progress.report(0.1, "looking at what is promised")
+            progress.report(0.1, "checking the program")
         elif stage == "spacing_comparison":
             progress.report(0.4, "comparing the spacing of layers")
         yield

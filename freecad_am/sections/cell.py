@@ -104,21 +104,22 @@ def _machine(value: Any, key: str = "cell.machine") -> Any:
                 raise InputError(
                     "BAD_VALUE",
                     "cell.machine",
-                    "a calibration is that of a machine; write machine: {name: "
-                    "ur-ur10e, calibration: my_robot.yaml}",
+                    "a calibration needs its machine; write machine: {name: ur-ur10e, "
+                    "calibration: my_robot.yaml}",
                 )
             return str(calibration.Named(texts["name"], texts["calibration"]))
         if "file" not in texts:
             raise InputError(
-                "BAD_VALUE", f"{key}.file", "there is no file; write machine: {file: robot.urdf}"
+                "BAD_VALUE", f"{key}.file", "the file is missing; write machine: {file: robot.urdf}"
             )
         meant = urdf_reference.reference(texts["file"])
         if meant is None or len(texts["file"]) != len(meant.file):
             raise InputError(
                 "BAD_VALUE",
                 f"{key}.file",
-                "{} is not a URDF, and only a URDF has links; write machine: {{file: "
-                "robot.urdf, base: base_link, tip: tool0}}, or the path of a machine file without braces",
+                "{} is not a URDF, the only format with links; write machine: {{file: "
+                "robot.urdf, base: base_link, tip: tool0}}, or the path of a machine file "
+                "without braces",
                 texts["file"],
             )
         return str(urdf_reference.Reference(meant.file, texts.get("base"), texts.get("tip")))

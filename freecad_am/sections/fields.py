@@ -45,7 +45,7 @@ def mapping(values: Any, prefix: str) -> dict[str, Any]:
         raise InputError(
             "BAD_VALUE",
             prefix,
-            "{} is not a section; write keys below {}:",
+            "{} is not a section; write its keys below {}:",
             quantity.shown(values),
             prefix,
         )
@@ -75,7 +75,7 @@ def text(value: Any, key: str) -> str:
         raise InputError(
             "BAD_VALUE",
             key,
-            "{} is not a text; give one, in quotes where it is a number",
+            "{} is not a text; put numbers in quotes",
             _shown(value),
         )
     return value
@@ -126,7 +126,7 @@ def _plain(spec: f.Spec, value: Any, key: str) -> Any:
         raise _unknown_choice(key, value, spec.choices)
     if spec.kind == f.FLAG and not isinstance(value, bool):
         raise InputError(
-            "BAD_VALUE", key, "{} is neither true nor false; give one of them", _shown(value)
+            "BAD_VALUE", key, "{} is neither true nor false; use true or false", _shown(value)
         )
     if spec.kind == f.COUNT and (isinstance(value, bool) or not isinstance(value, int)):
         raise InputError(
@@ -194,7 +194,9 @@ def _number(value: Any, spec: f.Spec, key: str) -> float:
 
 def _finite(value: Any, kind: str, key: str) -> float:
     if value == {}:
-        raise InputError("BAD_VALUE", key, "there is no value; give {}", quantity.WANTED[kind][1])
+        raise InputError(
+            "BAD_VALUE", key, "the value is missing; give {}", quantity.WANTED[kind][1]
+        )
     number = quantity.read(value, kind, key)
     if abs(number) > _BOUND:
         raise InputError(

@@ -107,7 +107,7 @@ def _read_text(text: str, kind: str, key: str) -> tuple[float, Dimension | None]
         raise InputError(
             "BAD_VALUE",
             key,
-            "{} has a comma; write decimals with a point, such as {}",
+            "{} has a comma; use a decimal point, as in {}",
             shown(text),
             text.replace(",", "."),
         )
@@ -142,7 +142,7 @@ def _read_with_freecad(text: str, key: str, example: str) -> tuple[float, Dimens
         "BAD_UNIT", key, "{} is not a quantity with a known unit; give {}", shown(text), example
     )
     if not text:
-        raise InputError("BAD_VALUE", key, "there is no value; give {}", example)
+        raise InputError("BAD_VALUE", key, "the value is missing; give {}", example)
     if _FOREIGN.search(
         text
     ):  # FreeCAD passes over signs it does not know, which changes the meaning

@@ -66,7 +66,7 @@ def read(path: str, least: str = "part: {file: ...}", keys: str = "part and stra
         node = yaml.compose(text, Loader=loader)
     except yaml.YAMLError as error:
         raise InputError(
-            "BAD_FILE", label, "this is not YAML: {}; mend that place", _one_line(error)
+            "BAD_FILE", label, "this is not valid YAML: {}; correct it", _one_line(error)
         ) from None
     except RecursionError:
         raise InputError(
@@ -104,10 +104,10 @@ def text_of(path: str, label: str) -> str:
     try:
         return read_content(path, _LARGEST, "BAD_FILE", label).decode("utf-8-sig")
     except FileNotFoundError:
-        raise InputError("NO_FILE", path, "there is no such file; check the path") from None
+        raise InputError("NO_FILE", path, "the file does not exist; check the path") from None
     except OSError as error:
         raise InputError(
-            "NO_FILE", path, "the file cannot be read: {}; choose one that can", error.strerror
+            "NO_FILE", path, "the file cannot be read: {}; choose another file", error.strerror
         ) from None
     except UnicodeDecodeError as error:
         line = error.object[: error.start].count(b"\n") + 1
@@ -116,7 +116,7 @@ def text_of(path: str, label: str) -> str:
         ) from None
     except ValueError as error:
         raise InputError(
-            "NO_FILE", path, "there can be no such file ({}); check the path", error
+            "NO_FILE", path, "no file can have this name ({}); check the path", error
         ) from None
 
 
@@ -157,7 +157,7 @@ class _Reader:
                 raise InputError(
                     "DUPLICATE_KEY",
                     self.tree.where(dotted),
-                    "the key stands twice (lines {} and {}); remove one",
+                    "the key appears twice (lines {} and {}); remove one",
                     first,
                     line,
                 )
@@ -196,7 +196,7 @@ class _Reader:
             raise InputError(
                 "BAD_FILE",
                 self.tree.where(key),
-                "an alias here stands for itself; write the value out",
+                "an alias refers to itself; write the value out",
             )
         if len(self.open) >= _MOST_LEVELS:
             raise InputError(

@@ -4,18 +4,13 @@
 <context>
     <name>App::Property</name>
     <message>
-        <location filename="../../freecad_am/objects/cladding_feature.py"/>
-        <source>A further part that the nozzle is kept clear of.</source>
-        <translation>Une pièce supplémentaire que la buse évite.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>A machine of the list, or the path of a machine file.</source>
+        <source>A machine from the list, or the path of a machine file.</source>
         <translation>Une machine de la liste, ou le chemin d&apos;un fichier machine.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>A region narrower than a bead gets a single bead, or the job is refused.</source>
+        <source>A region narrower than a bead gets a single bead, or the job is rejected.</source>
         <translation>Une région plus étroite qu&apos;un cordon reçoit un seul cordon, ou le travail est refusé.</translation>
     </message>
     <message>
@@ -24,18 +19,13 @@
         <translation>Une arête droite, un axe d&apos;esquisse ou une ligne de référence autour de laquelle tourner, si la forme n&apos;en a pas. Une esquisse tourne autour de son axe vertical, sauf si un autre est choisi.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Against gravity, as x y z in the world.</source>
-        <translation>À l&apos;opposé de la pesanteur, sous la forme x y z dans le monde.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Allowed rotation about the tool axis; a full turn means free, narrower for a torch that is not coaxial.</source>
         <translation>Rotation permise autour de l&apos;axe de l&apos;outil ; un tour entier veut dire libre, moins pour une torche qui n&apos;est pas coaxiale.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
-        <source>An inspection of the substrate by a scan of it, which the first layers are fitted to.</source>
+        <source>An inspection with a scan of the substrate, to which the first layers are fitted.</source>
         <translation>Un contrôle du substrat par sa numérisation, sur laquelle les premières couches sont ajustées.</translation>
     </message>
     <message>
@@ -50,6 +40,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/cladding_feature.py"/>
+        <source>Another part that the nozzle must clear.</source>
+        <translation>Une pièce supplémentaire que la buse évite.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/cladding_feature.py"/>
         <source>Area of the faces.</source>
         <translation>Aire des faces.</translation>
     </message>
@@ -59,19 +54,14 @@
         <translation>Tableaux du résultat.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Beads that close gaps are made no shorter than this; others that are shorter are left out. auto: 2 mm, or the bead spacing where that is less. (mm)</source>
-        <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté. auto : 2 mm, ou l&apos;espacement des cordons s&apos;il est plus petit. (mm)</translation>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Change of objective and coefficients at which the optimiser stops.</source>
+        <translation>Variation de l&apos;objectif et des coefficients à laquelle l&apos;optimiseur s&apos;arrête.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>By how much the input&apos;s value in a program rises with a degree.</source>
+        <source>Change of the input value in a program per degree.</source>
         <translation>De combien la valeur de l&apos;entrée dans un programme monte par degré.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Change of the objective and of the coefficients at which the optimiser stops.</source>
-        <translation>Variation de l&apos;objectif et des coefficients à laquelle l&apos;optimiseur s&apos;arrête.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
@@ -89,9 +79,24 @@
         <translation>Compare la trajectoire articulaire à une borne inférieure sur toutes les rotations autour de l’axe de l’outil. Prend jusqu’à quelques secondes par cordon.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Content of the file.</source>
+        <translation>Contenu du fichier.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>Contents of the arrays.</source>
+        <translation>Contenu des tableaux.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Contours are laid round lines and the like.</source>
-        <translation>Des contours sont déposés autour des lignes et autres motifs.</translation>
+        <source>Contours around lines and similar patterns.</source>
+        <translation>Contours autour des lignes et motifs semblables.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Corner rounding within a bead, percent: CNT of FANUC, and of the maximum of other controllers.</source>
+        <translation>Arrondi des coins dans un cordon, en pour cent : CNT de FANUC, et du plus grand permis pour les autres.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -102,26 +107,6 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Density of the deposit in g/cm³, for its mass.</source>
         <translation>Masse volumique du dépôt en g/cm³ ; donne sa masse.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Deposit switched off this long after a bead ends.</source>
-        <translation>Dépôt coupé ce temps après la fin d&apos;un cordon.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Deposit switched off this long after a bead ends. (s)</source>
-        <translation>Dépôt coupé ce temps après la fin d&apos;un cordon. (s)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Deposit switched on this long before a bead starts.</source>
-        <translation>Dépôt mis en marche ce temps avant le début d&apos;un cordon.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Deposit switched on this long before a bead starts. (s)</source>
-        <translation>Dépôt mis en marche ce temps avant le début d&apos;un cordon. (s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -149,8 +134,13 @@
         <translation>Sortie logique qui commande le dépôt.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Direction against gravity, as x y z in the world.</source>
+        <translation>À l&apos;opposé de la pesanteur, sous la forme x y z dans le monde.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Direction of closed beads seen against the build direction; open beads run as found unless alternate.</source>
+        <source>Direction of closed beads seen against the build direction; open beads keep their direction unless alternate.</source>
         <translation>Sens des cordons fermés vu contre la direction de dépôt ; les cordons ouverts courent tels que trouvés, sauf avec alternate.</translation>
     </message>
     <message>
@@ -160,7 +150,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Direction x y z from the deposit towards the tool, in the part&apos;s coordinates, where neither the curves nor faces say one.</source>
+        <source>Direction x y z from the deposit towards the tool, in part coordinates, used where neither the curves nor faces define one.</source>
         <translation>Direction x y z du dépôt vers l&apos;outil, dans les coordonnées de la pièce, là où ni les courbes ni des faces n&apos;en indiquent.</translation>
     </message>
     <message>
@@ -174,11 +164,6 @@
         <translation>Distance entre couches voisines.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Divides the translation rows of the Jacobian.</source>
-        <translation>Divise les lignes de translation du jacobien.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/path/path_view.py"/>
         <source>Draw beads as lines, or as tubes as wide and high as they are.</source>
         <translation>Dessiner les cordons en lignes, ou en tubes aussi larges et hauts qu&apos;eux.</translation>
@@ -189,9 +174,19 @@
         <translation>Arêtes de la paroi où commencent les couches, au lieu de là où elle quitte le substrat.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>Edges, wire or sketch as a guide; layers are normal to it; none: the centre line of the solid.</source>
+        <translation>Arêtes, fil ou esquisse comme guide ; les couches lui sont normales ; aucun : la ligne médiane du solide.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>External axes. level: they turn no more than the angle from the vertical asks for; optimised: one polynomial per bead of each, together with the rotation about the tool, for less motion and larger margins.</source>
+        <source>External axes. level: they turn only as far as the angle from the vertical requires; optimised: each follows one polynomial per bead, optimised together with the tool rotation for less motion and larger margins.</source>
         <translation>Axes externes. level : ils ne tournent pas plus que l&apos;angle à la verticale ne le demande ; optimised : un polynôme par cordon pour chacun, avec la rotation autour de l&apos;outil, pour moins de mouvement et de plus grandes marges.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>External axis of the controller that carries e1; the others follow: eax_a, E1 are 1.</source>
+        <translation>Lequel des axes externes de la commande est e1 ; les autres suivent : eax_a, E1 sont 1.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
@@ -210,8 +205,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Fastest travel speed at which the material is laid; faster beads are reported. (mm/s)</source>
-        <translation>Vitesse d&apos;avance la plus rapide à laquelle le matériau est déposé ; les cordons plus rapides sont signalés. (mm/s)</translation>
+        <source>Fastest travel speed for the material; faster beads are reported. (mm/s)</source>
+        <translation>Vitesse d&apos;avance la plus rapide pour le matériau ; les cordons plus rapides sont signalés. (mm/s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -235,7 +230,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>First bead of that layer.</source>
+        <source>First bead of the first layer to deposit.</source>
         <translation>Premier cordon de cette couche.</translation>
     </message>
     <message>
@@ -245,8 +240,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Four axes only: by how much the tool may miss the direction asked for.</source>
+        <source>Five-axis machines only: the revolute axis to lock, counted from the torch (four axes).</source>
+        <translation>Machines à cinq axes seulement : l&apos;axe rotatif à bloquer, compté depuis la torche (quatre axes).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Four axes only: largest deviation of the tool from the requested direction.</source>
         <translation>Quatre axes seulement : de combien l&apos;outil peut manquer la direction demandée.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Frame of the positions of Cartesian programs, in part coordinates: x y z mm, RX RY RZ deg; auto: the frame on the platform.</source>
+        <translation>À quoi se rapportent les positions des programmes cartésiens, dans les coordonnées de la pièce : x y z mm, RX RY RZ deg ; auto : le repère qui repose sur le plateau.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Frame to place on the platform: that of the feature, or that of the part file.</source>
+        <translation>Repère à poser sur le plateau : celui de l&apos;élément, ou celui du fichier de la pièce.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -265,7 +275,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Further methods planned for the comparison of the report.</source>
+        <source>Further methods to plan for the comparison in the report.</source>
         <translation>Autres méthodes planifiées pour la comparaison du rapport.</translation>
     </message>
     <message>
@@ -280,12 +290,22 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Further spacings whose joint paths are planned for the comparison of the report.</source>
+        <source>Further spacings to plan for the comparison in the report.</source>
         <translation>Autres espacements dont les trajectoires articulaires sont planifiées pour la comparaison du rapport.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>G-code: meaning of the words A, B and C while X, Y and Z are the tip in the part: the head turns by C and then A (head-ac) or B (head-bc), or the part turns below it (table-ac, table-bc); none rejects them.</source>
+        <translation>G-code : sens des mots A, B et C alors que X, Y et Z sont la pointe dans la pièce : la tête tourne par C puis A (head-ac) ou B (head-bc), ou la pièce tourne dessous (table-ac, table-bc) ; none les rejette.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>G-code: moves to deposit: part, all, or groups and types of the slicer, separated by commas, such as part, support. Skirt, brim, raft, support, towers, ironing and purge lines do not belong to part.</source>
+        <translation>G-code : mouvements à déposer : part, all, ou des groupes et types du trancheur, séparés par des virgules, comme part, support. Jupe, bordure, radeau, support, tours, lissage et lignes de purge ne font pas partie de part.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Group output, H word, register or analogue output that carries it; for KUKA the first of eight outputs.</source>
+        <source>Group output, H word, register or analogue output for it; for KUKA the first of eight outputs.</source>
         <translation>Sortie de groupe, mot H, registre ou sortie analogique qui le transmet ; chez KUKA la première de huit sorties.</translation>
     </message>
     <message>
@@ -294,34 +314,14 @@
         <translation>Hauteur suivant la direction d&apos;empilement.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Heights above the part&apos;s base, in mm, at which circularity is evaluated; none: a sixth, a half and five sixths of what was measured.</source>
-        <translation>Hauteurs au-dessus de la base de la pièce, en mm, auxquelles la circularité est dite ; aucune : un sixième, la moitié et cinq sixièmes de ce qui a été mesuré.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Holes of meshes up to this size across are closed, with a note; larger ones are refused.</source>
-        <translation>Les trous des maillages jusqu&apos;à cette largeur sont fermés, ce qui est signalé ; les plus grands sont refusés.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How far a closed bead runs on past its seam.</source>
-        <translation>De combien un cordon fermé continue au-delà de sa couture.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>How far a touched point may be from where the others say that it is.</source>
-        <translation>De combien un point palpé peut s&apos;écarter d&apos;où les autres le situent.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How far the deposit is to reach beyond the part everywhere, to be machined off: its shape is predicted and compared with the part; none: it is not. (mm)</source>
-        <translation>De combien le dépôt doit dépasser la pièce partout, pour être usiné : sa forme est prédite et comparée à la pièce ; rien : elle ne l&apos;est pas. (mm)</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How far the deposit stands out from the part, to be machined off; above it by the layers that begin less than that above its last one.</source>
-        <translation>De combien le dépôt dépasse sur les côtés de la pièce, à usiner ; au-dessus, des couches qui commencent moins haut que cela au-dessus de sa dernière.</translation>
+        <source>Height within a layer at which the part is cut for its outline.</source>
+        <translation>À quelle hauteur une couche prend son contour de la pièce.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Heights above the base of the part, in mm, at which circularity is evaluated; none: one sixth, one half and five sixths of the measured height.</source>
+        <translation>Hauteurs au-dessus de la base de la pièce, en mm, où la circularité est évaluée ; aucune : un sixième, la moitié et cinq sixièmes de la hauteur mesurée.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -329,94 +329,9 @@
         <translation>De combien la direction des lignes et des zigzags tourne d&apos;une couche à l&apos;autre.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/scan.py"/>
-        <source>How far the height of layers may differ from the layer height where they lead from what was scanned back to the plan. (%)</source>
-        <translation>Écart permis entre la hauteur des couches et la hauteur de couche là où elles ramènent de ce qui a été numérisé au plan. (%)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/scan.py"/>
-        <source>How far the scan may lie from what was planned; farther, and it is taken for a scan of something else.</source>
-        <translation>Distance permise entre la numérisation et ce qui était prévu ; au-delà, elle passe pour la numérisation d&apos;autre chose.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How far the start moves from layer to layer.</source>
-        <translation>De combien le départ se déplace d&apos;une couche à l&apos;autre.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How far the tool is withdrawn along its axis between beads.</source>
-        <translation>De combien l&apos;outil est retiré le long de son axe entre les cordons.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How far the torch goes back over an open bead from its end, still depositing, so that its crater is filled.</source>
-        <translation>Distance sur laquelle la torche revient sur un cordon ouvert depuis sa fin, en déposant toujours, afin de remplir son cratère.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>How layers are found: on a tube of one surface by its closed parameter and on all other walls as fronts (auto), or as fronts on every wall (fronts).</source>
-        <translation>Comment les couches sont trouvées : sur un tube d&apos;une seule surface par son paramètre fermé, sur toute autre paroi par des fronts (auto), ou par des fronts sur toutes les parois (fronts).</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>How long computing took.</source>
         <translation>Combien de temps a pris le calcul.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/macro/parts.py"/>
-        <source>How long one unit of the file is.</source>
-        <translation>Longueur d&apos;une unité du fichier.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How long to wait between layers.</source>
-        <translation>Temps d&apos;attente entre les couches.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How long to wait between layers. (s)</source>
-        <translation>Temps d&apos;attente entre les couches. (s)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How many contours lie round lines and the like; inf: contours only.</source>
-        <translation>Nombre de contours autour des lignes et autres motifs ; inf : contours seuls.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How many layers lie on the faces, one layer height over the other along their normals.</source>
-        <translation>Nombre de couches sur les faces, l&apos;une à une hauteur de couche au-dessus de l&apos;autre, le long de leurs normales.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>How many times the curves are laid, one layer height over the other.</source>
-        <translation>Combien de fois les courbes sont déposées, l&apos;une à une hauteur de couche au-dessus de l&apos;autre.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>How much corners within a bead are rounded, percent: CNT of FANUC, and of the most that others may.</source>
-        <translation>Arrondi des coins dans un cordon, en pour cent : CNT de FANUC, et du plus grand permis pour les autres.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How much of the bead it is.</source>
-        <translation>Quelle longueur du cordon c&apos;est.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How narrow and how wide beads may be, of their usual width and spacing, so that contours come out even over the thickness of a region, and beads in thin places are as wide as these. (%)</source>
-        <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces. (%)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How narrow, of their usual width, beads in planes may be laid where others leave them less room; all of it: none is, and layers get higher there. (%)</source>
-        <translation>À quelle part de leur largeur habituelle les cordons en couches planes peuvent se réduire là où d&apos;autres leur laissent moins de place ; toute la largeur : aucun ne se réduit, et les couches y deviennent plus hautes. (%)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>How the points may be moved onto the part: best fit, shifts only, a turn about and a shift along the part&apos;s axis, or none but what pairs of points say.</source>
-        <translation>Comment les points peuvent être ramenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou rien que ce que disent les paires de points.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -424,14 +339,14 @@
         <translation>Largeur pour laquelle comptent au remplissage les cordons de solides sur moyeu : la distance des cordons, ou la largeur de cordon ; auto : la largeur de cordon si elle est donnée, tenue par un modèle de cordon, ou si un recouvrement compte avec elle.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Initial fit: three or more pairs of a measured point and the same point on the part, each x y z &gt; x y z in mm, separated by semicolons; empty: automatic.</source>
+        <translation>Là où commence l&apos;ajustement : trois paires ou plus d&apos;un point mesuré et du même point de la pièce, chacune x y z &gt; x y z en mm, séparées par un point-virgule ; vide : il est cherché.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Iterations after which the optimiser gives up on a layer.</source>
         <translation>Nombre d&apos;itérations après lequel l&apos;optimiseur renonce à une couche.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Largest angle between the stacking direction and a wall that leans out, before there is a warning; 90 deg: none.</source>
-        <translation>Plus grand angle entre la direction d&apos;empilement et une paroi en surplomb, avant un avertissement ; 90 deg : aucun.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -444,14 +359,24 @@
         <translation>Plus grande variation de la vitesse d&apos;avance le long d&apos;un cordon, en mm/s par seconde, là où un modèle de cordon la règle.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/scan.py"/>
+        <source>Largest deviation of the local layer height where layers blend from the scan back to the plan, as a share of the layer height. (%)</source>
+        <translation>Plus grand écart de la hauteur de couche locale là où les couches ramènent de la numérisation au plan, en part de la hauteur de couche. (%)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
         <source>Largest deviation.</source>
         <translation>Plus grand écart.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Largest distance between a bead and the straight segments that stand for it. A new feature begins with 0.01 mm up to a size of 250 mm and with more beyond, at most a hundredth of the bead width.</source>
-        <translation>Distance maximale entre un cordon et les segments de droite qui le représentent. Un nouvel élément commence avec 0,01 mm jusqu&apos;à une taille de 250 mm et avec davantage au-delà, au plus un centième de la largeur du cordon.</translation>
+        <source>Largest distance between a bead and the straight segments that approximate it. A new feature starts with 0.01 mm up to a size of 250 mm and with more for larger ones, at most a hundredth of the bead width.</source>
+        <translation>Plus grande distance entre un cordon et les segments droits qui l&apos;approchent. Un nouvel élément commence avec 0,01 mm jusqu&apos;à une taille de 250 mm et avec plus au-delà, au plus un centième de la largeur de cordon.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/scan.py"/>
+        <source>Largest distance of the scan from the plan; beyond it, the scan is rejected as another part.</source>
+        <translation>Plus grande distance de la numérisation au plan ; au-delà, elle est rejetée comme une autre pièce.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -459,23 +384,38 @@
         <translation>Plus grande erreur de la distance locale des couches constant-distance.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Largest hole in a mesh that is closed automatically, with a note; larger holes are rejected.</source>
+        <translation>Les trous des maillages jusqu&apos;à cette largeur sont fermés, ce qui est signalé ; les plus grands sont refusés.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Largest share by which beads may lie nearer together or farther apart than the bead spacing on faces that are bent both ways; these are covered in pieces that keep to it. (%)</source>
-        <translation>Plus grande part dont les cordons peuvent être plus serrés ou plus espacés que l&apos;espacement des cordons sur des faces courbées dans les deux sens ; elles sont couvertes par morceaux qui s&apos;y tiennent. (%)</translation>
+        <source>Largest overhang angle between the stacking direction and a wall without a warning; 90 deg: no warning.</source>
+        <translation>Plus grand angle entre la direction d&apos;empilement et une paroi en surplomb, avant un avertissement ; 90 deg : aucun.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>Largest turn of build direction and tool axis along a bead, on walls on an existing part, on hubs and in curved layers; where they would turn faster, at corners, they are spread out, and the deviation is reported. (deg/mm)</source>
+        <source>Largest turn of build direction and tool axis along a bead, on walls on an existing part, on hubs and in curved layers; faster turns, as at corners, are spread out, and the deviation is reported. (deg/mm)</source>
         <translation>Plus grande rotation de la direction de dépôt et de l&apos;axe de l&apos;outil le long d&apos;un cordon, sur les parois d&apos;une pièce existante, sur les moyeux et dans les couches courbes ; là où ils tourneraient plus vite, aux angles, ils sont étalés, et leur écart est dit. (deg/mm)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Last layers trimmed flush with the wall&apos;s upper edge, or whole layers only.</source>
-        <translation>Dernières couches coupées au ras du bord supérieur de la paroi, ou couches entières seulement.</translation>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Largest variation of the bead spacing on doubly curved faces, as a share; such faces are divided into pieces that respect it. (%)</source>
+        <translation>Plus grande variation de l&apos;écart entre cordons sur des faces à double courbure, en part ; ces faces sont divisées en morceaux qui la respectent. (%)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Layers at the layer height from the nearest point of the one below (constant-distance), within a band of it and without corners (smooth), or along the lines up the wall (iso-parameter).</source>
+        <source>Last layers trimmed at the upper edge of the wall, or whole layers only.</source>
+        <translation>Dernières couches coupées au ras du bord supérieur de la paroi, ou couches entières seulement.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/scan.py"/>
+        <source>Layer after which the scan was made, counted from 0: the layers above are fitted to it; none: the scan shows the bare substrate.</source>
+        <translation>La numérisation a été faite après cette couche, comptée à partir de 0 : les couches au-dessus y sont ajustées ; aucune : elle est du substrat nu.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Layers at the layer height from the nearest point below (constant-distance), within a band around it and without corners (smooth), or along the lines up the wall (iso-parameter).</source>
         <translation>Couches à la hauteur de couche du point le plus proche de celle du dessous (constant-distance), dans une bande autour d&apos;elle et sans angles (smooth), ou le long des lignes qui montent la paroi (iso-parameter).</translation>
     </message>
     <message>
@@ -495,43 +435,63 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Least time between the end of a solid&apos;s layer and the start of its next.</source>
+        <source>Least time between the end of a layer of a solid and the start of its next.</source>
         <translation>Temps minimal entre la fin de la couche d&apos;un solide et le début de la suivante.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Least time between the end of a solid&apos;s layer and the start of its next. (s)</source>
+        <source>Least time between the end of a layer of a solid and the start of its next. (s)</source>
         <translation>Temps minimal entre la fin de la couche d&apos;un solide et le début de la suivante. (s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing, and islands come in the same order in every layer, so that each cools while the others are laid.</source>
-        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque, et les îlots viennent dans le même ordre à chaque couche, afin que chacun refroidisse pendant le dépôt des autres.</translation>
+        <source>Least time of a layer, from its first bead to the first of the next; the machine waits if needed, and islands keep the same order in every layer, so that each cools while others are printed.</source>
+        <translation>Durée minimale d&apos;une couche, de son premier cordon au premier de la suivante ; la machine attend au besoin, et les îlots gardent le même ordre à chaque couche, afin que chacun refroidisse pendant que d&apos;autres sont déposés.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing, and islands come in the same order in every layer, so that each cools while the others are laid. (s)</source>
-        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque, et les îlots viennent dans le même ordre à chaque couche, afin que chacun refroidisse pendant le dépôt des autres. (s)</translation>
+        <source>Least time of a layer, from its first bead to the first of the next; the machine waits if needed, and islands keep the same order in every layer, so that each cools while others are printed. (s)</source>
+        <translation>Durée minimale d&apos;une couche, de son premier cordon au premier de la suivante ; la machine attend au besoin, et les îlots gardent le même ordre à chaque couche, afin que chacun refroidisse pendant que d&apos;autres sont déposés. (s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing.</source>
+        <source>Least time of a layer, from its first bead to the first of the next; the machine waits if needed.</source>
         <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing. (s)</source>
+        <source>Least time of a layer, from its first bead to the first of the next; the machine waits if needed. (s)</source>
         <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque. (s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Length beside it along which the speed changes step by step to that of the bead.</source>
+        <source>Length by which a closed bead continues past its seam.</source>
+        <translation>De combien un cordon fermé continue au-delà de sa couture.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Length by which the torch returns over an open bead from its end, still depositing, to fill the crater.</source>
+        <translation>Distance sur laquelle la torche revient sur un cordon ouvert depuis sa fin, en déposant toujours, afin de remplir son cratère.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Length next to it over which the speed changes in steps to the speed of the bead.</source>
         <translation>Longueur à côté, le long de laquelle la vitesse passe par paliers à celle du cordon.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>Length of all beads.</source>
         <translation>Longueur de tous les cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/macro/parts.py"/>
+        <source>Length of one unit of the file.</source>
+        <translation>Longueur d&apos;une unité du fichier.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Length of the bead that it covers.</source>
+        <translation>Quelle longueur du cordon c&apos;est.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -554,6 +514,16 @@
         <translation>Longueur de la buse à partir de son bout.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Length that divides the translation rows of the Jacobian.</source>
+        <translation>Divise les lignes de translation du jacobien.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Let the rotation about the tool axis vary at every point of a bead if this needs less motion than a polynomial: the best rotation found for the objective displacement. Takes up to seconds per bead.</source>
+        <translation>Là où le mouvement est moindre qu’avec un polynôme, la rotation autour de l’axe de l’outil est libre en chaque point d’un cordon : le meilleur parcours trouvé, pour l’objectif displacement. Prend jusqu’à quelques secondes par cordon.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes only.</source>
         <translation>LinuxCNC : M428 et M429 choisissent entre bout d&apos;outil et axes ; faux pour une machine qui n&apos;a que ses axes.</translation>
@@ -565,7 +535,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Longest way from one line of a zigzag to the next, as a share of the bead spacing; where it would be longer another zigzag begins. (%)</source>
+        <source>Longest link from one line of a zigzag to the next, as a share of the bead spacing; a longer link starts a new zigzag. (%)</source>
         <translation>Plus long chemin d&apos;une ligne d&apos;un zigzag à la suivante, en part de la distance des cordons ; là où il serait plus long un autre zigzag commence. (%)</translation>
     </message>
     <message>
@@ -579,6 +549,11 @@
         <translation>Mot M ou H qui met le dépôt en marche, comme M7 ou H2=1 ; sans lui la sortie logique le fait.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Machining allowance on the sides of the part; on top, every layer that begins within this height above the last one.</source>
+        <translation>Surépaisseur d&apos;usinage sur les côtés de la pièce ; en haut, chaque couche qui commence à moins de cette hauteur au-dessus de la dernière.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/cell.py"/>
         <source>Maker and model of the machine.</source>
         <translation>Constructeur et modèle de la machine.</translation>
@@ -589,18 +564,38 @@
         <translation>Masse du dépôt (g).</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Maximum points per program file; longer programs are chained.</source>
+        <translation>Nombre maximal de points d&apos;un fichier de programme ; les plus longs sont enchaînés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Maximum residual of a touched point against the best fit.</source>
+        <translation>Plus grand résidu d&apos;un point touché par rapport au meilleur ajustement.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
         <source>Mean deviation, outside with a plus.</source>
         <translation>Écart moyen, vers l&apos;extérieur avec un plus.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Method constant: the one RZ, or auto to search it. (deg)</source>
-        <translation>Méthode constant : le RZ unique, ou auto pour le chercher. (deg)</translation>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Measured side of a wall: the outer side, the inner side, or both.</source>
+        <translation>Côté mesuré d&apos;une paroi : le côté extérieur, le côté intérieur, ou les deux.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Method layer-by-layer: polynomials that are given, not searched: layer/bead:constant:slope, or * for every other bead, in deg and deg per turn.</source>
+        <source>Method constant: RZ for the whole job, or auto to search for it. (deg)</source>
+        <translation>Méthode constant : le RZ unique, ou auto pour le chercher. (deg)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Method for layers: by the closed parameter on a tube of one surface and as fronts on all other walls (auto), or as fronts on every wall (fronts).</source>
+        <translation>Comment les couches sont trouvées : sur un tube d&apos;une seule surface par son paramètre fermé, sur toute autre paroi par des fronts (auto), ou par des fronts sur toutes les parois (fronts).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Method layer-by-layer: given polynomials instead of a search: layer/bead:constant:slope, or * for all other beads, in deg and deg per turn.</source>
         <translation>Méthode layer-by-layer : polynômes donnés, non cherchés : couche/cordon:constante:pente, ou * pour tout autre cordon, en deg et deg par tour.</translation>
     </message>
     <message>
@@ -609,13 +604,28 @@
         <translation>Centre x y z du cercle de base et direction i j k de l&apos;axe, vers le sommet, dans les coordonnées de la pièce.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Most points of one program file; longer ones are chained.</source>
-        <translation>Nombre maximal de points d&apos;un fichier de programme ; les plus longs sont enchaînés.</translation>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Minimum length of beads that close gaps; shorter beads are otherwise omitted. auto: 2 mm, or the bead spacing if that is less. (mm)</source>
+        <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté. auto : 2 mm, ou l&apos;espacement des cordons s&apos;il est plus petit. (mm)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Name of the material; carried to the report.</source>
+        <source>Model that sets the travel speed so that beads keep their width in bends: none, csw (steel, Dai 2020), li-2025 (aluminium), or the path of a calibration table.</source>
+        <translation>Règle la vitesse d&apos;avance pour que les cordons gardent leur largeur dans les courbes : none, csw (acier, Dai 2020), li-2025 (aluminium), ou le chemin d&apos;une table d&apos;étalonnage.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Motion allowed to fit the points to the part: best fit, shifts only, a turn about and a shift along the axis of the part, or only what pairs of points define.</source>
+        <translation>Comment les points peuvent être ramenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou rien que ce que disent les paires de points.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Name of the called programs, without their number: SCHEDULE3.</source>
+        <translation>Nom des programmes appelés, sans leur numéro : SCHEDULE3.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Name of the material; copied to the report.</source>
         <translation>Nom du matériau ; repris dans le rapport.</translation>
     </message>
     <message>
@@ -627,11 +637,6 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Name of the program to call between layers, such as nozzle cleaning.</source>
         <translation>Nom du programme à appeler entre les couches, comme le nettoyage de la buse.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Name of the programs that are called, without their number: SCHEDULE3.</source>
-        <translation>Nom des programmes appelés, sans leur numéro : SCHEDULE3.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -649,14 +654,39 @@
         <translation>Remarques sur le contenu du fichier.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Nozzle stand-off; copied to the report. (mm)</source>
+        <translation>Distance de la buse ; copiée dans le rapport. (mm)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>Number of beads.</source>
         <translation>Nombre de cordons.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Number of contours around lines and similar patterns; inf: contours only.</source>
+        <translation>Nombre de contours autour des lignes et autres motifs ; inf : contours seuls.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/curves_feature.py"/>
         <source>Number of curves.</source>
         <translation>Nombre de courbes.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Number of layers along the curves, one layer height apart.</source>
+        <translation>Nombre de couches le long des courbes, à une hauteur de couche l&apos;une de l&apos;autre.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Number of layers below tops and above bottoms that are filled at 100 %.</source>
+        <translation>Nombre de couches sous les dessus et au-dessus des dessous qui sont remplies à 100 %.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Number of layers on the faces, one layer height apart along their normals.</source>
+        <translation>Nombre de couches sur les faces, l&apos;une à une hauteur de couche au-dessus de l&apos;autre, le long de leurs normales.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -680,23 +710,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Number of the analogue input that the sensor is on.</source>
+        <source>Number of the analogue input of the sensor.</source>
         <translation>Numéro de l&apos;entrée analogique du capteur.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Number of the controller&apos;s own weave that beads are laid with; 0 or none: straight.</source>
-        <translation>Numéro du balayage propre à la commande avec lequel les cordons sont déposés ; 0 ou aucun : droits.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Number of the digital input to wait for between layers.</source>
         <translation>Numéro de l&apos;entrée logique à attendre entre les couches.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Number of the schedule by which the welder or extruder lays beads; program.schedule says how it is sent.</source>
-        <translation>Numéro qui dit au poste de soudage ou à l&apos;extrudeuse comment déposer les cordons ; program.schedule dit comment il est transmis.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -709,14 +729,9 @@
         <translation>Numéro du repère utilisateur nommé dans le programme.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Of G-code, how the words A, B and C turn the tool while X, Y and Z are the tip in the part: the head by C and then A (head-ac) or B (head-bc), or the part under it (table-ac, table-bc); none rejects them.</source>
-        <translation>Pour le G-code, comment les mots A, B et C tournent l&apos;outil, X, Y et Z étant la pointe dans la pièce : la tête par C puis A (head-ac) ou B (head-bc), ou la pièce dessous (table-ac, table-bc) ; none les refuse.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Of G-code, what is deposited: part, all, or groups and types of the slicer, separated by commas, such as part, support. Skirt, brim, raft, support, towers, ironing and purge lines are not part.</source>
-        <translation>Pour le G-code, ce qui est déposé : part, all, ou des groupes et types du trancheur séparés par des virgules, par exemple part, support. Jupe, bordure, radeau, supports, tours, lissage et lignes de purge ne sont pas la pièce.</translation>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Objective for the joint path.</source>
+        <translation>Ce qui juge une trajectoire articulaire.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -725,18 +740,38 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Overlap of neighbouring beads as a share of the bead width; takes the place of the bead spacing. (%)</source>
+        <source>Order of several solids on a base: the same layer of each in turn, around the axis, the same ring of each, inner rings first; or solid by solid (feature).</source>
+        <translation>Ordre de plusieurs solides sur une base : la même couche de chacun à tour de rôle, autour de l&apos;axe, le même anneau de chacun, les anneaux intérieurs d&apos;abord ; ou solide par solide (feature).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Outward tilt of the torch about the bead on outer contours.</source>
+        <translation>Torche tournée vers l&apos;extérieur autour du cordon sur les contours extérieurs.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Overlap of neighbouring beads as a share of the bead width; replaces the bead spacing. (%)</source>
         <translation>Recouvrement de cordons voisins en part de la largeur de cordon ; tient lieu de la distance des cordons. (%)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Parallel contours, parallel lines, or either linked: connected, spiral, zigzag; below 100 % also grid, triangles, honeycomb, gyroid.</source>
-        <translation>Contours parallèles, lignes parallèles, ou l&apos;un ou l&apos;autre reliés : contours reliés, spirale, zigzag ; au-dessous de 100 % aussi grille, triangles, nid d&apos;abeilles, gyroïde.</translation>
+        <source>Parallel contours, parallel lines, or the two linked: connected, spiral, zigzag; below 100 % also grid, triangles, honeycomb, gyroid.</source>
+        <translation>Contours parallèles, lignes parallèles, ou l&apos;un ou l&apos;autre reliés : contours reliés, spirale, zigzag ; au-dessous de 100 % aussi grille, triangles, nid d&apos;abeilles, gyroïde.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/curves_feature.py"/>
+        <source>Part below the curves; not needed on a platform.</source>
+        <translation>Pièce sous les courbes ; inutile sur un plateau.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>Part below the solids; not needed on a platform.</source>
+        <translation>Pièce sous les solides ; inutile sur un plateau.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Planned thickness of the wall, half of it on each side of the planned surface; 0: the planned surface itself is the measured one.</source>
-        <translation>Épaisseur prévue de la paroi, une moitié de chaque côté de la surface prévue ; 0 : la surface prévue elle-même est celle mesurée.</translation>
+        <source>Planned thickness of the wall, centred on the planned surface; 0: the planned surface was measured directly.</source>
+        <translation>Épaisseur prévue de la paroi, centrée sur la surface prévue ; 0 : la surface prévue est elle-même mesurée.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -745,38 +780,63 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Points up to this far above or below such a height count there, slid along the planned surface.</source>
+        <source>Points within this height of such a level count, moved to it along the planned surface.</source>
         <translation>Les points jusqu&apos;à cette distance au-dessus ou au-dessous d&apos;une telle hauteur y comptent, glissés le long de la surface prévue.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Position of the locked axis; auto: the position with the smallest residual angle. (deg)</source>
+        <translation>Position de l&apos;axe bloqué ; auto : la position où l&apos;angle restant est le plus petit. (deg)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Radius of the base circle; auto: the face chosen, or the one that the solids stand on. (mm)</source>
-        <translation>Rayon du cercle de base ; auto : la face choisie, ou celle sur laquelle reposent les solides. (mm)</translation>
+        <source>Radius of the base circle; auto: from the chosen face, or the face below the solids. (mm)</source>
+        <translation>Rayon du cercle de base ; auto : de la face choisie, ou de la face sous les solides. (mm)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Radius of the probe&apos;s ball where its centre was measured; 0 where the points lie on the surface.</source>
+        <source>Radius of the probe ball if its centre was measured; 0 if the points are on the surface.</source>
         <translation>Rayon de la bille du palpeur si son centre a été mesuré ; 0 si les points sont sur la surface.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Range of bead widths, as a share of the usual width and spacing, so that contours fill a region evenly and beads in thin places match its width. (%)</source>
+        <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces. (%)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Required machining allowance around the whole part: the deposit is predicted and compared with the part; none: no comparison. (mm)</source>
+        <translation>De combien le dépôt doit dépasser la pièce partout, pour être usiné : sa forme est prédite et comparée à la pièce ; rien : elle ne l&apos;est pas. (mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Retract distance along the tool axis between beads.</source>
+        <translation>De combien l&apos;outil est retiré le long de son axe entre les cordons.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>Robots with a positioner: largest angle between the tool axis and the vertical of the cell while depositing; the positioner turns the part so far. 180 deg: it stands still.</source>
-        <translation>Robots avec positionneur : plus grand angle entre l&apos;axe de l&apos;outil et la verticale de la cellule pendant le dépôt ; le positionneur tourne la pièce en conséquence. 180 deg : il reste immobile.</translation>
+        <source>Robots with a positioner: largest angle between the tool axis and the vertical of the cell while depositing; the positioner turns the part to keep it. 180 deg: it does not move.</source>
+        <translation>Robots avec positionneur : plus grand angle entre l&apos;axe de l&apos;outil et la verticale de la cellule pendant le dépôt ; le positionneur tourne la pièce pour le tenir. 180 deg : il ne bouge pas.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot&apos;s base frame; more than one with ; between.</source>
-        <translation>Robots : axes à côté d&apos;eux qui portent la pièce ou le robot, par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z en mm, RX RY RZ en deg de la base dans le monde, qui est le repère de base du robot ; plusieurs séparés par ;.</translation>
+        <source>Robots: deposition point, with its Z towards the tool; with the tool on the robot, the fixed platform. In the manufacturer&apos;s base frame.</source>
+        <translation>Robots : là où sort le dépôt, son Z pointant vers l&apos;outil ; avec l&apos;outil sur le robot, le plateau fixe. Dans le repère de base du constructeur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: file of the torch as closed solids, mm, its tip at the origin, Z out of the nozzle; what lies beyond the length of the nozzle keeps the arm&apos;s clearance as links do.</source>
-        <translation>Robots : fichier de la torche en solides fermés, en mm, sa pointe à l&apos;origine, Z sortant de la buse ; ce qui dépasse la longueur de la buse garde la distance du bras comme les segments.</translation>
+        <source>Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, the base frame of the robot; separate several with ;.</source>
+        <translation>Robots : axes à côté d&apos;eux qui portent la pièce ou le robot, par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z en mm, RX RY RZ en deg de la base dans le monde, qui est le repère de base du robot ; plusieurs séparés par ;.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: how far the links stay from part, deposit, platform, fixtures and nozzle, rapids included; left out, planning does not look at them. (mm)</source>
-        <translation>Robots : distance que les corps du bras gardent à la pièce, au dépôt, à la plateforme, aux montages et à la buse, déplacements rapides compris ; sans valeur, la planification ne les regarde pas. (mm)</translation>
+        <source>Robots: file of the torch as closed solids, mm, with the tip at the origin and Z out of the nozzle; parts above the length of the nozzle keep the arm clearance, like links.</source>
+        <translation>Robots : fichier de la torche en solides fermés, mm, la pointe à l&apos;origine et Z sortant de la buse ; les parties au-dessus de la longueur de la buse gardent le dégagement du bras, comme les corps.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Robots: obstacles in the cell that nozzle, part and links must clear, such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg of the origin of the file, or of the centre of the box, in the manufacturer&apos;s base frame.</source>
+        <translation>Robots : obstacles dans la cellule que buse, pièce et corps évitent, comme : table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du centre de la boîte, dans le repère de base du fabricant.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -785,18 +845,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: what stands in the cell, which nozzle, part and links are kept clear of, such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg of the file&apos;s origin, or of the middle of the box, in the maker&apos;s base frame.</source>
-        <translation>Robots : ce qui se trouve dans la cellule et que la buse, la pièce et les segments évitent, par exemple : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du milieu de la boîte, dans le repère de base du constructeur.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: where the deposit comes out, its Z pointing to the tool; with the tool on the robot, the fixed platform. In the maker&apos;s base frame.</source>
-        <translation>Robots : là où sort le dépôt, son Z pointant vers l&apos;outil ; avec l&apos;outil sur le robot, le plateau fixe. Dans le repère de base du constructeur.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Rotary table only: which of the two turning axes, counted from the torch, stands still (four axes).</source>
-        <translation>Plateau rotatif seulement : lequel des deux axes de rotation, comptés à partir de la torche, reste immobile (quatre axes).</translation>
+        <source>Robots: smallest distance between the links and part, deposit, platform, fixtures and nozzle, rapids included; without it, planning ignores the links. (mm)</source>
+        <translation>Robots : plus petite distance entre les corps et pièce, dépôt, plateau, montages et buse, rapides compris ; sans elle, la planification ignore les corps. (mm)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -810,38 +860,53 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Schedule that is sent there, without a stop.</source>
-        <translation>Programme de soudage qui y est transmis, sans arrêt.</translation>
+        <source>Schedule number with which the welder or extruder deposits beads; program.schedule defines how it is sent.</source>
+        <translation>Numéro qui dit au poste de soudage ou à l&apos;extrudeuse comment déposer les cordons ; program.schedule dit comment il est transmis.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Sets the travel speed so that beads keep their width in bends: none, csw (steel, Dai 2020), li-2025 (aluminium), or the path of a calibration table.</source>
-        <translation>Règle la vitesse d&apos;avance pour que les cordons gardent leur largeur dans les courbes : none, csw (acier, Dai 2020), li-2025 (aluminium), ou le chemin d&apos;une table d&apos;étalonnage.</translation>
+        <source>Schedule to send there, without a stop.</source>
+        <translation>Programme de soudage qui y est transmis, sans arrêt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Set of joint limits of the machine file to use.</source>
+        <translation>Quel jeu de limites articulaires du fichier machine vaut.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Settings of bead classes (first_layer, contour, fill, closing, link, wall), such as: contour: travel_speed 8, schedule 3; fill: lead 5; or none.</source>
+        <translation>Ce qui diffère pour des classes de cordons (first_layer, contour, fill, closing, link, wall), par exemple : contour : travel_speed 8, schedule 3 ; fill : lead 5 ; ou none.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
-        <source>Several features: one after the other, or the lowest layer of all first.</source>
+        <source>Several features: one after the other, or the lowest layer of any feature first.</source>
         <translation>Plusieurs éléments : l&apos;un après l&apos;autre, ou la couche la plus basse de tous d&apos;abord.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
-        <source>Several features: what of the process differs for each, as JSON.</source>
-        <translation>Plusieurs éléments : ce qui diffère du procédé pour chacun, en JSON.</translation>
+        <source>Several features: process settings that differ for each, as JSON.</source>
+        <translation>Plusieurs éléments : réglages du procédé qui diffèrent pour chacun, en JSON.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Share of the area inside of the walls that beads fill: their length times their spacing. (%)</source>
+        <source>Shape of the layers: parallel planes; surfaces at equal distances from the support, measured through the part, so that no support material is needed (geodesic); surfaces at equal straight distances from it (offset); or planes normal to a guide curve (along).</source>
+        <translation>Forme des couches : plans parallèles ; surfaces à égale distance de l&apos;appui, mesurée à travers la pièce, si bien qu&apos;aucun support n&apos;est nécessaire (geodesic) ; surfaces à égale distance droite de lui (offset) ; ou plans normaux à une courbe guide (along).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Share of the area inside the walls that beads fill: their length times their spacing. (%)</source>
         <translation>Part de la surface à l&apos;intérieur des contours que les cordons remplissent : leur longueur multipliée par leur écartement. (%)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Share of the layer height by which layers along a guide may be higher or lower beside it. (%)</source>
-        <translation>Part de la hauteur de couche dont les couches le long d&apos;un guide peuvent être plus hautes ou plus basses à côté de lui. (%)</translation>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Share of the layer height by which the local distance of smooth layers may differ; for iso-parameter layers, the limit for a warning. (%)</source>
+        <translation>Part de la hauteur de couche dont la distance locale des couches smooth peut s&apos;écarter ; pour les couches iso-parameter, la limite avant un avertissement. (%)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Share of the layer height by which the local distance of smooth layers may differ; of iso-parameter layers, before there is a warning. (%)</source>
-        <translation>Part de la hauteur de couche dont la distance locale des couches smooth peut différer ; pour les couches iso-parameter, avant un avertissement. (%)</translation>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Share of the layer height by which the local height of layers along a guide may differ. (%)</source>
+        <translation>Part de la hauteur de couche dont la hauteur locale des couches le long d&apos;un guide peut s&apos;écarter. (%)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -850,18 +915,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Share of the points, those farthest off, that the fit leaves out. (%)</source>
+        <source>Share of the points, the farthest, that the fit ignores. (%)</source>
         <translation>Part des points, les plus écartés, que l&apos;ajustement laisse de côté. (%)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Shielding gas; carried along.</source>
+        <source>Shielding gas; copied to the report.</source>
         <translation>Gaz de protection ; transmis tel quel.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Shift of the start from layer to layer.</source>
+        <translation>De combien le départ se déplace d&apos;une couche à l&apos;autre.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Shoulder, elbow and wrist of this joint path; cell: as the cell says.</source>
-        <translation>Épaule, coude et poignet de cette trajectoire articulaire ; cell : ce que dit la cellule.</translation>
+        <source>Shoulder, elbow and wrist of the joint path; cell: as set in the cell.</source>
+        <translation>Épaule, coude et poignet de la trajectoire articulaire ; cell : comme dans la cellule.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/inspection/view.py"/>
@@ -889,19 +959,19 @@
         <translation>Montrer les mouvements rapides par de fins tirets.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Side of the faces to cover: the side of their normals, the outside of a solid (front), or the other side of faces without a solid (back).</source>
+        <translation>Le côté des faces qui est recouvert : celui vers lequel pointent leurs normales, l&apos;extérieur d&apos;un solide (front), ou l&apos;autre côté de faces qui ne sont d&apos;aucun solide (back).</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/inspection/view.py"/>
         <source>Size of the points in pixels.</source>
         <translation>Taille des points en pixels.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Slowest travel speed at which the material is laid; slower beads are reported. (mm/s)</source>
-        <translation>Vitesse d&apos;avance la plus lente à laquelle le matériau est déposé ; les cordons plus lents sont signalés. (mm/s)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Smallest condition allowed; auto: at each point a quarter of its value at RZ = 0, but at least 0.02.</source>
-        <translation>Plus petite condition permise ; auto : en chaque point un quart de sa valeur à RZ = 0, mais au moins 0.02.</translation>
+        <source>Slowest travel speed for the material; slower beads are reported. (mm/s)</source>
+        <translation>Vitesse d&apos;avance la plus lente pour le matériau ; les cordons plus lents sont signalés. (mm/s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -909,14 +979,24 @@
         <translation>Plus petite condition du jacobien pendant le dépôt.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>So many layers under tops and over bottoms are filled at 100 %.</source>
-        <translation>Nombre de couches remplies à 100 % sous les faces supérieures et au-dessus des faces inférieures.</translation>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Smallest inverse condition number allowed; auto: at each point a quarter of its value at RZ = 0, but at least 0.02.</source>
+        <translation>Plus petite condition permise ; auto : en chaque point un quart de sa valeur à RZ = 0, mais au moins 0.02.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Solids that touch or overlap are deposited as one (auto), or each by itself (none).</source>
+        <source>Smallest width of beads in planes where neighbours leave less space, as a share of their usual width; 100 %: beads are never narrowed, and layers get higher there. (%)</source>
+        <translation>Plus petite largeur des cordons dans des plans là où les voisins laissent moins de place, en part de leur largeur habituelle ; 100 % : les cordons ne sont jamais rétrécis, et les couches y deviennent plus hautes. (%)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Solids that touch or overlap are deposited as one (auto), or separately (none).</source>
         <translation>Les solides qui se touchent ou se recouvrent sont déposés comme un seul (auto), ou chacun pour soi (none).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Source of the material data; copied to the report.</source>
+        <translation>D&apos;où viennent les valeurs du matériau ; repris dans le rapport.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -924,34 +1004,9 @@
         <translation>Vitesse entre les cordons.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Speed of the torch along the deposit while depositing.</source>
-        <translation>Vitesse de la torche le long du dépôt.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Speed of the torch there. (mm/s)</source>
-        <translation>Vitesse de la torche à cet endroit. (mm/s)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Speed of the wire: constant, or in proportion to the travel speed that a bead model sets, so that beads keep their section.</source>
-        <translation>Vitesse du fil : constante, ou proportionnelle à la vitesse d&apos;avance que règle un modèle de cordon, pour que les cordons gardent leur section.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Speed of the wire; auto: what makes beads of their width and the layer height at the travel speed, or what the beads of the bead model were made with. 0: no wire. (mm/s)</source>
-        <translation>Vitesse du fil ; auto : celle qui fait des cordons de leur largeur et de la hauteur de couche à la vitesse d&apos;avance, ou celle des cordons du modèle de cordon. 0 : pas de fil. (mm/s)</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Stacking direction x y z in the part&apos;s coordinates, from the first layer to the last; auto: the one with the least area over nothing, of these the one with the least height.</source>
-        <translation>Direction d&apos;empilement x y z dans les coordonnées de la pièce, de la première couche à la dernière ; auto : celle qui a le moins d&apos;aire au-dessus du vide, et parmi celles-ci la moins haute.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Stand-off of the nozzle; carried along. (mm)</source>
-        <translation>Distance de la buse à la pièce ; transmise telle quelle. (mm)</translation>
+        <source>Stacking direction x y z in part coordinates, from the first layer to the last; auto: the direction with the least overhanging area, then the least height.</source>
+        <translation>Direction d&apos;empilement x y z dans les coordonnées de la pièce, de la première couche à la dernière ; auto : la direction avec la plus petite aire en surplomb, puis la plus petite hauteur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -959,13 +1014,28 @@
         <translation>Écart type des écarts.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>Start faces of geodesic and offset layers; none: the base of the solid.</source>
+        <translation>Faces de départ des couches geodesic et offset ; aucune : la base du solide.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Start of beads: at the seam (aligned), or away from the starts of neighbouring contours and layers, with every second layer of lines reversed (spread).</source>
+        <translation>Départ des cordons : à la couture (aligned), ou à l&apos;écart des départs des contours et couches voisins, les lignes d&apos;une couche sur deux étant inversées (spread).</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Temperature in degrees Celsius that a solid, or a wall, has to be below before its next layer; the torch waits above where that begins.</source>
+        <source>Start of closed beads.</source>
+        <translation>Là où commencent les cordons fermés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Temperature in degrees Celsius below which a solid or a wall must cool before its next layer; the torch waits above the start of that layer.</source>
         <translation>Température en degrés Celsius sous laquelle un solide, ou une paroi, doit être avant sa couche suivante ; la torche attend au-dessus de son départ.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Temperature in degrees Celsius; carried along.</source>
+        <source>Temperature in degrees Celsius; copied to the report.</source>
         <translation>Température en degrés Celsius ; transmise telle quelle.</translation>
     </message>
     <message>
@@ -985,7 +1055,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>The controller the program is written for, or none.</source>
+        <source>The controller of the program, or none.</source>
         <translation>La commande pour laquelle le programme est écrit, ou none.</translation>
     </message>
     <message>
@@ -999,24 +1069,9 @@
         <translation>Les cylindres et cônes du moyeu sur lesquels croître ; trouvés s&apos;ils sont omis.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>The deposit is switched on the move itself, this long before a bead&apos;s start or end is reached: the time that its equipment takes. None: where the robot stands. (s)</source>
-        <translation>Le dépôt est commuté pendant le mouvement même, ce temps avant que le début ou la fin d&apos;un cordon soit atteint : celui que met son équipement. Sans indication : là où le robot est à l&apos;arrêt. (s)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/solid_feature.py"/>
-        <source>The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the solid.</source>
-        <translation>Les arêtes, le fil ou l&apos;esquisse auxquels les couches le long d&apos;un guide sont normales ; aucun : la ligne médiane du solide.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/curves_feature.py"/>
-        <source>The edges, wire, sketch or table of points to lay as beads; faces beside edges give the directions.</source>
+        <source>The edges, wire, sketch or table of points to deposit as beads; faces next to edges set the directions.</source>
         <translation>Les arêtes, le fil, l&apos;esquisse ou le tableau de points à déposer en cordons ; des faces à côté des arêtes donnent les directions.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/solid_feature.py"/>
-        <source>The faces on which the first of geodesic and offset layers lies; none: where they stand.</source>
-        <translation>Les faces sur lesquelles repose la première des couches géodésiques ou décalées ; aucune : là où elles sont posées.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/cladding_feature.py"/>
@@ -1054,29 +1109,14 @@
         <translation>La trajectoire articulaire à écrire.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>The number of a schedule is set on a group output; named by the arc instructions, which then switch the deposit; or is that of a program that is called.</source>
-        <translation>Le numéro d&apos;un programme de soudage est mis sur une sortie de groupe ; nommé par les instructions d&apos;arc, qui commutent alors le dépôt ; ou est celui d&apos;un programme appelé.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/curves_feature.py"/>
-        <source>The part that they are laid on; none is needed on a platform.</source>
-        <translation>La pièce sur laquelle ils sont déposés ; inutile sur un plateau.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/solid_feature.py"/>
-        <source>The part that they stand on; none is needed on a platform.</source>
-        <translation>La pièce sur laquelle ils reposent ; aucune n&apos;est nécessaire sur un plateau.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/table_part.py"/>
-        <source>The points as they were read.</source>
+        <source>The points read from the file.</source>
         <translation>Les points tels qu&apos;ils ont été lus.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>The same layer of all solids on a base in turn, around the axis, the same ring of each and the inner ones first; or solid by solid (feature).</source>
-        <translation>La même couche de tous les solides d&apos;une base tour à tour, autour de l&apos;axe, le même anneau de chacun et les intérieurs d&apos;abord ; ou solide par solide (feature).</translation>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>The problem and its remedy.</source>
+        <translation>Le problème et son remède.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -1084,19 +1124,14 @@
         <translation>Le même mouvement sans dépôt.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/scan.py"/>
-        <source>The scan was made after this layer, counted from 0: the layers above are fitted to it; none: it is of the bare substrate.</source>
-        <translation>La numérisation a été faite après cette couche, comptée à partir de 0 : les couches au-dessus y sont ajustées ; aucune : elle est du substrat nu.</translation>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>The schedule number is set on a group output; or arc instructions name it and switch the deposit; or it selects the program to call.</source>
+        <translation>Le numéro de programme de soudage est mis sur une sortie groupée ; ou les instructions d&apos;arc le nomment et commutent le dépôt ; ou il choisit le programme à appeler.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>The shape to deposit, or some of its faces.</source>
         <translation>La forme à déposer, ou certaines de ses faces.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>The side of the faces that is covered: where their normals point, outwards of a solid (front), or the other side of faces that are of no solid (back).</source>
-        <translation>Le côté des faces qui est recouvert : celui vers lequel pointent leurs normales, l&apos;extérieur d&apos;un solide (front), ou l&apos;autre côté de faces qui ne sont d&apos;aucun solide (back).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
@@ -1115,7 +1150,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
-        <source>The surfaces that solids stand on.</source>
+        <source>The surfaces below the solids.</source>
         <translation>Les surfaces sur lesquelles reposent les solides.</translation>
     </message>
     <message>
@@ -1127,6 +1162,31 @@
         <location filename="../../freecad_am/objects/surface_feature.py"/>
         <source>The wall to deposit, or its faces.</source>
         <translation>La paroi à déposer, ou ses faces.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Time by which the deposit is switched ahead, during the motion, to compensate the delay of the equipment. None: the robot stops to switch. (s)</source>
+        <translation>Durée d&apos;avance de la commutation du dépôt, pendant le mouvement, pour compenser le retard de l&apos;équipement. Aucune : le robot s&apos;arrête pour commuter. (s)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Time by which the deposit is switched off after a bead ends.</source>
+        <translation>Dépôt coupé ce temps après la fin d&apos;un cordon.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Time by which the deposit is switched off after a bead ends. (s)</source>
+        <translation>Dépôt coupé ce temps après la fin d&apos;un cordon. (s)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Time by which the deposit is switched on before a bead starts.</source>
+        <translation>Dépôt mis en marche ce temps avant le début d&apos;un cordon.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Time by which the deposit is switched on before a bead starts. (s)</source>
+        <translation>Dépôt mis en marche ce temps avant le début d&apos;un cordon. (s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -1145,7 +1205,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/views/hub.py"/>
-        <source>Tint the cylinders and cones that solids stand on.</source>
+        <source>Tint the cylinders and cones below solids.</source>
         <translation>Teinter les cylindres et cônes sur lesquels reposent les solides.</translation>
     </message>
     <message>
@@ -1155,17 +1215,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>Tool axis turned forward along the bead, from the build direction.</source>
+        <source>Tool axis tilted forward along the bead, from the build direction.</source>
         <translation>Axe de l&apos;outil tourné vers l&apos;avant le long du cordon, à partir de la direction de dépôt.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>Tool axis turned sideways, towards the outside of the wall, from the build direction.</source>
+        <source>Tool axis tilted sideways, towards the outside of the wall, from the build direction.</source>
         <translation>Axe de l&apos;outil tourné de côté, vers l&apos;extérieur de la paroi, à partir de la direction de dépôt.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Tool on robot only: points of the part and where the tip has touched them, three or more, which take the place of the deposition point, such as: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5. In the part file and in the maker&apos;s base frame, mm.</source>
+        <source>Tool on robot only: points of the part and the positions where the tip touched them, at least three, which replace the deposition point, such as: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5. In the part file and in the manufacturer&apos;s base frame, mm.</source>
         <translation>Outil sur le robot seulement : points de la pièce et où la pointe les a palpés, trois ou plus, qui remplacent le point de dépôt, par exemple : 0 0 0 = 900.4 2.1 -99.7 ; 100 0 0 = 1000.3 1.2 -99.9 ; 0 80 0 = 901 82 -99.5. Dans le fichier de la pièce et dans le repère de base du constructeur, en mm.</translation>
     </message>
     <message>
@@ -1174,28 +1234,38 @@
         <translation>Outil sur le robot seulement : pose du bout sur la bride, son Z pointant hors de la buse. mm, RX RY RZ.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Torch turned outwards about the bead on outer contours.</source>
-        <translation>Torche tournée vers l&apos;extérieur autour du cordon sur les contours extérieurs.</translation>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Travel speed there. (mm/s)</source>
+        <translation>Vitesse de la torche à cet endroit. (mm/s)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Travel speed while depositing.</source>
+        <translation>Vitesse de la torche le long du dépôt.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Turn of the bead within the wall that smooth layers stay below where the band allows. (deg/mm)</source>
+        <source>Turn of the bead within the wall that smooth layers stay below if the band allows. (deg/mm)</source>
         <translation>Rotation du cordon dans la paroi au-dessous de laquelle restent les couches smooth là où la bande le permet. (deg/mm)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/table_part.py"/>
+        <source>Type of the file.</source>
+        <translation>Ce qu&apos;est le fichier.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Unit of the measured coordinates; auto: the one that the file names, else mm.</source>
+        <source>Unit of the measured coordinates; auto: the unit in the file, otherwise mm.</source>
         <translation>Unité des coordonnées mesurées ; auto : celle que nomme le fichier, sinon mm.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Value of that output at 1 m/min of wire.</source>
+        <source>Value of the analogue output at 1 m/min of wire.</source>
         <translation>Valeur de cette sortie à 1 m/min de fil.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
-        <source>Version of these properties.</source>
+        <source>Version of the properties.</source>
         <translation>Version de ces propriétés.</translation>
     </message>
     <message>
@@ -1204,39 +1274,24 @@
         <translation>Volume du dépôt, largeur de cordon fois hauteur de couche (cm³).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>What a joint path is judged by.</source>
-        <translation>Ce qui juge une trajectoire articulaire.</translation>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Waiting time between layers.</source>
+        <translation>Temps d&apos;attente entre les couches.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>What differs for classes of beads (first_layer, contour, fill, closing, link, wall), such as: contour: travel_speed 8, schedule 3; fill: lead 5; or none.</source>
-        <translation>Ce qui diffère pour des classes de cordons (first_layer, contour, fill, closing, link, wall), par exemple : contour : travel_speed 8, schedule 3 ; fill : lead 5 ; ou none.</translation>
+        <source>Waiting time between layers. (s)</source>
+        <translation>Temps d&apos;attente entre les couches. (s)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/stage.py"/>
-        <source>What is where in the arrays.</source>
-        <translation>Ce qui est où dans les tableaux.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/stage.py"/>
-        <source>What is wrong, and what to do.</source>
-        <translation>Ce qui ne va pas, et que faire.</translation>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Weave number of the controller for the beads; 0 or none: straight.</source>
+        <translation>Numéro du balayage propre à la commande avec lequel les cordons sont déposés ; 0 ou aucun : droits.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/views/joint_path.py"/>
         <source>What the colours of the beads show.</source>
         <translation>Ce que disent les couleurs des cordons.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/table_part.py"/>
-        <source>What the file is.</source>
-        <translation>Ce qu&apos;est le fichier.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>What the layers are: parallel planes; at equal distances by the way through the part from where it stands, so that nothing needs support (geodesic); at equal distances straight from there (offset); or planes normal to a guide curve (along).</source>
-        <translation>Ce que sont les couches : des plans parallèles ; à distances égales par le chemin à travers la pièce depuis là où elle repose, de sorte que rien n&apos;a besoin de support (geodesic) ; à distances égales en ligne droite depuis là (offset) ; ou des plans normaux à une courbe guide (along).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
@@ -1249,79 +1304,14 @@
         <translation>Ce que donne le polynôme : la vraie rotation autour de l&apos;axe de l&apos;outil, ou le RZ de l&apos;article.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>What the positions of Cartesian programs are relative to, in the part&apos;s coordinates: x y z mm, RX RY RZ deg; auto: the frame that sits on the platform.</source>
-        <translation>À quoi se rapportent les positions des programmes cartésiens, dans les coordonnées de la pièce : x y z mm, RX RY RZ deg ; auto : le repère qui repose sur le plateau.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/inspection.py"/>
-        <source>What was in the file.</source>
-        <translation>Ce qui était dans le fichier.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Where beads start: where the seam says (aligned), or apart from those of neighbouring contours and layers, lines of every second layer at their other end (spread).</source>
-        <translation>Départ des cordons : où le dit la couture (alignés), ou loin de ceux des contours et couches voisins, les lignes d&apos;une couche sur deux par leur autre bout (répartis).</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Where closed beads start.</source>
-        <translation>Là où commencent les cordons fermés.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Where in its height a layer takes its outline from the part.</source>
-        <translation>À quelle hauteur une couche prend son contour de la pièce.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Where it takes less motion than a polynomial, the rotation about the tool axis is free at every point of a bead: the best course that is found, for the objective displacement. Takes up to seconds per bead.</source>
-        <translation>Là où le mouvement est moindre qu’avec un polynôme, la rotation autour de l’axe de l’outil est libre en chaque point d’un cordon : le meilleur parcours trouvé, pour l’objectif displacement. Prend jusqu’à quelques secondes par cordon.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Where the figures of the material are from; carried to the report.</source>
-        <translation>D&apos;où viennent les valeurs du matériau ; repris dans le rapport.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Where the fit begins: three or more pairs of a measured point and the same point of the part, each x y z &gt; x y z in mm, with a semicolon between; empty: it is searched for.</source>
-        <translation>Là où commence l&apos;ajustement : trois paires ou plus d&apos;un point mesuré et du même point de la pièce, chacune x y z &gt; x y z en mm, séparées par un point-virgule ; vide : il est cherché.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Where the locked axis stands; auto: where the largest angle left is least. (deg)</source>
-        <translation>Là où se tient l&apos;axe bloqué ; auto : là où le plus grand angle restant est le plus petit. (deg)</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>Whether the result fits.</source>
         <translation>Si le résultat correspond.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Which frame sits on the platform: the feature&apos;s own, or that of the part file.</source>
-        <translation>Quel repère repose sur le plateau : celui de l&apos;élément à déposer, ou celui du fichier de la pièce.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Which of part and tool the robot carries, or a machine with rotary axes.</source>
+        <source>Whether the robot carries the tool or the part, or a machine with rotary axes.</source>
         <translation>Ce que porte le robot, la pièce ou l&apos;outil, ou une machine à axes rotatifs.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Which of the controller&apos;s external axes e1 is; the others follow: eax_a, E1 are 1.</source>
-        <translation>Lequel des axes externes de la commande est e1 ; les autres suivent : eax_a, E1 sont 1.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Which set of joint limits of the machine file holds.</source>
-        <translation>Quel jeu de limites articulaires du fichier machine vaut.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Which side of a wall was measured: that of its outer normals, the inner one, or both.</source>
-        <translation>Quel côté d&apos;une paroi a été mesuré : celui de ses normales extérieures, l&apos;intérieur, ou les deux.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -1330,12 +1320,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Widest gap that may stay open between beads, as a share of the bead spacing. (%)</source>
+        <source>Widest gap allowed between beads, as a share of the bead spacing. (%)</source>
         <translation>Plus large jour qui peut rester ouvert entre les cordons, en part de la distance des cordons. (%)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Width of the bead; held by the bead model. Solids on hubs are filled with beads that wide.</source>
+        <source>Width of the bead; the bead model keeps it. Solids on hubs are filled with beads of this width.</source>
         <translation>Largeur du cordon ; tenue par le modèle de cordon. Les solides sur moyeux sont remplis de cordons de cette largeur.</translation>
     </message>
     <message>
@@ -1354,13 +1344,23 @@
         <translation>Largeur de la zone la plus étroite entre deux sphères qui contient tous les points.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Wire feed: constant, or proportional to the travel speed of a bead model, so that beads keep their cross-section.</source>
+        <translation>Vitesse du fil : constante, ou proportionnelle à la vitesse d&apos;avance que règle un modèle de cordon, pour que les cordons gardent leur section.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Wire feed; auto: the feed for the bead width and layer height at the travel speed, or that of the bead model. 0: no wire. (mm/s)</source>
+        <translation>Vitesse du fil ; auto : celle qui fait des cordons de leur largeur et de la hauteur de couche à la vitesse d&apos;avance, ou celle des cordons du modèle de cordon. 0 : pas de fil. (mm/s)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>local: tangent to the wall at each point; layer: one direction per layer; fixed: the axis of the part.</source>
         <translation>local : tangente à la paroi en chaque point ; layer : une direction par couche ; fixed : l&apos;axe de la pièce.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>nozzle: tilt no more than needed to keep the nozzle clear of deposit and platform.</source>
+        <source>nozzle: tilt only as far as clearance to deposit and platform requires.</source>
         <translation>nozzle : pas plus d&apos;inclinaison qu&apos;il n&apos;en faut pour tenir la buse éloignée du dépôt et du plateau.</translation>
     </message>
     <message>
@@ -1378,8 +1378,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>$OUT[{0}] to $OUT[{1}] carry the schedule, and one of them switches the deposit; use other ones, or another program.deposit_output</source>
-        <translation>$OUT[{0}] à $OUT[{1}] transmettent le programme de soudage, et l&apos;une d&apos;elles commute le dépôt ; prenez-en d&apos;autres, ou un autre program.deposit_output</translation>
+        <source>$OUT[{0}] to $OUT[{1}] carry the schedule, but the range includes the output of the deposit; use other outputs, or another program.deposit_output</source>
+        <translation>$OUT[{0}] à $OUT[{1}] portent le programme de soudage, mais la plage contient la sortie du dépôt ; utilisez d&apos;autres sorties, ou un autre program.deposit_output</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/fields.py"/>
@@ -1388,8 +1388,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/on_bends.py"/>
-        <source>(others stand on the bend of {0}: as the substrate it gives them layers of its shape)</source>
-        <translation>(les autres reposent sur la courbure de {0} : comme substrat il leur donne des couches de sa forme)</translation>
+        <source>(others are on the bend of {0}: as the substrate it shapes their layers)</source>
+        <translation>(d&apos;autres sont sur la courbure de {0} : comme substrat il donne sa forme à leurs couches)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
@@ -1408,18 +1408,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/predicted.py"/>
-        <source>. At one wire feed faster stretches are lower; process.wire.feed_mode: proportional would keep the section, at {0} to {1} mm/s of wire</source>
+        <source>. At a constant wire feed faster stretches are lower; process.wire.feed_mode: proportional would keep the cross-section, at {0} to {1} mm/s of wire</source>
         <translation>. Au même dévidage les passages plus rapides sont plus bas ; process.wire.feed_mode: proportional garderait la section, à {0} à {1} mm/s de fil</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/predicted.py"/>
-        <source>. The wire runs in proportion to the speed, at {0} to {1} mm/s, and keeps their section</source>
-        <translation>. Le fil court en proportion de la vitesse, de {0} à {1} mm/s, et garde leur section</translation>
+        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
+        <source>. Multiplied by {0} it would reach {1}: is its file in {2}? If so, export it in mm, or set scale: {3} mm, as part.scale (in the window: Meshes, Scale)</source>
+        <translation>. Multiplié par {0} il atteindrait {1} : son fichier est-il en {2} ? Alors exportez-le en mm, ou donnez `scale: {3} mm` avec lui, comme part.scale (dans la fenêtre : Maillages, Échelle)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
-        <source>. Times {0} it would reach {1}: is its file in {2}? Then export it in mm, or give scale: {3} mm with it, as part.scale (in the window: Meshes, Scale)</source>
-        <translation>. Multiplié par {0} il atteindrait {1} : son fichier est-il en {2} ? Alors exportez-le en mm, ou donnez `scale: {3} mm` avec lui, comme part.scale (dans la fenêtre : Maillages, Échelle)</translation>
+        <location filename="../../freecad_am/core/process/model/predicted.py"/>
+        <source>. The wire feed follows the speed, at {0} to {1} mm/s, and keeps the cross-section</source>
+        <translation>. Le fil court en proportion de la vitesse, de {0} à {1} mm/s, et garde leur section</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/promise.py"/>
@@ -1433,8 +1433,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
-        <source>0, or 1 where the joint slides along z: a machine with rotary axes has three of them</source>
-        <translation>0, ou 1 si l&apos;articulation glisse le long de z : une machine à axes rotatifs en a trois</translation>
+        <source>0, or 1 if the joint slides along z: a five-axis machine has three such joints</source>
+        <translation>0, ou 1 si l&apos;articulation glisse selon z : une machine à cinq axes a trois articulations de ce type</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
@@ -1468,7 +1468,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
-        <source>1, or -1 where the joint moves the other way</source>
+        <source>1, or -1 if the joint moves the other way</source>
         <translation>1, ou -1 si l&apos;articulation va dans l&apos;autre sens</translation>
     </message>
     <message>
@@ -1478,27 +1478,27 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
-        <source>: it is up to {0} mm wider there and {1} mm higher, by the bead model</source>
-        <translation>: il y est jusqu&apos;à {0} mm plus large et {1} mm plus haut, d&apos;après le modèle de cordon</translation>
+        <source>: the bead model predicts up to {0} mm more width</source>
+        <translation>: le modèle de cordon prédit jusqu&apos;à {0} mm de plus en largeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
-        <source>: it is up to {0} mm wider there and {1} mm higher, by the bead model; slower than {2} mm/s nothing was measured</source>
-        <translation>: il y est jusqu&apos;à {0} mm plus large et {1} mm plus haut, d&apos;après le modèle de cordon ; au-dessous de {2} mm/s rien n&apos;a été mesuré</translation>
+        <source>: the bead model predicts up to {0} mm more width and {1} mm more height</source>
+        <translation>: le modèle de cordon prédit jusqu&apos;à {0} mm de plus en largeur et {1} mm de plus en hauteur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
-        <source>: it is up to {0} mm wider there, by the bead model</source>
-        <translation>: il y est jusqu&apos;à {0} mm plus large, d&apos;après le modèle de cordon</translation>
+        <source>: the bead model predicts up to {0} mm more width and {1} mm more height; below {2} mm/s there are no measurements</source>
+        <translation>: le modèle de cordon prédit jusqu&apos;à {0} mm de plus en largeur et {1} mm de plus en hauteur ; au-dessous de {2} mm/s il n&apos;y a pas de mesures</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
-        <source>: it is up to {0} mm wider there, by the bead model; slower than {1} mm/s nothing was measured</source>
-        <translation>: il y est jusqu&apos;à {0} mm plus large, d&apos;après le modèle de cordon ; au-dessous de {1} mm/s rien n&apos;a été mesuré</translation>
+        <source>: the bead model predicts up to {0} mm more width; below {1} mm/s there are no measurements</source>
+        <translation>: le modèle de cordon prédit jusqu&apos;à {0} mm de plus en largeur ; au-dessous de {1} mm/s il n&apos;y a pas de mesures</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>
-        <source>; and rows that were laid alike were measured differently: {0}; measure these again</source>
+        <source>; and rows with the same settings have different results: {0}; measure them again</source>
         <translation>; et des lignes déposées de la même façon ont été mesurées différemment : {0} ; mesurez-les à nouveau</translation>
     </message>
     <message>
@@ -1562,33 +1562,18 @@
         <translation>Un fichier URDF</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/window.py"/>
-        <source>A click shows the point of a line in the path; a click on the path marks its line</source>
-        <translation>Un clic montre le point d&apos;une ligne dans la trajectoire ; un clic sur la trajectoire marque sa ligne</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>A copy of another machine</source>
         <translation>Une copie d&apos;une autre machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
-        <source>A further folder of machine files, such as one that is shared; your own are in {} as well</source>
-        <translation>Un autre dossier de fichiers machine, comme un dossier partagé ; les vôtres sont aussi dans {}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
-        <source>A further part that the nozzle is kept clear of.</source>
-        <translation>Une pièce supplémentaire que la buse évite.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
-        <source>A joint would have to be at {:.0f} % of its speed: the planner will slow it, or refuse</source>
+        <source>A joint would need {:.0f} % of its speed: the planner will slow it down, or reject the curve</source>
         <translation>Une articulation devrait aller à {:.0f} % de sa vitesse : le planificateur la ralentira, ou refusera</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>A machine of the list, or the path of a machine file.</source>
+        <source>A machine from the list, or the path of a machine file.</source>
         <translation>Une machine de la liste, ou le chemin d&apos;un fichier machine.</translation>
     </message>
     <message>
@@ -1598,7 +1583,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>A region narrower than a bead gets a single bead, or the job is refused.</source>
+        <source>A region narrower than a bead gets a single bead, or the job is rejected.</source>
         <translation>Une région plus étroite qu&apos;un cordon reçoit un seul cordon, ou le travail est refusé.</translation>
     </message>
     <message>
@@ -1642,13 +1627,23 @@
         <translation>Ajouter</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
+        <source>Add one layer, or use a smaller allowance</source>
+        <translation>Ajoutez une couche, ou prenez une surépaisseur plus petite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <source>Additional folder of machine files, such as a shared one; your own are in {} as well</source>
+        <translation>Un autre dossier de fichiers machine, comme un dossier partagé ; les vôtres sont aussi dans {}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Adds a cell: machine, set-up, platform and nozzle</source>
+        <source>Adds a cell: machine, setup, platform and nozzle</source>
         <translation>Ajoute une cellule : machine, installation, plateau et buse</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
-        <source>Adds the features selected, else the next one of the document</source>
+        <source>Adds the selected features, or the next one in the document</source>
         <translation>Ajoute les éléments sélectionnés, sinon le suivant du document</translation>
     </message>
     <message>
@@ -1662,18 +1657,13 @@
         <translation>Après la couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Against gravity, as x y z in the world.</source>
-        <translation>À l&apos;opposé de la pesanteur, sous la forme x y z dans le monde.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>All beads together</source>
         <translation>Tous les cordons ensemble</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/joint_path.py"/>
-        <source>All deposit points can be carried out.</source>
+        <source>All deposit points are feasible.</source>
         <translation>Tous les points de dépôt sont réalisables.</translation>
     </message>
     <message>
@@ -1688,7 +1678,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
-        <source>All points serve</source>
+        <source>All points are feasible</source>
         <translation>Tous les points conviennent</translation>
     </message>
     <message>
@@ -1712,13 +1702,18 @@
         <translation>Le long du temps du travail, ou le long de sa trajectoire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
+        <source>Also write the moves between beads, on their own layer; toolpaths have none</source>
+        <translation>Écrire aussi les mouvements entre les cordons, sur un calque à eux ; les trajectoires d&apos;outil n&apos;en ont pas</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>An axis without limits has the Continuous Turn option</source>
         <translation>Un axe sans limites a l’option Continuous Turn</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
-        <source>An inspection of the substrate by a scan of it, which the first layers are fitted to.</source>
+        <source>An inspection with a scan of the substrate, to which the first layers are fitted.</source>
         <translation>Un contrôle du substrat par sa numérisation, sur laquelle les premières couches sont ajustées.</translation>
     </message>
     <message>
@@ -1727,9 +1722,19 @@
         <translation>Sortie analogique qui dit la vitesse du fil là où elle suit la vitesse d&apos;avance.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <source>Analysing the shape.</source>
+        <translation>Analyse de la forme.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Angle</source>
         <translation>Angle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Angle added to the joint angle, deg</source>
+        <translation>Angle ajouté à celui de l&apos;articulation, deg</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -1742,14 +1747,19 @@
         <translation>Pas angulaire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
-        <source>Angle that is added to the joint&apos;s, deg</source>
-        <translation>Angle ajouté à celui de l&apos;articulation, deg</translation>
+        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
+        <source>Another part that the nozzle must clear.</source>
+        <translation>Une pièce supplémentaire que la buse évite.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/stage.py"/>
         <source>Another task panel is open; close it first.</source>
         <translation>Un autre panneau de tâche est ouvert ; fermez-le d&apos;abord.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Approximate number of toolpath points checked per pose.</source>
+        <translation>Points de la trajectoire d&apos;outil par lesquels chaque pose est jugée, environ.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
@@ -1758,7 +1768,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/arc.py"/>
-        <source>ArcTech ends the arc with the last move of a bead and stays there for the crater time of its weld data; use lead_off 0 and set the crater time of {0}, or another program.schedule.by</source>
+        <source>ArcTech ends the arc with the last move of a bead and waits there for the crater time of its weld data; use lead_off 0 and set the crater time of {0}, or another program.schedule.by</source>
         <translation>ArcTech termine l&apos;arc avec le dernier mouvement d&apos;un cordon et y reste le temps de cratère de ses données de soudage ; employez lead_off 0 et réglez le temps de cratère de {0}, ou un autre program.schedule.by</translation>
     </message>
     <message>
@@ -1778,8 +1788,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/figures.py"/>
-        <source>At most {:.0f} % of the points are served: {}.</source>
-        <translation>Au plus {:.0f} % des points sont desservis : {}.</translation>
+        <source>At most {:.0f} % of the points are feasible: {}.</source>
+        <translation>Au plus {:.0f} % des points sont desservis : {}.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -1788,8 +1798,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
-        <source>Axes on the pendant: -1 where it counts the other way; what it shows at zero</source>
-        <translation>Axes sur le pupitre : -1 là où il compte dans l&apos;autre sens ; ce qu&apos;il montre à zéro</translation>
+        <source>Axes on the pendant: -1 if the axis counts the other way; the value shown at zero</source>
+        <translation>Axes sur le pupitre : -1 si l&apos;axe compte dans l&apos;autre sens ; la valeur montrée à zéro</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
@@ -1803,18 +1813,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
-        <source>Axis 3 is shown against link 2, as it is</source>
+        <source>Axis 3 is shown relative to link 2, unchanged</source>
         <translation>L&apos;axe 3 est montré par rapport au corps 2, tel qu&apos;il est</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
-        <source>Axis 3 is shown against the horizontal (FANUC, some of ABB)</source>
+        <source>Axis 3 is shown relative to the horizontal (FANUC, some ABB)</source>
         <translation>L&apos;axe 3 est montré par rapport à l&apos;horizontale (FANUC, certains ABB)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Axis that stands still</source>
-        <translation>Axe à l&apos;arrêt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
@@ -1848,8 +1853,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
-        <source>Base: the maker&apos;s own base frame, in which the pendant shows positions, seen from the floor plate. FANUC&apos;s lies at the height of axis 2. Flange: in the last link, its Z out of the plate. Rotation: about X, then Y, then Z.</source>
-        <translation>Base : le repère de base du constructeur, dans lequel le pupitre dit les positions, vu de la plaque au sol. Celui de FANUC est à la hauteur de l&apos;axe 2. Bride : dans le dernier corps, son Z hors de la plaque. Rotation : autour de X, puis Y, puis Z.</translation>
+        <source>Base: the manufacturer&apos;s base frame, in which the pendant shows positions, relative to the floor plate. FANUC places it at the height of axis 2. Flange: in the last link, with Z out of the plate. Rotation: about X, then Y, then Z.</source>
+        <translation>Base : le repère de base du fabricant, dans lequel le pupitre montre les positions, par rapport à la plaque au sol. FANUC le place à la hauteur de l&apos;axe 2. Bride : dans le dernier corps, Z sortant de la plaque. Rotation : autour de X, puis Y, puis Z.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
@@ -1882,11 +1887,6 @@
         <translation>Largeur de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Beads that close gaps are made no shorter than this; others that are shorter are left out. auto: 2 mm, or the bead spacing where that is less.</source>
-        <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté. auto : 2 mm, ou l&apos;espacement des cordons s&apos;il est plus petit.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>Before</source>
         <translation>Avant</translation>
@@ -1900,11 +1900,6 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Below</source>
         <translation>Au-dessous de</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
-        <source>Beside the robot of this file, in its base frame, as a cell names it: NAME {}</source>
-        <translation>À côté du robot de ce fichier, dans son repère de base, comme une cellule le nomme : NOM {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/place.py"/>
@@ -1922,16 +1917,6 @@
         <translation>Entre les couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>Between two values of RX, RY or RZ.</source>
-        <translation>Entre deux valeurs de RX, RY ou RZ.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>Between two values of x, y or z.</source>
-        <translation>Entre deux valeurs de x, y ou z.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Blend</source>
         <translation>Lissage</translation>
@@ -1943,7 +1928,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Branch of this path</source>
+        <source>Branch of the path</source>
         <translation>Branche de cette trajectoire</translation>
     </message>
     <message>
@@ -1970,11 +1955,6 @@
         <location filename="../../freecad_am/gui/widgets/fields.py"/>
         <source>By default: {}.</source>
         <translation>Par défaut : {}.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>By how much the input&apos;s value in a program rises with a degree.</source>
-        <translation>De combien la valeur de l&apos;entrée dans un programme monte par degré.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/interop/cam_path.py"/>
@@ -2023,22 +2003,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/cell/proposing.py"/>
-        <source>Cancelled: the document is as it was.</source>
+        <source>Cancelled: the document is unchanged.</source>
         <translation>Annulé : le document est tel qu&apos;il était.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
-        <source>Cannot be carried out:</source>
-        <translation>Irréalisable :</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
-        <source>Cartesian motion with the part on the robot means remote TCP, and what the position records of such moves (RX RY RZ RW RP RR) stand for is not understood well enough to write them; use `motion: joint`</source>
-        <translation>le mouvement cartésien avec la pièce sur le robot veut dire TCP distant, et ce que représentent les enregistrements de position de tels mouvements (RX RY RZ RW RP RR) n&apos;est pas assez compris pour les écrire ; utilisez `motion: joint`</translation>
+        <source>Cartesian motion with the part on the robot needs remote TCP, whose position records (RX RY RZ RW RP RR) are not documented well enough; use `motion: joint`</source>
+        <translation>le mouvement cartésien avec la pièce sur le robot demande le TCP distant, dont les enregistrements de position (RX RY RZ RW RP RR) ne sont pas assez documentés ; utilisez `motion: joint`</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
-        <source>Cartesian positions are written only of an arm reaching forwards; use `branch: [front, ...]` or `motion: joint`</source>
+        <source>Cartesian positions need an arm that reaches forwards; use `branch: [front, ...]` or `motion: joint`</source>
         <translation>les positions cartésiennes ne sont écrites que pour un bras tendu vers l&apos;avant ; utilisez `branch: [front, ...]` ou `motion: joint`</translation>
     </message>
     <message>
@@ -2048,7 +2023,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/panel.py"/>
-        <source>Cell, feature, toolpath, joint path and program are made with their defaults; double-click one in the tree to change it.</source>
+        <source>Cell, feature, toolpath, joint path and program are created with their defaults; double-click one in the tree to change it.</source>
         <translation>Cellule, élément, trajectoire d&apos;outil, trajectoire articulaire et programme sont faits avec leurs valeurs par défaut ; double-cliquez sur l&apos;un d&apos;eux dans l&apos;arbre pour le modifier.</translation>
     </message>
     <message>
@@ -2072,13 +2047,23 @@
         <translation>Certificat : {:.4g} tel que planifié, aucune rotation ne descend sous {:.4g} : un écart de {:.1f} %, de {:.1f} % dans la couche {} cordon {}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <source>Change all beads together</source>
+        <translation>Changer tous les cordons ensemble</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Change of the objective and of the coefficients at which the optimiser stops.</source>
+        <source>Change of objective and coefficients at which the optimiser stops.</source>
         <translation>Variation de l&apos;objectif et des coefficients à laquelle l&apos;optimiseur s&apos;arrête.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Change of the input value in a program per degree.</source>
+        <translation>De combien la valeur de l&apos;entrée dans un programme monte par degré.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>Changes the conventions so; poses stay as they were typed</source>
+        <source>Changes the conventions accordingly; the entered poses stay</source>
         <translation>Change ainsi les conventions ; les poses restent telles que saisies</translation>
     </message>
     <message>
@@ -2090,6 +2075,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>Check poses</source>
         <translation>Poses de contrôle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/program/preflight_list.py"/>
+        <source>Checks of this program, how they were made and their worst points; click one to show it</source>
+        <translation>Vérifications de ce programme, leur méthode et leurs pires points ; cliquez-en une pour la montrer</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/toolpath.py"/>
@@ -2167,14 +2157,19 @@
         <translation>Efface le choix</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/program/window.py"/>
+        <source>Click a line to show its point on the path; click the path to mark its line</source>
+        <translation>Un clic montre le point d&apos;une ligne dans la trajectoire ; un clic sur la trajectoire marque sa ligne</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/features/wall.py"/>
         <source>Click edges of one object.</source>
         <translation>Cliquez sur des arêtes d&apos;un seul objet.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/panel.py"/>
-        <source>Click what is to be deposited, in the tree or the 3D view; then with Ctrl what it grows on, if there is such.</source>
-        <translation>Cliquez sur ce qui est à déposer, dans l&apos;arbre ou la vue 3D ; puis avec Ctrl sur ce sur quoi cela croît, s&apos;il y a lieu.</translation>
+        <source>Click the object to deposit, in the tree or the 3D view; then, with Ctrl, its substrate, if any.</source>
+        <translation>Cliquez l&apos;objet à déposer, dans l&apos;arbre ou la vue 3D ; puis, avec Ctrl, son substrat, s&apos;il y en a un.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/proposal.py"/>
@@ -2193,7 +2188,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
-        <source>Close without a machine file? What you entered on the pages is lost.</source>
+        <source>Close without saving a machine file? All entries are lost.</source>
         <translation>Fermer sans fichier de machine ? Ce que vous avez saisi dans les pages est perdu.</translation>
     </message>
     <message>
@@ -2248,8 +2243,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Compares measured points with what was planned</source>
-        <translation>Compare des points mesurés à ce qui était prévu</translation>
+        <source>Compares measured points with the plan</source>
+        <translation>Compare des points mesurés avec le plan</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -2270,6 +2265,11 @@
         <location filename="../../freecad_am/gui/placement/work.py"/>
         <source>Computing</source>
         <translation>Calcul</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/preview.py"/>
+        <source>Computing the preview.</source>
+        <translation>L&apos;aperçu est en cours de calcul.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/dock.py"/>
@@ -2298,8 +2298,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Contours are laid round lines and the like.</source>
-        <translation>Des contours sont déposés autour des lignes et autres motifs.</translation>
+        <source>Contours around lines and similar patterns.</source>
+        <translation>Contours autour des lignes et motifs semblables.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -2307,9 +2307,34 @@
         <translation>Refroidissement</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Corner rounding within a bead, percent: CNT of FANUC, and of the maximum of other controllers.</source>
+        <translation>Arrondi des coins dans un cordon, en pour cent : CNT de FANUC, et du plus grand permis pour les autres.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <source>Covers the selected faces with layers of beads</source>
+        <translation>Prend les faces sélectionnées pour les recouvrir de couches de cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <source>Creates a machine file from a URDF, a Denavit-Hartenberg table or OPW dimensions, checked against poses</source>
+        <translation>Fait un fichier machine d&apos;un URDF, d&apos;un tableau de Denavit-Hartenberg ou de cotes OPW, vérifié par des poses</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <source>Creates all stages for the selected shape, from cell to program</source>
+        <translation>Fait toutes les étapes pour la forme sélectionnée, de la cellule au programme</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
         <source>Criterion</source>
         <translation>Critère</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Criterion for the best feasible pose: the largest minimum margin, the shortest time, or the largest clearance of the arm.</source>
+        <translation>Ce qui fait d&apos;une pose réalisable la meilleure : la plus grande des plus petites marges, le temps le plus court, ou la plus grande distance du bras à tout le reste.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
@@ -2357,8 +2382,18 @@
         <translation>Polylignes en DXF</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <source>Default folder for programs; empty for the last folder, or next to the document</source>
+        <translation>Là où les programmes sont d&apos;abord écrits ; vide pour le dossier de la dernière fois, ou à côté du document</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <source>Defaults and appearance of the window for new objects. Existing documents, jobs and macros do not depend on them.</source>
+        <translation>Valeurs par défaut et apparence de la fenêtre pour les nouveaux objets. Les documents, travaux et macros existants n&apos;en dépendent pas.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
-        <source>Defects are widths of the narrowest zone, as ISO 1101 has them</source>
+        <source>Defects are widths of the narrowest zone, as in ISO 1101</source>
         <translation>Les défauts sont les largeurs de la zone la plus étroite, selon ISO 1101</translation>
     </message>
     <message>
@@ -2432,16 +2467,6 @@
         <translation>Débit de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Deposit switched off this long after a bead ends.</source>
-        <translation>Dépôt coupé ce temps après la fin d&apos;un cordon.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Deposit switched on this long before a bead starts.</source>
-        <translation>Dépôt mis en marche ce temps avant le début d&apos;un cordon.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>Deposited mass</source>
         <translation>Masse déposée</translation>
@@ -2470,6 +2495,31 @@
         <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
         <source>Deposits the chosen feature later</source>
         <translation>Dépose plus tard l&apos;élément choisi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <source>Deposits the selected edges, wires, sketches or tables as beads</source>
+        <translation>Dépose les arêtes, fils, esquisses ou tableaux choisis en cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <source>Deposits the selected faces as a wall on the other selected object</source>
+        <translation>Prend les faces sélectionnées comme paroi à déposer sur l&apos;autre objet sélectionné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <source>Deposits the selected shape of revolution</source>
+        <translation>Prend la forme de révolution sélectionnée pour la déposer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <source>Deposits the selected solids in planar layers</source>
+        <translation>Prend les solides sélectionnés à déposer en couches planes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <source>Deposits the selected solids on the cylinder or cone that is selected last</source>
+        <translation>Prend les solides sélectionnés pour les déposer sur le cylindre ou le cône sélectionné en dernier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -2507,13 +2557,23 @@
         <translation>Sortie logique qui commande le dépôt.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Dimensions of an arm with a spherical wrist (OPW)</source>
+        <translation>Cotes d&apos;un bras à poignet sphérique (OPW)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Direction</source>
         <translation>Sens</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Direction against gravity, as x y z in the world.</source>
+        <translation>À l&apos;opposé de la pesanteur, sous la forme x y z dans le monde.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Direction of closed beads seen against the build direction; open beads run as found unless alternate.</source>
+        <source>Direction of closed beads seen against the build direction; open beads keep their direction unless alternate.</source>
         <translation>Sens des cordons fermés vu contre la direction de dépôt ; les cordons ouverts courent tels que trouvés, sauf avec alternate.</translation>
     </message>
     <message>
@@ -2523,7 +2583,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Direction x y z from the deposit towards the tool, in the part&apos;s coordinates, where neither the curves nor faces say one.</source>
+        <source>Direction x y z from the deposit towards the tool, in part coordinates, used where neither the curves nor faces define one.</source>
         <translation>Direction x y z du dépôt vers l&apos;outil, dans les coordonnées de la pièce, là où ni les courbes ni des faces n&apos;en indiquent.</translation>
     </message>
     <message>
@@ -2550,11 +2610,6 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Distortion</source>
         <translation>Distorsion</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Divides the translation rows of the Jacobian.</source>
-        <translation>Divise les lignes de translation du jacobien.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/saving.py"/>
@@ -2597,11 +2652,6 @@
         <translation>E1 du groupe de mouvement du robot lui-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/bars.py"/>
-        <source>Each joint in its range, how far it is from the nearer limit, and the share of its largest speed that is asked of it</source>
-        <translation>Chaque articulation dans sa plage, sa distance à la limite la plus proche, et la part de sa plus grande vitesse qui lui est demandée</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>Eccentricity at {0} mm</source>
         <translation>Excentricité à {0} mm</translation>
@@ -2610,6 +2660,16 @@
         <location filename="../../freecad_am/objects/surface_feature.py"/>
         <source>Edges of the wall in which layers start, in place of where it leaves the substrate.</source>
         <translation>Arêtes de la paroi où commencent les couches, au lieu de là où elle quitte le substrat.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
+        <source>Edges, wire or sketch as a guide; layers are normal to it; none: the centre line of the solid.</source>
+        <translation>Arêtes, fil ou esquisse comme guide ; les couches lui sont normales ; aucun : la ligne médiane du solide.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
+        <source>Edges, wire, sketch or table of points to deposit as beads.</source>
+        <translation>Arêtes, fil, esquisse ou tableau de points à déposer en cordons.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
@@ -2632,14 +2692,14 @@
         <translation>Fin</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/background/busy.py"/>
-        <source>Ends the computation; the document stays as it was before</source>
-        <translation>Arrête le calcul ; le document reste tel qu&apos;il était avant</translation>
+        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <source>Enter the pose selected in the table into the cell</source>
+        <translation>Entrer dans la cellule la pose choisie dans le tableau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/form.py"/>
-        <source>Enter the pose that is chosen in the table into the cell</source>
-        <translation>Entrer dans la cellule la pose choisie dans le tableau</translation>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>Equipment next to a robot: a cell uses it as external axes.</source>
+        <translation>Équipement à côté d&apos;un robot : une cellule l&apos;utilise comme axes externes.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
@@ -2648,8 +2708,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>Every bead is carried by what lies below it</source>
-        <translation>Chaque cordon est porté par ce qui est dessous</translation>
+        <source>Every bead is supported from below</source>
+        <translation>Chaque cordon est porté par-dessous</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
@@ -2697,9 +2757,19 @@
         <translation>Axes externes</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>External axes of the robot in this file, in its base frame, as named in a cell: NAME {}</source>
+        <translation>Axes externes du robot de ce fichier, dans son repère de base, comme une cellule les nomme : NAME {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>External axes. level: they turn no more than the angle from the vertical asks for; optimised: one polynomial per bead of each, together with the rotation about the tool, for less motion and larger margins.</source>
+        <source>External axes. level: they turn only as far as the angle from the vertical requires; optimised: each follows one polynomial per bead, optimised together with the tool rotation for less motion and larger margins.</source>
         <translation>Axes externes. level : ils ne tournent pas plus que l&apos;angle à la verticale ne le demande ; optimised : un polynôme par cordon pour chacun, avec la rotation autour de l&apos;outil, pour moins de mouvement et de plus grandes marges.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>External axis of the controller that carries e1; the others follow: eax_a, E1 are 1.</source>
+        <translation>Lequel des axes externes de la commande est e1 ; les autres suivent : eax_a, E1 sont 1.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
@@ -2708,8 +2778,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/features/curves.py"/>
-        <source>Faces of the same object that the curves lie on, whose normals are the directions; none: the table&apos;s own, or the direction below.</source>
-        <translation>Faces du même objet sur lesquelles reposent les courbes, dont les normales sont les directions ; aucune : celles du tableau, ou la direction ci-dessous.</translation>
+        <source>Faces of the same object under the curves, whose normals set the tool directions; none: the directions in the table, or the direction below.</source>
+        <translation>Faces du même objet sous les courbes, dont les normales donnent les directions de l&apos;outil ; aucune : les directions du tableau, ou la direction ci-dessous.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
@@ -2728,8 +2798,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/features/solid.py"/>
-        <source>Faces that lean out over nothing by more than this angle are red in the 3D view</source>
+        <source>Faces that overhang by more than this angle are red in the 3D view</source>
         <translation>Les faces qui surplombent le vide de plus que cet angle sont rouges dans la vue 3D</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
+        <source>Faces to cover; if none is selected and the object is not a solid, all its faces.</source>
+        <translation>Faces à couvrir ; si aucune n&apos;est choisie et que l&apos;objet n&apos;est pas un solide, toutes ses faces.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/kernel/limits.py"/>
@@ -2743,8 +2818,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Fastest travel speed at which the material is laid; faster beads are reported.</source>
-        <translation>Vitesse d&apos;avance la plus rapide à laquelle le matériau est déposé ; les cordons plus rapides sont signalés.</translation>
+        <source>Fastest travel speed for the material; faster beads are reported.</source>
+        <translation>Vitesse d&apos;avance la plus rapide pour le matériau ; les cordons plus rapides sont signalés.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/features/revolution.py"/>
@@ -2775,11 +2850,6 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Fewest points of a full turn, however small its radius.</source>
         <translation>Nombre minimal de points d&apos;un tour entier, si petit que soit son rayon.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
-        <source>Figures of an arm with a spherical wrist (OPW)</source>
-        <translation>Cotes d&apos;un bras à poignet sphérique (OPW)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/inspection/inputs.py"/>
@@ -2833,7 +2903,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>First bead of that layer.</source>
+        <source>First bead of the first layer to deposit.</source>
         <translation>Premier cordon de cette couche.</translation>
     </message>
     <message>
@@ -2858,7 +2928,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/needs.py"/>
-        <source>First make a feature: Feature…, Wall on Part…, Solid…, Solids on Hub…, Curves… and Cladding… do so.</source>
+        <source>First make a feature with Feature…, Wall on Part…, Solid…, Solids on Hub…, Curves… or Cladding….</source>
         <translation>Créez d&apos;abord un élément : avec Élément…, Paroi sur pièce…, Solide…, Solides sur moyeu…, Courbes… ou Rechargement….</translation>
     </message>
     <message>
@@ -2878,13 +2948,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/needs.py"/>
-        <source>First open a part, or import one into this document.</source>
-        <translation>Ouvrez d&apos;abord une pièce, ou importez-en une dans ce document.</translation>
+        <source>First open a part, or create a document.</source>
+        <translation>Ouvrez d&apos;abord une pièce, ou créez un document.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/needs.py"/>
-        <source>First open a part, or make a document.</source>
-        <translation>Ouvrez d&apos;abord une pièce, ou créez un document.</translation>
+        <source>First open a part, or import one into this document.</source>
+        <translation>Ouvrez d&apos;abord une pièce, ou importez-en une dans ce document.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -2895,6 +2965,11 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>Fit of the bead widths</source>
         <translation>Ajustement des largeurs de cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Five-axis machines only: the revolute axis to lock, counted from the torch (four axes).</source>
+        <translation>Machines à cinq axes seulement : l&apos;axe rotatif à bloquer, compté depuis la torche (quatre axes).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
@@ -2912,18 +2987,53 @@
         <translation>Dossiers</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <source>For paths, from the smallest to the largest value</source>
+        <translation>Pour les trajectoires, de la plus petite à la plus grande valeur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <source>For serial angles: each axis relative to the previous link. Revolute axes in deg, deg/s, deg/s² and deg/s³, prismatic ones in mm, mm/s, mm/s² and mm/s³. Leave both ends of a range empty for a continuous axis; leave unknown speeds, accelerations and jerks empty.</source>
+        <translation>Pour les angles en série : chaque axe par rapport au corps précédent. Axes rotatifs en deg, deg/s, deg/s² et deg/s³, axes linéaires en mm, mm/s, mm/s² et mm/s³. Laissez vides les deux bouts d&apos;une plage pour un axe continu ; laissez vides les vitesses, accélérations et jerks inconnus.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <source>For speeds in fields and read-outs; typed values may use any unit</source>
+        <translation>Pour les vitesses dans les champs et affichages ; les valeurs tapées peuvent avoir une autre unité</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/features/hub.py"/>
         <source>For walls only: solids on a hub grow along the normals of its surface</source>
         <translation>Des parois seulement : les solides sur moyeu croissent le long des normales de sa surface</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
+        <source>Format of the export</source>
+        <translation>Format de l&apos;export</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Four axes only: by how much the tool may miss the direction asked for.</source>
+        <source>Four axes only: largest deviation of the tool from the requested direction.</source>
         <translation>Quatre axes seulement : de combien l&apos;outil peut manquer la direction demandée.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Frame of the first row in the base, and flange in the frame of the last row. mm and deg; about X first, then Y, then Z of the outer frame.</source>
+        <translation>Repère de la première ligne dans la base, et bride dans le repère de la dernière ligne. mm et deg ; d&apos;abord autour de X, puis Y, puis Z du repère extérieur.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Frame of the positions of Cartesian programs, in part coordinates: x y z mm, RX RY RZ deg; auto: the frame on the platform.</source>
+        <translation>À quoi se rapportent les positions des programmes cartésiens, dans les coordonnées de la pièce : x y z mm, RX RY RZ deg ; auto : le repère qui repose sur le plateau.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Frame to place on the platform: that of the feature, or that of the part file.</source>
+        <translation>Repère à poser sur le plateau : celui de l&apos;élément, ou celui du fichier de la pièce.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
-        <source>Frames (mm, deg): the maker&apos;s base on the floor, the flange in the last link</source>
+        <source>Frames (mm, deg): the manufacturer&apos;s base on the floor, the flange in the last link</source>
         <translation>Repères (mm, deg) : la base du constructeur sur le sol, la bride dans le dernier corps</translation>
     </message>
     <message>
@@ -2948,7 +3058,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/interop/export.py"/>
-        <source>FreeCAD wrote no STEP file; see the report view, or write DXF instead</source>
+        <source>FreeCAD wrote no STEP file; see the report view, or use DXF instead</source>
         <translation>FreeCAD n&apos;a pas écrit de fichier STEP ; voyez la vue rapport, ou écrivez DXF</translation>
     </message>
     <message>
@@ -2977,11 +3087,6 @@
         <translation>De la bride, ou de la face d&apos;un axe rotatif, au plan de montage le long de son Z, ou une pose sur elle.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
-        <source>From where to where each joint goes on this curve; red past a limit</source>
-        <translation>D&apos;où à où va chaque articulation sur cette courbe ; rouge au-delà d&apos;une limite</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
         <source>Further</source>
         <translation>Autres</translation>
@@ -2993,7 +3098,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Further methods planned for the comparison of the report.</source>
+        <source>Further methods to plan for the comparison in the report.</source>
         <translation>Autres méthodes planifiées pour la comparaison du rapport.</translation>
     </message>
     <message>
@@ -3013,13 +3118,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Further spacings whose joint paths are planned for the comparison of the report.</source>
+        <source>Further spacings to plan for the comparison in the report.</source>
         <translation>Autres espacements dont les trajectoires articulaires sont planifiées pour la comparaison du rapport.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Fuse</source>
         <translation>Fusionner</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>G-code: meaning of the words A, B and C while X, Y and Z are the tip in the part: the head turns by C and then A (head-ac) or B (head-bc), or the part turns below it (table-ac, table-bc); none rejects them.</source>
+        <translation>G-code : sens des mots A, B et C alors que X, Y et Z sont la pointe dans la pièce : la tête tourne par C puis A (head-ac) ou B (head-bc), ou la pièce tourne dessous (table-ac, table-bc) ; none les rejette.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>G-code: moves to deposit: part, all, or groups and types of the slicer, separated by commas, such as part, support. Skirt, brim, raft, support, towers, ironing and purge lines do not belong to part.</source>
+        <translation>G-code : mouvements à déposer : part, all, ou des groupes et types du trancheur, séparés par des virgules, comme part, support. Jupe, bordure, radeau, support, tours, lissage et lignes de purge ne font pas partie de part.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -3068,7 +3183,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Group output, H word, register or analogue output that carries it; for KUKA the first of eight outputs.</source>
+        <source>Group output, H word, register or analogue output for it; for KUKA the first of eight outputs.</source>
         <translation>Sortie de groupe, mot H, registre ou sortie analogique qui le transmet ; chez KUKA la première de huit sorties.</translation>
     </message>
     <message>
@@ -3107,14 +3222,19 @@
         <translation>Hauteur suivant la direction d&apos;empilement.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Height within a layer at which the part is cut for its outline.</source>
+        <translation>À quelle hauteur une couche prend son contour de la pièce.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>Heights</source>
         <translation>Hauteurs</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Heights above the part&apos;s base, in mm, at which circularity is evaluated; none: a sixth, a half and five sixths of what was measured.</source>
-        <translation>Hauteurs au-dessus de la base de la pièce, en mm, auxquelles la circularité est dite ; aucune : un sixième, la moitié et cinq sixièmes de ce qui a été mesuré.</translation>
+        <source>Heights above the base of the part, in mm, at which circularity is evaluated; none: one sixth, one half and five sixths of the measured height.</source>
+        <translation>Hauteurs au-dessus de la base de la pièce, en mm, où la circularité est évaluée ; aucune : un sixième, la moitié et cinq sixièmes de la hauteur mesurée.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/whats_this.py"/>
@@ -3127,159 +3247,14 @@
         <translation>Cacher la machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Holes of meshes up to this size across are closed, with a note; larger ones are refused.</source>
-        <translation>Les trous des maillages jusqu&apos;à cette largeur sont fermés, ce qui est signalé ; les plus grands sont refusés.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>Horizontal axis</source>
         <translation>Axe horizontal</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How far a closed bead runs on past its seam.</source>
-        <translation>De combien un cordon fermé continue au-delà de sa couture.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>How far a touched point may be from where the others say that it is.</source>
-        <translation>De combien un point palpé peut s&apos;écarter d&apos;où les autres le situent.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>How far its RX is changed to either side.</source>
-        <translation>De combien son RX est changé de chaque côté.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>How far its RY is changed to either side.</source>
-        <translation>De combien son RY est changé de chaque côté.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>How far its RZ is changed to either side.</source>
-        <translation>De combien son RZ est changé de chaque côté.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>How far its x is changed to either side.</source>
-        <translation>De combien son x est changé de chaque côté.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>How far its y is changed to either side.</source>
-        <translation>De combien son y est changé de chaque côté.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>How far its z is changed to either side.</source>
-        <translation>De combien son z est changé de chaque côté.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How far the deposit is to reach beyond the part everywhere, to be machined off: its shape is predicted and compared with the part; none: it is not.</source>
-        <translation>De combien le dépôt doit dépasser la pièce partout, pour être usiné : sa forme est prédite et comparée à la pièce ; rien : elle ne l&apos;est pas.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How far the deposit stands out from the part, to be machined off; above it by the layers that begin less than that above its last one.</source>
-        <translation>De combien le dépôt dépasse sur les côtés de la pièce, à usiner ; au-dessus, des couches qui commencent moins haut que cela au-dessus de sa dernière.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How far the direction of lines and zigzags turns from layer to layer.</source>
         <translation>De combien la direction des lignes et des zigzags tourne d&apos;une couche à l&apos;autre.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/scan.py"/>
-        <source>How far the height of layers may differ from the layer height where they lead from what was scanned back to the plan.</source>
-        <translation>Écart permis entre la hauteur des couches et la hauteur de couche là où elles ramènent de ce qui a été numérisé au plan.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/scan.py"/>
-        <source>How far the scan may lie from what was planned; farther, and it is taken for a scan of something else.</source>
-        <translation>Distance permise entre la numérisation et ce qui était prévu ; au-delà, elle passe pour la numérisation d&apos;autre chose.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How far the start moves from layer to layer.</source>
-        <translation>De combien le départ se déplace d&apos;une couche à l&apos;autre.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How far the tool is withdrawn along its axis between beads.</source>
-        <translation>De combien l&apos;outil est retiré le long de son axe entre les cordons.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How far the torch goes back over an open bead from its end, still depositing, so that its crater is filled.</source>
-        <translation>Distance sur laquelle la torche revient sur un cordon ouvert depuis sa fin, en déposant toujours, afin de remplir son cratère.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>How layers are found: on a tube of one surface by its closed parameter and on all other walls as fronts (auto), or as fronts on every wall (fronts).</source>
-        <translation>Comment les couches sont trouvées : sur un tube d&apos;une seule surface par son paramètre fermé, sur toute autre paroi par des fronts (auto), ou par des fronts sur toutes les parois (fronts).</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How long to wait between layers.</source>
-        <translation>Temps d&apos;attente entre les couches.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How many contours lie round lines and the like; inf: contours only.</source>
-        <translation>Nombre de contours autour des lignes et autres motifs ; inf : contours seuls.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How many layers lie on the faces, one layer height over the other along their normals.</source>
-        <translation>Nombre de couches sur les faces, l&apos;une à une hauteur de couche au-dessus de l&apos;autre, le long de leurs normales.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/inspection/panel.py"/>
-        <source>How many points have what deviation; dashed: the tolerance</source>
-        <translation>Combien de points ont quel écart ; tirets : la tolérance</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/simulation/fields.py"/>
-        <source>How many seconds of the job pass in one</source>
-        <translation>Combien de secondes du travail passent en une</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>How many times the curves are laid, one layer height over the other.</source>
-        <translation>Combien de fois les courbes sont déposées, l&apos;une à une hauteur de couche au-dessus de l&apos;autre.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>How much corners within a bead are rounded, percent: CNT of FANUC, and of the most that others may.</source>
-        <translation>Arrondi des coins dans un cordon, en pour cent : CNT de FANUC, et du plus grand permis pour les autres.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How much of the bead it is.</source>
-        <translation>Quelle longueur du cordon c&apos;est.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How narrow and how wide beads may be, of their usual width and spacing, so that contours come out even over the thickness of a region, and beads in thin places are as wide as these.</source>
-        <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How narrow, of their usual width, beads in planes may be laid where others leave them less room; all of it: none is, and layers get higher there.</source>
-        <translation>À quelle part de leur largeur habituelle les cordons en couches planes peuvent se réduire là où d&apos;autres leur laissent moins de place ; toute la largeur : aucun ne se réduit, et les couches y deviennent plus hautes.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
-        <source>How the part is cut into layers; proposed from the selection</source>
-        <translation>Comment la pièce est découpée en couches ; proposé d&apos;après la sélection</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>How the points may be moved onto the part: best fit, shifts only, a turn about and a shift along the part&apos;s axis, or none but what pairs of points say.</source>
-        <translation>Comment les points peuvent être ramenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou rien que ce que disent les paires de points.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -3297,6 +3272,11 @@
         <translation>H{0} commute le dépôt ; prenez-en un autre pour les programmes de soudage</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/new_job/fields.py"/>
+        <source>If empty, it is sized for the first layer.</source>
+        <translation>Laissé vide, il est aussi grand que la première couche le demande.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/saving.py"/>
         <source>Image (*.png)</source>
         <translation>Image (*.png)</translation>
@@ -3308,13 +3288,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/after.py"/>
-        <source>In plane layers, for curved ones could not be carried out. {}</source>
+        <source>In planar layers, as curved ones were infeasible. {}</source>
         <translation>En couches planes, car des couches courbes n’étaient pas réalisables. {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>In tolerance</source>
         <translation>Dans la tolérance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
+        <source>Infeasible:</source>
+        <translation>Irréalisable :</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Initial fit: three or more pairs of a measured point and the same point on the part, each x y z &gt; x y z in mm, separated by semicolons; empty: automatic.</source>
+        <translation>Là où commence l&apos;ajustement : trois paires ou plus d&apos;un point mesuré et du même point de la pièce, chacune x y z &gt; x y z en mm, séparées par un point-virgule ; vide : il est cherché.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -3348,11 +3338,6 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>It stands at</source>
-        <translation>Il est arrêté à</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Iterations after which the optimiser gives up on a layer.</source>
         <translation>Nombre d&apos;itérations après lequel l&apos;optimiseur renonce à une couche.</translation>
     </message>
@@ -3360,11 +3345,6 @@
         <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
         <source>Its controller reads</source>
         <translation>Sa commande lit</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
-        <source>Its limits as the data sheet has them; leave them empty where there are none. Those of the page before are against link 2.</source>
-        <translation>Ses limites telles que la fiche technique les donne ; laissez vide là où il n&apos;y en a pas. Celles de la page précédente sont par rapport au corps 2.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
@@ -3378,7 +3358,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>Jog the machine to at least three poses in which every axis has moved, and type what the pendant shows: the joints, and the place of the tool frame in the base frame. The maker&apos;s simulator does as well; figures that were computed from this geometry prove nothing. A table can be pasted.</source>
+        <source>Jog the machine to at least three poses in which every axis has moved, and enter the values on the pendant: the joints, and the pose of the tool frame in the base frame. The manufacturer&apos;s simulator works as well; values computed from this geometry prove nothing. You can paste a table.</source>
         <translation>Amenez la machine à au moins trois poses où chaque axe a bougé, et saisissez ce que montre le pupitre : les articulations, et la place du repère outil dans le repère de base. Le simulateur du constructeur convient aussi ; des chiffres calculés à partir de cette géométrie ne prouvent rien. Un tableau peut être collé.</translation>
     </message>
     <message>
@@ -3442,14 +3422,19 @@
         <translation>Articulations</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/cell/proposing.py"/>
+        <source>Kept as entered; for {} it would be {}.</source>
+        <translation>Laissé comme saisi ; pour {} ce serait {}.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/cell/proposing.py"/>
+        <source>Kept as entered; the job of {} is feasible with {}.</source>
+        <translation>Laissé comme saisi ; la tâche de {} peut se faire avec {}.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Kind</source>
         <translation>Type</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Largest angle between the stacking direction and a wall that leans out, before there is a warning; 90 deg: none.</source>
-        <translation>Plus grand angle entre la direction d&apos;empilement et une paroi en surplomb, avant un avertissement ; 90 deg : aucun.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -3465,6 +3450,11 @@
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>Largest deviation inside</source>
         <translation>Plus grand écart vers l&apos;intérieur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/scan.py"/>
+        <source>Largest deviation of the local layer height where layers blend from the scan back to the plan, as a share of the layer height.</source>
+        <translation>Plus grand écart de la hauteur de couche locale là où les couches ramènent de la numérisation au plan, en part de la hauteur de couche.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -3483,8 +3473,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Largest distance between a bead and the straight segments that stand for it. A new feature begins with 0.01 mm up to a size of 250 mm and with more beyond, at most a hundredth of the bead width.</source>
-        <translation>Distance maximale entre un cordon et les segments de droite qui le représentent. Un nouvel élément commence avec 0,01 mm jusqu&apos;à une taille de 250 mm et avec davantage au-delà, au plus un centième de la largeur du cordon.</translation>
+        <source>Largest distance between a bead and the straight segments that approximate it. A new feature starts with 0.01 mm up to a size of 250 mm and with more for larger ones, at most a hundredth of the bead width.</source>
+        <translation>Plus grande distance entre un cordon et les segments droits qui l&apos;approchent. Un nouvel élément commence avec 0,01 mm jusqu&apos;à une taille de 250 mm et avec plus au-delà, au plus un centième de la largeur de cordon.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/scan.py"/>
+        <source>Largest distance of the scan from the plan; beyond it, the scan is rejected as another part.</source>
+        <translation>Plus grande distance de la numérisation au plan ; au-delà, elle est rejetée comme une autre pièce.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -3492,14 +3487,19 @@
         <translation>Plus grande erreur de la distance locale des couches constant-distance.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Largest hole in a mesh that is closed automatically, with a note; larger holes are rejected.</source>
+        <translation>Les trous des maillages jusqu&apos;à cette largeur sont fermés, ce qui est signalé ; les plus grands sont refusés.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/joint_path.py"/>
-        <source>Largest joint speed: {:.0f} % of what {} can do, in layer {}</source>
-        <translation>Vitesse articulaire la plus grande : {:.0f} % de ce que peut {}, couche {}</translation>
+        <source>Largest joint speed: {:.0f} % of the maximum of {}, in layer {}</source>
+        <translation>Plus grande vitesse articulaire : {0:.0f} % du maximum de {1}, dans la couche {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Largest share by which beads may lie nearer together or farther apart than the bead spacing on faces that are bent both ways; these are covered in pieces that keep to it.</source>
-        <translation>Plus grande part dont les cordons peuvent être plus serrés ou plus espacés que l&apos;espacement des cordons sur des faces courbées dans les deux sens ; elles sont couvertes par morceaux qui s&apos;y tiennent.</translation>
+        <source>Largest overhang angle between the stacking direction and a wall without a warning; 90 deg: no warning.</source>
+        <translation>Plus grand angle entre la direction d&apos;empilement et une paroi en surplomb, avant un avertissement ; 90 deg : aucun.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -3508,12 +3508,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>Largest turn of build direction and tool axis along a bead, on walls on an existing part, on hubs and in curved layers; where they would turn faster, at corners, they are spread out, and the deviation is reported.</source>
+        <source>Largest turn of build direction and tool axis along a bead, on walls on an existing part, on hubs and in curved layers; faster turns, as at corners, are spread out, and the deviation is reported.</source>
         <translation>Plus grande rotation de la direction de dépôt et de l&apos;axe de l&apos;outil le long d&apos;un cordon, sur les parois d&apos;une pièce existante, sur les moyeux et dans les couches courbes ; là où ils tourneraient plus vite, aux angles, ils sont étalés, et leur écart est dit.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Largest variation of the bead spacing on doubly curved faces, as a share; such faces are divided into pieces that respect it.</source>
+        <translation>Plus grande variation de l&apos;écart entre cordons sur des faces à double courbure, en part ; ces faces sont divisées en morceaux qui la respectent.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Last layers trimmed flush with the wall&apos;s upper edge, or whole layers only.</source>
+        <source>Last layers trimmed at the upper edge of the wall, or whole layers only.</source>
         <translation>Dernières couches coupées au ras du bord supérieur de la paroi, ou couches entières seulement.</translation>
     </message>
     <message>
@@ -3522,14 +3527,14 @@
         <translation>Déposez d&apos;abord les couches à la hauteur qu&apos;elles ont réellement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
-        <source>Lay one more layer, or leave less of it to machine</source>
-        <translation>Déposez une couche de plus, ou laissez moins à usiner</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>Layer</source>
         <translation>Couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/scan.py"/>
+        <source>Layer after which the scan was made, counted from 0: the layers above are fitted to it; none: the scan shows the bare substrate.</source>
+        <translation>La numérisation a été faite après cette couche, comptée à partir de 0 : les couches au-dessus y sont ajustées ; aucune : elle est du substrat nu.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/plots/deviation.py"/>
@@ -3562,8 +3567,13 @@
         <translation>Couches</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>Layers are one layer height apart</source>
+        <translation>Les couches sont distantes d’une hauteur de couche</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Layers at the layer height from the nearest point of the one below (constant-distance), within a band of it and without corners (smooth), or along the lines up the wall (iso-parameter).</source>
+        <source>Layers at the layer height from the nearest point below (constant-distance), within a band around it and without corners (smooth), or along the lines up the wall (iso-parameter).</source>
         <translation>Couches à la hauteur de couche du point le plus proche de celle du dessous (constant-distance), dans une bande autour d&apos;elle et sans angles (smooth), ou le long des lignes qui montent la paroi (iso-parameter).</translation>
     </message>
     <message>
@@ -3575,11 +3585,6 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Layers equally spaced along the wall (arc-length) or along the axis (iso-height).</source>
         <translation>Couches également espacées le long de la paroi (arc-length) ou le long de l&apos;axe (iso-height).</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>Layers lie one layer height apart</source>
-        <translation>Les couches sont distantes d’une hauteur de couche</translation>
     </message>
     <message>
         <location filename="../../InitGui.py"/>
@@ -3632,11 +3637,6 @@
         <translation>Plus petit écart.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
-        <source>Least joint margin: {:.1f} %, of {} in layer {}</source>
-        <translation>Marge articulaire la plus faible : {:.1f} %, de {}, couche {}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/placement/figures.py"/>
         <source>Least margin, %</source>
         <translation>Plus petite marge, %</translation>
@@ -3648,33 +3648,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Least time between the end of a solid&apos;s layer and the start of its next.</source>
+        <source>Least time between the end of a layer of a solid and the start of its next.</source>
         <translation>Temps minimal entre la fin de la couche d&apos;un solide et le début de la suivante.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing, and islands come in the same order in every layer, so that each cools while the others are laid.</source>
-        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque, et les îlots viennent dans le même ordre à chaque couche, afin que chacun refroidisse pendant le dépôt des autres.</translation>
+        <source>Least time of a layer, from its first bead to the first of the next; the machine waits if needed, and islands keep the same order in every layer, so that each cools while others are printed.</source>
+        <translation>Durée minimale d&apos;une couche, de son premier cordon au premier de la suivante ; la machine attend au besoin, et les îlots gardent le même ordre à chaque couche, afin que chacun refroidisse pendant que d&apos;autres sont déposés.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing.</source>
+        <source>Least time of a layer, from its first bead to the first of the next; the machine waits if needed.</source>
         <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/cell/proposing.py"/>
-        <source>Left as it was entered; for {} it would be {}.</source>
-        <translation>Laissé comme saisi ; pour {} ce serait {}.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/cell/proposing.py"/>
-        <source>Left as it was entered; the job of {} can be done with {}.</source>
-        <translation>Laissé comme saisi ; la tâche de {} peut se faire avec {}.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/new_job/fields.py"/>
-        <source>Left empty, it is as large as the first layer needs it.</source>
-        <translation>Laissé vide, il est aussi grand que la première couche le demande.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -3688,13 +3673,28 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Length beside it along which the speed changes step by step to that of the bead.</source>
+        <source>Length by which a closed bead continues past its seam.</source>
+        <translation>De combien un cordon fermé continue au-delà de sa couture.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Length by which the torch returns over an open bead from its end, still depositing, to fill the crater.</source>
+        <translation>Distance sur laquelle la torche revient sur un cordon ouvert depuis sa fin, en déposant toujours, afin de remplir son cratère.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Length next to it over which the speed changes in steps to the speed of the bead.</source>
         <translation>Longueur à côté, le long de laquelle la vitesse passe par paliers à celle du cordon.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>Length of all beads.</source>
         <translation>Longueur de tous les cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Length of the bead that it covers.</source>
+        <translation>Quelle longueur du cordon c&apos;est.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -3712,9 +3712,14 @@
         <translation>Longueur de la buse à partir de son bout.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Length that divides the translation rows of the Jacobian.</source>
+        <translation>Divise les lignes de translation du jacobien.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
-        <source>Lengths are in mm, angles in degrees. Robots need six axes that turn, machine tools three axes that slide and two that turn; whether yours is one is checked when you go on. Tracks, turntables and positioners, which stand beside a robot, have one axis or two.</source>
-        <translation>Les longueurs sont en mm, les angles en degrés. Les robots ont besoin de six axes qui tournent, les machines-outils de trois axes qui glissent et deux qui tournent ; si la vôtre en est une est examiné à la page suivante. Les rails, tables tournantes et positionneurs, qui se trouvent à côté d&apos;un robot, ont un axe ou deux.</translation>
+        <source>Lengths are in mm, angles in degrees. Robots need six revolute axes, machine tools three prismatic and two revolute axes; the wizard checks this when you continue. Tracks, turntables and positioners next to a robot have one axis or two.</source>
+        <translation>Les longueurs sont en mm, les angles en degrés. Les robots demandent six axes rotatifs, les machines-outils trois axes linéaires et deux rotatifs ; l&apos;assistant le vérifie quand vous continuez. Les rails, plateaux et positionneurs à côté d&apos;un robot ont un ou deux axes.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/quantity.py"/>
@@ -3727,6 +3732,11 @@
         <translation>Laisser choisir</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Let the rotation about the tool axis vary at every point of a bead if this needs less motion than a polynomial: the best rotation found for the objective displacement. Takes up to seconds per bead.</source>
+        <translation>Là où le mouvement est moindre qu’avec un polynôme, la rotation autour de l’axe de l’outil est libre en chaque point d’un cordon : le meilleur parcours trouvé, pour l’objectif displacement. Prend jusqu’à quelques secondes par cordon.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Lift</source>
         <translation>Dégagement vertical</translation>
@@ -3735,6 +3745,11 @@
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Limits</source>
         <translation>Limites</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>Limits from the data sheet; leave them empty if unknown. The limits on the previous page are relative to link 2.</source>
+        <translation>Limites de la fiche technique ; laissez vide si elles sont inconnues. Les limites de la page précédente sont relatives au corps 2.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
@@ -3772,6 +3787,16 @@
         <translation>Le chargement des parties et les outils portés par d’autres outils ont été essayés à vide</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Locked at</source>
+        <translation>Bloqué à</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Locked axis</source>
+        <translation>Axe bloqué</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>Longer by</source>
         <translation>Plus long de</translation>
@@ -3783,18 +3808,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Longest way from one line of a zigzag to the next, as a share of the bead spacing; where it would be longer another zigzag begins.</source>
+        <source>Longest link from one line of a zigzag to the next, as a share of the bead spacing; a longer link starts a new zigzag.</source>
         <translation>Plus long chemin d&apos;une ligne d&apos;un zigzag à la suivante, en part de la distance des cordons ; là où il serait plus long un autre zigzag commence.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/form.py"/>
         <source>Look</source>
         <translation>Aspect</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
-        <source>Looking at the shape.</source>
-        <translation>Examen de la forme.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/preferences/page.py"/>
@@ -3818,7 +3838,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>M121 restores the modes before M120 on RepRapFirmware, and keeps those of now on Marlin; write G90 or G91, M82 or M83 in its place</source>
+        <source>M121 restores the modes before M120 on RepRapFirmware, but keeps the current ones on Marlin; write G90 or G91, M82 or M83 instead</source>
         <translation>M121 rétablit les modes d&apos;avant M120 sur RepRapFirmware et garde ceux du moment sur Marlin ; écrivez à sa place G90 ou G91, M82 ou M83</translation>
     </message>
     <message>
@@ -3843,7 +3863,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
-        <source>Machine {} is written: {}</source>
+        <source>Machine {} was saved: {}</source>
         <translation>La machine {} est écrite : {}</translation>
     </message>
     <message>
@@ -3852,9 +3872,9 @@
         <translation>Surépaisseur d&apos;usinage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/dock.py"/>
-        <source>Made from an earlier state; recompute the document.</source>
-        <translation>Fait à partir d&apos;un état antérieur ; recalculez le document.</translation>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Machining allowance on the sides of the part; on top, every layer that begins within this height above the last one.</source>
+        <translation>Surépaisseur d&apos;usinage sur les côtés de la pièce ; en haut, chaque couche qui commence à moins de cette hauteur au-dessus de la dernière.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
@@ -3862,29 +3882,14 @@
         <translation>Faire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
-        <source>Make the curve that of the joint path, and plan it again</source>
-        <translation>Faire de la courbe celle de la trajectoire articulaire, et la replanifier</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
-        <source>Maker and model</source>
-        <translation>Constructeur et modèle</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/cell.py"/>
         <source>Maker and model of the machine.</source>
         <translation>Constructeur et modèle de la machine.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Makes a machine file from a URDF, a Denavit-Hartenberg table or OPW figures, checked against poses</source>
-        <translation>Fait un fichier machine d&apos;un URDF, d&apos;un tableau de Denavit-Hartenberg ou de cotes OPW, vérifié par des poses</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Makes all stages for the selected shape, from cell to program</source>
-        <translation>Fait toutes les étapes pour la forme sélectionnée, de la cellule au programme</translation>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>Manufacturer and model</source>
+        <translation>Constructeur et modèle</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/context_menu.py"/>
@@ -3942,6 +3947,16 @@
         <translation>Rotation max</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Maximum points per program file; longer programs are chained.</source>
+        <translation>Nombre maximal de points d&apos;un fichier de programme ; les plus longs sont enchaînés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Maximum residual of a touched point against the best fit.</source>
+        <translation>Plus grand résidu d&apos;un point touché par rapport au meilleur ajustement.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>Mean</source>
         <translation>Moyenne</translation>
@@ -3967,6 +3982,16 @@
         <translation>Points mesurés</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Measured side of a wall: the outer side, the inner side, or both.</source>
+        <translation>Côté mesuré d&apos;une paroi : le côté extérieur, le côté intérieur, ou les deux.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Mechanisms in the file; each gets its own machine file</source>
+        <translation>Mécanismes du fichier ; chacun reçoit son propre fichier machine</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Mend</source>
         <translation>Réparer</translation>
@@ -3978,13 +4003,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Method constant: the one RZ, or auto to search it.</source>
+        <source>Method constant: RZ for the whole job, or auto to search for it.</source>
         <translation>Méthode constant : le RZ unique, ou auto pour le chercher.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Method for layers: by the closed parameter on a tube of one surface and as fronts on all other walls (auto), or as fronts on every wall (fronts).</source>
+        <translation>Comment les couches sont trouvées : sur un tube d&apos;une seule surface par son paramètre fermé, sur toute autre paroi par des fronts (auto), ou par des fronts sur toutes les parois (fronts).</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Method layer-by-layer: polynomials that are given, not searched: layer/bead:constant:slope, or * for every other bead, in deg and deg per turn.</source>
+        <source>Method layer-by-layer: given polynomials instead of a search: layer/bead:constant:slope, or * for all other beads, in deg and deg per turn.</source>
         <translation>Méthode layer-by-layer : polynômes donnés, non cherchés : couche/cordon:constante:pente, ou * pour tout autre cordon, en deg et deg par tour.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <source>Method of cutting the part into layers; proposed from the selection</source>
+        <translation>Comment la pièce est découpée en couches ; proposé d&apos;après la sélection</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -4002,9 +4037,19 @@
         <translation>Points min</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Minimum length of beads that close gaps; shorter beads are otherwise omitted. auto: 2 mm, or the bead spacing if that is less.</source>
+        <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté. auto : 2 mm, ou l&apos;espacement des cordons s&apos;il est plus petit.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>Mode</source>
         <translation>Mode</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Model that sets the travel speed so that beads keep their width in bends: none, csw (steel, Dai 2020), li-2025 (aluminium), or the path of a calibration table.</source>
+        <translation>Règle la vitesse d&apos;avance pour que les cordons gardent leur largeur dans les courbes : none, csw (acier, Dai 2020), li-2025 (aluminium), ou le chemin d&apos;une table d&apos;étalonnage.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
@@ -4023,13 +4068,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Most points of one program file; longer ones are chained.</source>
-        <translation>Nombre maximal de points d&apos;un fichier de programme ; les plus longs sont enchaînés.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Motion</source>
         <translation>Mouvement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Motion allowed to fit the points to the part: best fit, shifts only, a turn about and a shift along the axis of the part, or only what pairs of points define.</source>
+        <translation>Comment les points peuvent être ramenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou rien que ce que disent les paires de points.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -4062,24 +4107,24 @@
         <translation>Nom dans les travaux</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Name of the called programs, without their number: SCHEDULE3.</source>
+        <translation>Nom des programmes appelés, sans leur numéro : SCHEDULE3.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Name of the material; carried to the report.</source>
+        <source>Name of the material; copied to the report.</source>
         <translation>Nom du matériau ; repris dans le rapport.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/inputs.py"/>
-        <source>Name of the program and of its files; the controller may refuse some</source>
+        <source>Name of the program and of its files; the controller may reject some names</source>
         <translation>Nom du programme et de ses fichiers ; la commande peut en refuser</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Name of the program to call between layers, such as nozzle cleaning.</source>
         <translation>Nom du programme à appeler entre les couches, comme le nettoyage de la buse.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Name of the programs that are called, without their number: SCHEDULE3.</source>
-        <translation>Nom des programmes appelés, sans leur numéro : SCHEDULE3.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -4133,18 +4178,28 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
-        <source>No findings: no limit, singularity or speed comes near</source>
+        <source>No findings: no limit, singularity or speed is near</source>
         <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
-        <source>No findings: no limit, singularity or speed comes near, and no link of the robot touches anything</source>
+        <source>No findings: no limit, singularity or speed is near, and no link of the robot touches anything</source>
         <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche, et aucun corps du robot ne touche rien</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <source>No measurement: compare the deposit predicted for the toolpath</source>
+        <translation>Rien n&apos;a été mesuré : le dépôt que la trajectoire d&apos;outil devrait laisser</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/preview.py"/>
-        <source>No preview: see the field marked.</source>
+        <source>No preview: see the marked field.</source>
         <translation>Pas d&apos;aperçu : voyez le champ marqué.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
+        <source>No problem found so far.</source>
+        <translation>Aucun problème trouvé jusqu&apos;ici.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/figures.py"/>
@@ -4167,19 +4222,14 @@
         <translation>Rien n&apos;est sélectionné : cliquez d&apos;abord dans l&apos;arbre ou la vue 3D.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
-        <source>Nothing stands against it so far.</source>
-        <translation>Rien ne s&apos;y oppose jusqu&apos;ici.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
-        <source>Nothing was measured: the deposit that the toolpath is predicted to leave</source>
-        <translation>Rien n&apos;a été mesuré : le dépôt que la trajectoire d&apos;outil devrait laisser</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Nozzle</source>
         <translation>Buse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Nozzle stand-off; copied to the report.</source>
+        <translation>Distance de la buse ; copiée dans le rapport.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -4187,14 +4237,39 @@
         <translation>Nombre de cordons.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Number of contours around lines and similar patterns; inf: contours only.</source>
+        <translation>Nombre de contours autour des lignes et autres motifs ; inf : contours seuls.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/curves_feature.py"/>
         <source>Number of curves.</source>
         <translation>Nombre de courbes.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Number of layers along the curves, one layer height apart.</source>
+        <translation>Nombre de couches le long des courbes, à une hauteur de couche l&apos;une de l&apos;autre.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Number of layers below tops and above bottoms that are filled at 100 %.</source>
+        <translation>Nombre de couches sous les dessus et au-dessus des dessous qui sont remplies à 100 %.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Number of layers on the faces, one layer height apart along their normals.</source>
+        <translation>Nombre de couches sur les faces, l&apos;une à une hauteur de couche au-dessus de l&apos;autre, le long de leurs normales.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>Number of layers.</source>
         <translation>Nombre de couches.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
+        <source>Number of points by deviation; dashed: the tolerance</source>
+        <translation>Combien de points ont quel écart ; tirets : la tolérance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -4213,23 +4288,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Number of the analogue input that the sensor is on.</source>
+        <source>Number of the analogue input of the sensor.</source>
         <translation>Numéro de l&apos;entrée analogique du capteur.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Number of the controller&apos;s own weave that beads are laid with; 0 or none: straight.</source>
-        <translation>Numéro du balayage propre à la commande avec lequel les cordons sont déposés ; 0 ou aucun : droits.</translation>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Number of the best poses to plan with all points, until one is feasible.</source>
+        <translation>Nombre des meilleures poses à planifier avec tous les points, jusqu&apos;à ce qu&apos;une soit faisable.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Number of the digital input to wait for between layers.</source>
         <translation>Numéro de l&apos;entrée logique à attendre entre les couches.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Number of the schedule by which the welder or extruder lays beads; program.schedule says how it is sent.</source>
-        <translation>Numéro qui dit au poste de soudage ou à l&apos;extrudeuse comment déposer les cordons ; program.schedule dit comment il est transmis.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -4242,44 +4312,29 @@
         <translation>Numéro du repère utilisateur nommé dans le programme.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <source>Object to deposit: click it in the tree or the 3D view</source>
+        <translation>Objet à déposer : cliquez-le dans l&apos;arbre ou la vue 3D</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Object to move: the deposition point (with the tool on the robot the fixed platform), the platform on the flange or the table, or the base of the positioner; auto: whichever places the part.</source>
+        <translation>Objet à déplacer : le point de dépôt (avec l&apos;outil sur le robot le plateau fixe), le plateau sur la bride ou la table, ou la base du positionneur ; auto : celui qui place la pièce.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Objective</source>
         <translation>Objectif</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Objective for the joint path.</source>
+        <translation>Ce qui juge une trajectoire articulaire.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Obstacles</source>
         <translation>Obstacles</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Of G-code, how the words A, B and C turn the tool while X, Y and Z are the tip in the part: the head by C and then A (head-ac) or B (head-bc), or the part under it (table-ac, table-bc); none rejects them.</source>
-        <translation>Pour le G-code, comment les mots A, B et C tournent l&apos;outil, X, Y et Z étant la pointe dans la pièce : la tête par C puis A (head-ac) ou B (head-bc), ou la pièce dessous (table-ac, table-bc) ; none les refuse.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Of G-code, what is deposited: part, all, or groups and types of the slicer, separated by commas, such as part, support. Skirt, brim, raft, support, towers, ironing and purge lines are not part.</source>
-        <translation>Pour le G-code, ce qui est déposé : part, all, ou des groupes et types du trancheur séparés par des virgules, par exemple part, support. Jupe, bordure, radeau, supports, tours, lissage et lignes de purge ne sont pas la pièce.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
-        <source>Of paths, from the least to the greatest</source>
-        <translation>Des trajectoires, de la plus petite à la plus grande valeur</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
-        <source>Of speeds in fields and read-outs; what is typed may have any</source>
-        <translation>Des vitesses dans les champs et affichages ; ce qui est saisi peut en avoir une autre</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
-        <source>Of the cell</source>
-        <translation>De la cellule</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
-        <source>Of the serial angles: each axis against the link before it. Turning axes in deg, deg/s, deg/s² and deg/s³, sliding ones in mm, mm/s, mm/s² and mm/s³. Leave both ends of a range empty for an axis that turns without end, speeds, accelerations and jerks where they are not known.</source>
-        <translation>Des angles en série : chaque axe par rapport au corps qui le précède. Axes de rotation en deg, deg/s, deg/s² et deg/s³, de translation en mm, mm/s, mm/s² et mm/s³. Laissez vides les deux bouts d&apos;une plage pour un axe qui tourne sans fin, les vitesses, accélérations et jerks là où ils ne sont pas connus.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -4343,8 +4398,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>One pose is that of the serial zeros, where the controller shows {}.</source>
-        <translation>Une pose est celle des zéros en série, où la commande montre {}.</translation>
+        <source>One pose must be at the serial zeros, where the controller shows {}.</source>
+        <translation>Une pose doit être aux zéros en série, où la commande montre {0}.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
@@ -4358,7 +4413,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Opens a part or mesh from a file, which may be damaged: it is read in a process of its own</source>
+        <source>Opens a part or mesh from a file in a separate process, even if it is damaged</source>
         <translation>Ouvre une pièce ou un maillage d&apos;un fichier, qui peut être abîmé : il est lu dans un processus à part</translation>
     </message>
     <message>
@@ -4377,6 +4432,16 @@
         <translation>Ordre et attentes</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
+        <source>Order of several features: one after the other, or the lowest layer of any feature first</source>
+        <translation>Ordre de plusieurs éléments : l&apos;un après l&apos;autre, ou la couche la plus basse de tous d&apos;abord</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Order of several solids on a base: the same layer of each in turn, around the axis, the same ring of each, inner rings first; or solid by solid (feature).</source>
+        <translation>Ordre de plusieurs solides sur une base : la même couche de chacun à tour de rôle, autour de l&apos;axe, le même anneau de chacun, les anneaux intérieurs d&apos;abord ; ou solide par solide (feature).</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Origin</source>
         <translation>Origine</translation>
@@ -4390,6 +4455,11 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Output</source>
         <translation>Sortie</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Outward tilt of the torch about the bead on outer contours.</source>
+        <translation>Torche tournée vers l&apos;extérieur autour du cordon sur les contours extérieurs.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/features/solid.py"/>
@@ -4408,7 +4478,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Overlap of neighbouring beads as a share of the bead width; takes the place of the bead spacing.</source>
+        <source>Overlap of neighbouring beads as a share of the bead width; replaces the bead spacing.</source>
         <translation>Recouvrement de cordons voisins en part de la largeur de cordon ; tient lieu de la distance des cordons.</translation>
     </message>
     <message>
@@ -4418,8 +4488,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/records.py"/>
-        <source>P[{0}] has other motion groups, or axes of them, than P[{1}]; record all positions alike</source>
-        <translation>P[{0}] a d&apos;autres groupes de mouvement ou d&apos;autres axes que P[{1}] ; enregistrez toutes les positions de la même façon</translation>
+        <source>P[{0}] and P[{1}] have different motion groups or axes; record all positions alike</source>
+        <translation>P[{0}] et P[{1}] ont des groupes de mouvement ou axes différents ; enregistrez toutes les positions de même</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
@@ -4428,7 +4498,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>P[{0}] is recorded in another U{1} than the one selected</source>
+        <source>P[{0}] is recorded in another U{1} than the selected one</source>
         <translation>P[{0}] est enregistré dans un autre U{1} que celui qui est choisi</translation>
     </message>
     <message>
@@ -4443,13 +4513,28 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Parallel contours, parallel lines, or either linked: connected, spiral, zigzag; below 100 % also grid, triangles, honeycomb, gyroid.</source>
-        <translation>Contours parallèles, lignes parallèles, ou l&apos;un ou l&apos;autre reliés : contours reliés, spirale, zigzag ; au-dessous de 100 % aussi grille, triangles, nid d&apos;abeilles, gyroïde.</translation>
+        <source>Parallel contours, parallel lines, or the two linked: connected, spiral, zigzag; below 100 % also grid, triangles, honeycomb, gyroid.</source>
+        <translation>Contours parallèles, lignes parallèles, ou l&apos;un ou l&apos;autre reliés : contours reliés, spirale, zigzag ; au-dessous de 100 % aussi grille, triangles, nid d&apos;abeilles, gyroïde.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
+        <source>Part below the curves; not needed on a platform.</source>
+        <translation>Pièce sous les courbes ; inutile sur un plateau.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
+        <source>Part below the solids; not needed on a platform.</source>
+        <translation>Pièce sous les solides ; inutile sur un plateau.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Part of revolution</source>
         <translation>Pièce de révolution</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Part of the cell</source>
+        <translation>Partie de la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/open_part.py"/>
@@ -4493,8 +4578,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
-        <source>Plan constant, point-by-point and layer-by-layer on this branch, to look at</source>
-        <translation>Planifier constant, point par point et couche par couche sur cette branche, pour regarder</translation>
+        <source>Plan constant, point-by-point and layer-by-layer in this configuration, for comparison</source>
+        <translation>Planifier constant, point-by-point et layer-by-layer dans cette configuration, pour comparer</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/context_menu.py"/>
@@ -4503,7 +4588,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
-        <source>Plan the joint path again layer by layer, without a curve that is given</source>
+        <source>Plan the joint path again layer by layer, without a given curve</source>
         <translation>Replanifier la trajectoire articulaire couche par couche, sans courbe donnée</translation>
     </message>
     <message>
@@ -4518,13 +4603,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/inspection/inputs.py"/>
-        <source>Planned is missing; it was deleted, choose another</source>
+        <source>Planned is missing, as it was deleted; choose another</source>
         <translation>Planned manque ; il a été supprimé, choisissez-en un autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Planned thickness of the wall, half of it on each side of the planned surface; 0: the planned surface itself is the measured one.</source>
-        <translation>Épaisseur prévue de la paroi, une moitié de chaque côté de la surface prévue ; 0 : la surface prévue elle-même est celle mesurée.</translation>
+        <source>Planned thickness of the wall, centred on the planned surface; 0: the planned surface was measured directly.</source>
+        <translation>Épaisseur prévue de la paroi, centrée sur la surface prévue ; 0 : la surface prévue est elle-même mesurée.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/comparison.py"/>
@@ -4550,6 +4635,11 @@
         <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>Play or pause</source>
         <translation>Jouer ou suspendre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
+        <source>Playback speed, in seconds of the job per second</source>
+        <translation>Combien de secondes du travail passent en une</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
@@ -4593,12 +4683,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
-        <source>Points are left out as long as the path stays within this distance</source>
+        <source>Points are omitted while the path stays within this distance</source>
         <translation>Des points sont laissés de côté tant que la trajectoire reste à cette distance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
-        <source>Points are left out as long as the tool axis stays within this angle</source>
+        <source>Points are omitted while the tool axis stays within this angle</source>
         <translation>Des points sont laissés de côté tant que l&apos;axe de l&apos;outil reste dans cet angle</translation>
     </message>
     <message>
@@ -4607,23 +4697,18 @@
         <translation>Points en valeurs articulaires, ou en positions de l&apos;outil.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>Points of the toolpath that each pose is judged by, about.</source>
-        <translation>Points de la trajectoire d&apos;outil par lesquels chaque pose est jugée, environ.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/placement/figures.py"/>
         <source>Points served, %</source>
         <translation>Points desservis, %</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
-        <source>Points that are unreachable, past a limit, near a singularity or not allowed</source>
+        <source>Points that are unreachable, beyond a limit, near a singularity or not allowed</source>
         <translation>Points hors d&apos;atteinte, au-delà d&apos;une limite, près d&apos;une singularité ou non permis</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Points up to this far above or below such a height count there, slid along the planned surface.</source>
+        <source>Points within this height of such a level count, moved to it along the planned surface.</source>
         <translation>Les points jusqu&apos;à cette distance au-dessus ou au-dessous d&apos;une telle hauteur y comptent, glissés le long de la surface prévue.</translation>
     </message>
     <message>
@@ -4638,13 +4723,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
-        <source>Poses before the first row and after the last, where the table has some</source>
+        <source>Poses before the first row and after the last row, if the table has them</source>
         <translation>Poses avant la première ligne et après la dernière, si le tableau en a</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/form.py"/>
         <source>Poses to try</source>
         <translation>Poses à essayer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Position of the locked axis; auto: the position with the smallest residual angle.</source>
+        <translation>Position de l&apos;axe bloqué ; auto : la position où l&apos;angle restant est le plus petit.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
@@ -4693,28 +4783,28 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/program/preflight_list.py"/>
-        <source>Preflight: {} kept, {} broken, {} not checked</source>
+        <source>Preflight: {} passed, {} failed, {} not checked</source>
         <translation>Contrôle avant départ : {} tenues, {} non tenues, {} non vérifiées</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/joint_path.py"/>
-        <source>Preview of all points; OK looks at the rapid moves too.</source>
-        <translation>Aperçu de tous les points ; OK examine aussi les rapides.</translation>
+        <source>Preview of all points; OK also checks the rapids.</source>
+        <translation>Aperçu de tous les points ; OK contrôle aussi les rapides.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/joint_path.py"/>
-        <source>Preview of one bead in {}; OK looks at those between and at the rapid moves too.</source>
-        <translation>Aperçu d&apos;un cordon sur {} ; OK examine aussi ceux entre eux et les rapides.</translation>
+        <source>Preview of one bead in {}; OK checks the beads between and the rapids too.</source>
+        <translation>Aperçu d&apos;un cordon sur {0} ; OK contrôle aussi les cordons entre eux et les rapides.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/joint_path.py"/>
-        <source>Preview of one point in {} of one bead in {}; OK looks at those between and at the rapid moves too.</source>
-        <translation>Aperçu d&apos;un point sur {} d&apos;un cordon sur {} ; OK examine aussi ceux entre eux et les rapides.</translation>
+        <source>Preview of one point in {} of one bead in {}; OK checks the points and beads between and the rapids too.</source>
+        <translation>Aperçu d&apos;un point sur {0} d&apos;un cordon sur {1} ; OK contrôle aussi les points et cordons entre eux et les rapides.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/joint_path.py"/>
-        <source>Preview of one point in {}; OK looks at those between and at the rapid moves too.</source>
-        <translation>Aperçu d&apos;un point sur {} ; OK examine aussi ceux entre eux et les rapides.</translation>
+        <source>Preview of one point in {}; OK checks the points between and the rapids too.</source>
+        <translation>Aperçu d&apos;un point sur {0} ; OK contrôle aussi les points entre eux et les rapides.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -4743,18 +4833,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/suggestions.py"/>
-        <source>Programs for this machine need what only its controller knows, its pulses per degree, in a machine file of your own. All is planned, checked and simulated without; Export Path… writes its points as a table.</source>
-        <translation>Les programmes de cette machine demandent ce que seule sa commande indique, ses impulsions par degré, dans un fichier machine à vous. Tout est planifié, contrôlé et simulé sans elles ; Export Path… écrit les points dans un tableau.</translation>
+        <source>Programs for this controller contain positions, but the names of the wrist configurations are unknown: the job is planned, checked and simulated, but no program is written.</source>
+        <translation>Les programmes pour cette commande contiennent des positions, mais les noms des configurations du poignet sont inconnus : le travail est planifié, vérifié et simulé, mais aucun programme n&apos;est écrit.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/suggestions.py"/>
-        <source>Programs for this machine&apos;s controller are of positions, and what it calls the configurations of this wrist is not known: all is planned, checked and simulated, but no program is written.</source>
-        <translation>Les programmes de la commande de cette machine sont faits de positions, et on ne sait pas comment elle nomme les configurations de ce poignet : tout est planifié, vérifié et simulé, mais aucun programme n&apos;est écrit.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/widgets/suggestions.py"/>
-        <source>Programs for this machine&apos;s controller need the tool on the robot. With the part on it all is planned, checked and simulated, but no program is written.</source>
+        <source>Programs for this controller need the tool on the robot. With the part on the robot the job is planned, checked and simulated, but no program is written.</source>
         <translation>Les programmes de la commande de cette machine demandent l&apos;outil sur le robot. Avec la pièce sur le robot, tout est planifié, vérifié et simulé, mais aucun programme n&apos;est écrit.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/widgets/suggestions.py"/>
+        <source>Programs for this machine need the pulses per degree, which only its controller knows, in your own machine file. Without it the job is planned, checked and simulated; Export Path… writes its points as a table.</source>
+        <translation>Les programmes pour cette machine demandent les impulsions par degré, que seule sa commande connaît, dans votre propre fichier machine. Sans cela le travail est planifié, vérifié et simulé ; Exporter la trajectoire… écrit ses points en tableau.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
@@ -4763,12 +4853,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/cell/proposing.py"/>
-        <source>Proposed for the job of {}; enter what yours really has.</source>
+        <source>Proposed for the job of {}; enter the values of your cell.</source>
         <translation>Proposé pour la tâche de {} ; saisissez ce qu&apos;il en est du vôtre.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/cell/proposing.py"/>
-        <source>Proposed for {}; enter what yours really has.</source>
+        <source>Proposed for {}; enter the values of your cell.</source>
         <translation>Proposé pour {} ; saisissez ce qu&apos;il en est du vôtre.</translation>
     </message>
     <message>
@@ -4797,6 +4887,26 @@
         <translation>Quadratique</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <source>Quantity shown by the colours</source>
+        <translation>Ce que disent les couleurs</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/form.py"/>
+        <source>Quantity shown by the colours of the beads</source>
+        <translation>Ce que disent les couleurs des cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <source>Quantity shown by the colours of the places</source>
+        <translation>Ce que disent les couleurs des endroits</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>Quantity to plot</source>
+        <translation>Grandeur à tracer</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>RMS</source>
         <translation>RMS</translation>
@@ -4818,7 +4928,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
-        <source>RZ as in Chalvin 2020, the true rotation about the tool axis, or another external axis than across</source>
+        <source>RZ as in Chalvin 2020, the true tool rotation, or an external axis that is not on the other axis of the map</source>
         <translation>RZ comme dans Chalvin 2020, la vraie rotation autour de l&apos;axe de l&apos;outil, ou un autre axe externe que celui en travers</translation>
     </message>
     <message>
@@ -4838,12 +4948,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Radius of the base circle; auto: the face chosen, or the one that the solids stand on.</source>
-        <translation>Rayon du cercle de base ; auto : la face choisie, ou celle sur laquelle reposent les solides.</translation>
+        <source>Radius of the base circle; auto: from the chosen face, or the face below the solids.</source>
+        <translation>Rayon du cercle de base ; auto : de la face choisie, ou de la face sous les solides.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Radius of the probe&apos;s ball where its centre was measured; 0 where the points lie on the surface.</source>
+        <source>Radius of the probe ball if its centre was measured; 0 if the points are on the surface.</source>
         <translation>Rayon de la bille du palpeur si son centre a été mesuré ; 0 si les points sont sur la surface.</translation>
     </message>
     <message>
@@ -4855,6 +4965,51 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Ramp</source>
         <translation>Rampe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Range of RX to either side.</source>
+        <translation>De combien son RX est changé de chaque côté.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Range of RY to either side.</source>
+        <translation>De combien son RY est changé de chaque côté.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Range of RZ to either side.</source>
+        <translation>De combien son RZ est changé de chaque côté.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Range of bead widths, as a share of the usual width and spacing, so that contours fill a region evenly and beads in thin places match its width.</source>
+        <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
+        <source>Range of each joint on this curve; red beyond a limit</source>
+        <translation>D&apos;où à où va chaque articulation sur cette courbe ; rouge au-delà d&apos;une limite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/bars.py"/>
+        <source>Range of each joint, its distance to the nearer limit, and its speed as a share of the maximum</source>
+        <translation>Plage de chaque articulation, sa distance à la limite la plus proche, et sa vitesse en part du maximum</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Range of x to either side.</source>
+        <translation>De combien son x est changé de chaque côté.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Range of y to either side.</source>
+        <translation>De combien son y est changé de chaque côté.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Range of z to either side.</source>
+        <translation>De combien son z est changé de chaque côté.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
@@ -4882,6 +5037,11 @@
         <translation>Lire le texte…</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
+        <source>Reads measured beads from a file of comma separated values</source>
+        <translation>Prend les cordons qui ont été mesurés dans un fichier de valeurs séparées par des virgules</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
         <source>Remarks</source>
         <translation>Remarques</translation>
@@ -4890,6 +5050,11 @@
         <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
         <source>Remove</source>
         <translation>Retirer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
+        <source>Removes the selected feature from this toolpath</source>
+        <translation>Retire l&apos;élément choisi de cette trajectoire d&apos;outil</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/context_menu.py"/>
@@ -4902,9 +5067,24 @@
         <translation>Répéter</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Required machining allowance around the whole part: the deposit is predicted and compared with the part; none: no comparison.</source>
+        <translation>De combien le dépôt doit dépasser la pièce partout, pour être usiné : sa forme est prédite et comparée à la pièce ; rien : elle ne l&apos;est pas.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
+        <source>Reset to the planned curve</source>
+        <translation>Revenir à la courbe planifiée</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>Result</source>
         <translation>Résultat</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Retract distance along the tool axis between beads.</source>
+        <translation>De combien l&apos;outil est retiré le long de son axe entre les cordons.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -4933,23 +5113,28 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>Robots with a positioner: largest angle between the tool axis and the vertical of the cell while depositing; the positioner turns the part so far. 180 deg: it stands still.</source>
-        <translation>Robots avec positionneur : plus grand angle entre l&apos;axe de l&apos;outil et la verticale de la cellule pendant le dépôt ; le positionneur tourne la pièce en conséquence. 180 deg : il reste immobile.</translation>
+        <source>Robots with a positioner: largest angle between the tool axis and the vertical of the cell while depositing; the positioner turns the part to keep it. 180 deg: it does not move.</source>
+        <translation>Robots avec positionneur : plus grand angle entre l&apos;axe de l&apos;outil et la verticale de la cellule pendant le dépôt ; le positionneur tourne la pièce pour le tenir. 180 deg : il ne bouge pas.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot&apos;s base frame; more than one with ; between.</source>
-        <translation>Robots : axes à côté d&apos;eux qui portent la pièce ou le robot, par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z en mm, RX RY RZ en deg de la base dans le monde, qui est le repère de base du robot ; plusieurs séparés par ;.</translation>
+        <source>Robots: deposition point, with its Z towards the tool; with the tool on the robot, the fixed platform. In the manufacturer&apos;s base frame.</source>
+        <translation>Robots : là où sort le dépôt, son Z pointant vers l&apos;outil ; avec l&apos;outil sur le robot, le plateau fixe. Dans le repère de base du constructeur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: file of the torch as closed solids, mm, its tip at the origin, Z out of the nozzle; what lies beyond the length of the nozzle keeps the arm&apos;s clearance as links do.</source>
-        <translation>Robots : fichier de la torche en solides fermés, en mm, sa pointe à l&apos;origine, Z sortant de la buse ; ce qui dépasse la longueur de la buse garde la distance du bras comme les segments.</translation>
+        <source>Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, the base frame of the robot; separate several with ;.</source>
+        <translation>Robots : axes à côté d&apos;eux qui portent la pièce ou le robot, par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z en mm, RX RY RZ en deg de la base dans le monde, qui est le repère de base du robot ; plusieurs séparés par ;.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: how far the links stay from part, deposit, platform, fixtures and nozzle, rapids included; left out, planning does not look at them.</source>
-        <translation>Robots : distance que les corps du bras gardent à la pièce, au dépôt, à la plateforme, aux montages et à la buse, déplacements rapides compris ; sans valeur, la planification ne les regarde pas.</translation>
+        <source>Robots: file of the torch as closed solids, mm, with the tip at the origin and Z out of the nozzle; parts above the length of the nozzle keep the arm clearance, like links.</source>
+        <translation>Robots : fichier de la torche en solides fermés, mm, la pointe à l&apos;origine et Z sortant de la buse ; les parties au-dessus de la longueur de la buse gardent le dégagement du bras, comme les corps.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Robots: obstacles in the cell that nozzle, part and links must clear, such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg of the origin of the file, or of the centre of the box, in the manufacturer&apos;s base frame.</source>
+        <translation>Robots : obstacles dans la cellule que buse, pièce et corps évitent, comme : table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du centre de la boîte, dans le repère de base du fabricant.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -4958,13 +5143,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: what stands in the cell, which nozzle, part and links are kept clear of, such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg of the file&apos;s origin, or of the middle of the box, in the maker&apos;s base frame.</source>
-        <translation>Robots : ce qui se trouve dans la cellule et que la buse, la pièce et les segments évitent, par exemple : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du milieu de la boîte, dans le repère de base du constructeur.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: where the deposit comes out, its Z pointing to the tool; with the tool on the robot, the fixed platform. In the maker&apos;s base frame.</source>
-        <translation>Robots : là où sort le dépôt, son Z pointant vers l&apos;outil ; avec l&apos;outil sur le robot, le plateau fixe. Dans le repère de base du constructeur.</translation>
+        <source>Robots: smallest distance between the links and part, deposit, platform, fixtures and nozzle, rapids included; without it, planning ignores the links.</source>
+        <translation>Robots : plus petite distance entre les corps et pièce, dépôt, plateau, montages et buse, rapides compris ; sans elle, la planification ignore les corps.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -4980,11 +5160,6 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Rotary</source>
         <translation>Rotatif</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Rotary table only: which of the two turning axes, counted from the torch, stands still (four axes).</source>
-        <translation>Plateau rotatif seulement : lequel des deux axes de rotation, comptés à partir de la torche, reste immobile (quatre axes).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -5078,13 +5253,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Schedule that is sent there, without a stop.</source>
+        <source>Schedule number with which the welder or extruder deposits beads; program.schedule defines how it is sent.</source>
+        <translation>Numéro qui dit au poste de soudage ou à l&apos;extrudeuse comment déposer les cordons ; program.schedule dit comment il est transmis.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Schedule to send there, without a stop.</source>
         <translation>Programme de soudage qui y est transmis, sans arrêt.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Seam</source>
         <translation>Couture</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <source>Searches for positions of the part, its positioner or the deposition point, and shows the workspace of the robot</source>
+        <translation>Cherche des positions de la pièce, de son positionneur ou du point de dépôt, et montre l&apos;espace de travail du robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/plots/process.py"/>
@@ -5108,7 +5293,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/proposal.py"/>
-        <source>Select also, with Ctrl, the part that it grows on.</source>
+        <source>Select also, with Ctrl, the part it grows on.</source>
         <translation>Sélectionnez aussi, avec Ctrl, la pièce sur laquelle il croît.</translation>
     </message>
     <message>
@@ -5117,19 +5302,19 @@
         <translation>Sélectionnez la forme à déposer, ou ses faces, et appuyez sur Choisir.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Set of joint limits of the machine file to use.</source>
+        <translation>Quel jeu de limites articulaires du fichier machine vaut.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Sets the travel speed so that beads keep their width in bends: none, csw (steel, Dai 2020), li-2025 (aluminium), or the path of a calibration table.</source>
-        <translation>Règle la vitesse d&apos;avance pour que les cordons gardent leur largeur dans les courbes : none, csw (acier, Dai 2020), li-2025 (aluminium), ou le chemin d&apos;une table d&apos;étalonnage.</translation>
+        <source>Settings of bead classes (first_layer, contour, fill, closing, link, wall), such as: contour: travel_speed 8, schedule 3; fill: lead 5; or none.</source>
+        <translation>Ce qui diffère pour des classes de cordons (first_layer, contour, fill, closing, link, wall), par exemple : contour : travel_speed 8, schedule 3 ; fill : lead 5 ; ou none.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Setup</source>
         <translation>Installation</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
-        <source>Several features: one after the other, or of all layers the lowest first</source>
-        <translation>Plusieurs éléments : l&apos;un après l&apos;autre, ou de toutes les couches la plus basse d&apos;abord</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -5138,18 +5323,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Share of the area inside of the walls that beads fill: their length times their spacing.</source>
-        <translation>Part de la surface à l&apos;intérieur des contours que les cordons remplissent : leur longueur multipliée par leur écartement.</translation>
+        <source>Shape of the layers: parallel planes; surfaces at equal distances from the support, measured through the part, so that no support material is needed (geodesic); surfaces at equal straight distances from it (offset); or planes normal to a guide curve (along).</source>
+        <translation>Forme des couches : plans parallèles ; surfaces à égale distance de l&apos;appui, mesurée à travers la pièce, si bien qu&apos;aucun support n&apos;est nécessaire (geodesic) ; surfaces à égale distance droite de lui (offset) ; ou plans normaux à une courbe guide (along).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Share of the layer height by which layers along a guide may be higher or lower beside it.</source>
-        <translation>Part de la hauteur de couche dont les couches le long d&apos;un guide peuvent être plus hautes ou plus basses à côté de lui.</translation>
+        <source>Share of the area inside the walls that beads fill: their length times their spacing.</source>
+        <translation>Part de la surface à l&apos;intérieur des contours que les cordons remplissent : leur longueur multipliée par leur écartement.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Share of the layer height by which the local distance of smooth layers may differ; of iso-parameter layers, before there is a warning.</source>
-        <translation>Part de la hauteur de couche dont la distance locale des couches smooth peut différer ; pour les couches iso-parameter, avant un avertissement.</translation>
+        <source>Share of the layer height by which the local distance of smooth layers may differ; for iso-parameter layers, the limit for a warning.</source>
+        <translation>Part de la hauteur de couche dont la distance locale des couches smooth peut s&apos;écarter ; pour les couches iso-parameter, la limite avant un avertissement.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Share of the layer height by which the local height of layers along a guide may differ.</source>
+        <translation>Part de la hauteur de couche dont la hauteur locale des couches le long d&apos;un guide peut s&apos;écarter.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -5158,13 +5348,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Share of the points, those farthest off, that the fit leaves out.</source>
+        <source>Share of the points, the farthest, that the fit ignores.</source>
         <translation>Part des points, les plus écartés, que l&apos;ajustement laisse de côté.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Shielding gas; carried along.</source>
+        <source>Shielding gas; copied to the report.</source>
         <translation>Gaz de protection ; transmis tel quel.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Shift of the start from layer to layer.</source>
+        <translation>De combien le départ se déplace d&apos;une couche à l&apos;autre.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -5173,12 +5368,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Shoulder, elbow and wrist of this joint path; cell: as the cell says.</source>
-        <translation>Épaule, coude et poignet de cette trajectoire articulaire ; cell : ce que dit la cellule.</translation>
+        <source>Shoulder, elbow and wrist of the joint path; cell: as set in the cell.</source>
+        <translation>Épaule, coude et poignet de la trajectoire articulaire ; cell : comme dans la cellule.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
-        <source>Shoulder, elbow and wrist; behind it the share of the map that it reaches within its limits</source>
+        <source>Shoulder, elbow and wrist, with the share of the map within reach and limits</source>
         <translation>Épaule, coude et poignet ; derrière, la part de la carte qu&apos;elle atteint dans ses limites</translation>
     </message>
     <message>
@@ -5188,7 +5383,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/dock.py"/>
-        <source>Show all there is; so does a double click</source>
+        <source>Show everything, also with a double click</source>
         <translation>Montrer tout ; un double-clic aussi</translation>
     </message>
     <message>
@@ -5207,14 +5402,14 @@
         <translation>Montrer la machine</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <source>Show the workspace of the robot: blue for few directions, yellow for all directions</source>
+        <translation>Montrer l&apos;espace de travail du robot : bleu pour peu de directions, jaune pour toutes</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Show this job only</source>
         <translation>Montrer ce travail seul</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/placement/form.py"/>
-        <source>Show where the robot can hold what it carries: blue in few directions, yellow in all of them</source>
-        <translation>Montrer où le robot peut tenir ce qu&apos;il porte : bleu dans peu de directions, jaune dans toutes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
@@ -5233,18 +5428,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/cell.py"/>
-        <source>Shows the machine at rest while the panel is open, the nozzle upright on the highest point of the path</source>
+        <source>Shows the machine at rest while the panel is open, with the nozzle upright on the highest point of the path</source>
         <translation>Montre la machine au repos tant que le panneau est ouvert, la buse droite sur le point le plus haut de la trajectoire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Shows the path against the rotation about the tool; the curve can be drawn by hand</source>
+        <source>Shows the path and the tool rotation as a map; the curve can be edited by hand</source>
         <translation>Montre la trajectoire en fonction de la rotation autour de l&apos;outil ; la courbe peut être tracée à la main</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Side</source>
         <translation>Côté</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Side of the faces to cover: the side of their normals, the outside of a solid (front), or the other side of faces without a solid (back).</source>
+        <translation>Le côté des faces qui est recouvert : celui vers lequel pointent leurs normales, l&apos;extérieur d&apos;un solide (front), ou l&apos;autre côté de faces qui ne sont d&apos;aucun solide (back).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
@@ -5273,7 +5473,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
-        <source>Six axes that turn, without a spherical wrist.</source>
+        <source>Six revolute axes, without a spherical wrist.</source>
         <translation>Six axes rotatifs, sans poignet sphérique.</translation>
     </message>
     <message>
@@ -5283,13 +5483,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Slowest travel speed at which the material is laid; slower beads are reported.</source>
-        <translation>Vitesse d&apos;avance la plus lente à laquelle le matériau est déposé ; les cordons plus lents sont signalés.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Smallest condition allowed; auto: at each point a quarter of its value at RZ = 0, but at least 0.02.</source>
-        <translation>Plus petite condition permise ; auto : en chaque point un quart de sa valeur à RZ = 0, mais au moins 0.02.</translation>
+        <source>Slowest travel speed for the material; slower beads are reported.</source>
+        <translation>Vitesse d&apos;avance la plus lente pour le matériau ; les cordons plus lents sont signalés.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -5297,19 +5492,24 @@
         <translation>Plus petite condition du jacobien pendant le dépôt.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Smooth</source>
-        <translation>Lisser</translation>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Smallest inverse condition number allowed; auto: at each point a quarter of its value at RZ = 0, but at least 0.02.</source>
+        <translation>Plus petite condition permise ; auto : en chaque point un quart de sa valeur à RZ = 0, mais au moins 0.02.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
+        <source>Smallest joint margin: {:.1f} %, of {} in layer {}</source>
+        <translation>Marge articulaire la plus faible : {:.1f} %, de {}, couche {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>So many layers under tops and over bottoms are filled at 100 %.</source>
-        <translation>Nombre de couches remplies à 100 % sous les faces supérieures et au-dessus des faces inférieures.</translation>
+        <source>Smallest width of beads in planes where neighbours leave less space, as a share of their usual width; 100 %: beads are never narrowed, and layers get higher there.</source>
+        <translation>Plus petite largeur des cordons dans des plans là où les voisins laissent moins de place, en part de leur largeur habituelle ; 100 % : les cordons ne sont jamais rétrécis, et les couches y deviennent plus hautes.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>So many of the best poses are planned with all points, until one is feasible.</source>
-        <translation>Autant des meilleures poses sont planifiées avec tous les points, jusqu&apos;à ce que l&apos;une soit réalisable.</translation>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Smooth</source>
+        <translation>Lisser</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -5342,8 +5542,13 @@
         <translation>Solides sur moyeu</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
+        <source>Solids or closed meshes to deposit, one after the other; click one again to remove it.</source>
+        <translation>Les solides ou maillages fermés à déposer, l&apos;un après l&apos;autre ; un nouveau clic sur l&apos;un le retire.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Solids that touch or overlap are deposited as one (auto), or each by itself (none).</source>
+        <source>Solids that touch or overlap are deposited as one (auto), or separately (none).</source>
         <translation>Les solides qui se touchent ou se recouvrent sont déposés comme un seul (auto), ou chacun pour soi (none).</translation>
     </message>
     <message>
@@ -5375,6 +5580,21 @@
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>Source is missing; choose the shape to deposit, or some of its faces</source>
         <translation>Source manque ; choisissez la forme à déposer, ou certaines de ses faces</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>Source of the check poses</source>
+        <translation>D&apos;où viennent les poses de contrôle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Source of the geometry</source>
+        <translation>D&apos;où vient la géométrie</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Source of the material data; copied to the report.</source>
+        <translation>D&apos;où viennent les valeurs du matériau ; repris dans le rapport.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -5412,26 +5632,6 @@
         <translation>Vitesse entre les cordons.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Speed of the torch along the deposit while depositing.</source>
-        <translation>Vitesse de la torche le long du dépôt.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Speed of the torch there.</source>
-        <translation>Vitesse de la torche à cet endroit.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Speed of the wire: constant, or in proportion to the travel speed that a bead model sets, so that beads keep their section.</source>
-        <translation>Vitesse du fil : constante, ou proportionnelle à la vitesse d&apos;avance que règle un modèle de cordon, pour que les cordons gardent leur section.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Speed of the wire; auto: what makes beads of their width and the layer height at the travel speed, or what the beads of the bead model were made with. 0: no wire.</source>
-        <translation>Vitesse du fil ; auto : celle qui fait des cordons de leur largeur et de la hauteur de couche à la vitesse d&apos;avance, ou celle des cordons du modèle de cordon. 0 : pas de fil.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>Spherical defect</source>
         <translation>Défaut de sphéricité</translation>
@@ -5448,18 +5648,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Stacking direction x y z in the part&apos;s coordinates, from the first layer to the last; auto: the one with the least area over nothing, of these the one with the least height.</source>
-        <translation>Direction d&apos;empilement x y z dans les coordonnées de la pièce, de la première couche à la dernière ; auto : celle qui a le moins d&apos;aire au-dessus du vide, et parmi celles-ci la moins haute.</translation>
+        <source>Stacking direction x y z in part coordinates, from the first layer to the last; auto: the direction with the least overhanging area, then the least height.</source>
+        <translation>Direction d&apos;empilement x y z dans les coordonnées de la pièce, de la première couche à la dernière ; auto : la direction avec la plus petite aire en surplomb, puis la plus petite hauteur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Stand off</source>
         <translation>Distance de buse</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Stand-off of the nozzle; carried along.</source>
-        <translation>Distance de la buse à la pièce ; transmise telle quelle.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -5482,19 +5677,9 @@
         <translation>Standard : Rot(z, theta) Trans(z, d) Trans(x, a) Rot(x, alpha)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
-        <source>Stands on</source>
-        <translation>Repose sur</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Start</source>
         <translation>Début</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
-        <source>Start again from what was planned</source>
-        <translation>Repartir de ce qui était planifié</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -5510,6 +5695,21 @@
         <location filename="../../freecad_am/objects/solid_feature.py"/>
         <source>Start faces</source>
         <translation>Faces de départ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
+        <source>Start faces of geodesic and offset layers; none: the base of the solid.</source>
+        <translation>Faces de départ des couches geodesic et offset ; aucune : la base du solide.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Start of beads: at the seam (aligned), or away from the starts of neighbouring contours and layers, with every second layer of lines reversed (spread).</source>
+        <translation>Départ des cordons : à la couture (aligned), ou à l&apos;écart des départs des contours et couches voisins, les lignes d&apos;une couche sur deux étant inversées (spread).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Start of closed beads.</source>
+        <translation>Là où commencent les cordons fermés.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -5547,9 +5747,29 @@
         <translation>Pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Step of RX, RY and RZ.</source>
+        <translation>Entre deux valeurs de RX, RY ou RZ.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Step of x, y and z.</source>
+        <translation>Entre deux valeurs de x, y ou z.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/background/busy.py"/>
+        <source>Stops the computation; the document stays unchanged</source>
+        <translation>Arrête le calcul ; le document reste tel qu&apos;il était avant</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
         <source>Substrate</source>
         <translation>Substrat</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <source>Substrate: click it with Ctrl in the tree or the 3D view</source>
+        <translation>Substrat : cliquez-le avec Ctrl dans l&apos;arbre ou la vue 3D</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -5572,63 +5792,18 @@
         <translation>Tableaux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
-        <source>Takes the beads that were measured from a file of comma separated values</source>
-        <translation>Prend les cordons qui ont été mesurés dans un fichier de valeurs séparées par des virgules</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
-        <source>Takes the chosen feature out of this toolpath</source>
-        <translation>Retire l&apos;élément choisi de ce parcours</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Takes the selected edges, wires, sketches or tables to be laid as beads</source>
-        <translation>Prend les arêtes, fils, esquisses ou tableaux sélectionnés pour les déposer en cordons</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Takes the selected faces as a wall to be deposited on the other object that is selected</source>
-        <translation>Prend les faces sélectionnées comme paroi à déposer sur l&apos;autre objet sélectionné</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Takes the selected faces to be covered with layers of beads</source>
-        <translation>Prend les faces sélectionnées pour les recouvrir de couches de cordons</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Takes the selected shape of revolution to be deposited</source>
-        <translation>Prend la forme de révolution sélectionnée pour la déposer</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Takes the selected solids to be deposited in plane layers</source>
-        <translation>Prend les solides sélectionnés à déposer en couches planes</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Takes the selected solids to be deposited on the cylinder or cone that is selected last</source>
-        <translation>Prend les solides sélectionnés pour les déposer sur le cylindre ou le cône sélectionné en dernier</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
-        <source>Takes what is selected now, or else what is clicked next. {}</source>
-        <translation>Prend la sélection actuelle, sinon le prochain objet cliqué. {}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Temperature</source>
         <translation>Température</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Temperature in degrees Celsius that a solid, or a wall, has to be below before its next layer; the torch waits above where that begins.</source>
+        <source>Temperature in degrees Celsius below which a solid or a wall must cool before its next layer; the torch waits above the start of that layer.</source>
         <translation>Température en degrés Celsius sous laquelle un solide, ou une paroi, doit être avant sa couche suivante ; la torche attend au-dessus de son départ.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Temperature in degrees Celsius; carried along.</source>
+        <source>Temperature in degrees Celsius; copied to the report.</source>
         <translation>Température en degrés Celsius ; transmise telle quelle.</translation>
     </message>
     <message>
@@ -5638,7 +5813,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
-        <source>The bead whose polynomial is shown; a click on the map chooses one</source>
+        <source>The bead whose polynomial is shown; click the map to choose one</source>
         <translation>Le cordon dont le polynôme est montré ; un clic sur la carte en choisit un</translation>
     </message>
     <message>
@@ -5658,7 +5833,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>The controller the program is written for, or none.</source>
+        <source>The controller of the program, or none.</source>
         <translation>La commande pour laquelle le programme est écrit, ou none.</translation>
     </message>
     <message>
@@ -5678,7 +5853,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/features/hub.py"/>
-        <source>The cylinder or cone of the hub to grow on, or the whole hub: then its surface is found under each solid.</source>
+        <source>The cylinder or cone of the hub, or the whole hub: then the surface under each solid is detected.</source>
         <translation>Le cylindre ou le cône du moyeu sur lequel croître, ou le moyeu entier : alors sa surface est trouvée sous chaque solide.</translation>
     </message>
     <message>
@@ -5687,9 +5862,9 @@
         <translation>Les cylindres et cônes du moyeu sur lesquels croître ; trouvés s&apos;ils sont omis.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>The deposit is switched on the move itself, this long before a bead&apos;s start or end is reached: the time that its equipment takes. None: where the robot stands.</source>
-        <translation>Le dépôt est commuté pendant le mouvement même, ce temps avant que le début ou la fin d&apos;un cordon soit atteint : celui que met son équipement. Sans indication : là où le robot est à l&apos;arrêt.</translation>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>The deposit is on the part</source>
+        <translation>Ce qui est déposé se trouve sur la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
@@ -5708,8 +5883,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
-        <source>The displacement of the joints (Chalvin 2020, eq. 17), and times that of the plan</source>
-        <translation>Le déplacement des articulations (Chalvin 2020, éq. 17), et son rapport à celui planifié</translation>
+        <source>The displacement of the joints (Chalvin 2020, eq. 17), and its ratio to the plan</source>
+        <translation>Le déplacement des articulations (Chalvin 2020, éq. 17), et son rapport au plan</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/program/window.py"/>
@@ -5723,38 +5898,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/stage.py"/>
-        <source>The document or object of this panel is gone; cancel and open the panel again.</source>
-        <translation>Le document ou l&apos;objet de ce panneau a disparu ; annulez et ouvrez le panneau de nouveau.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
-        <source>The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the solid.</source>
-        <translation>Les arêtes, le fil ou l&apos;esquisse auxquels les couches le long d&apos;un guide sont normales ; aucun : la ligne médiane du solide.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
-        <source>The edges, wire, sketch or table of points to lay as beads.</source>
-        <translation>Les arêtes, le fil, l&apos;esquisse ou le tableau de points à déposer en cordons.</translation>
+        <source>The document or object in this panel was deleted; cancel and open the panel again.</source>
+        <translation>Le document ou l&apos;objet de ce panneau a été supprimé ; annulez et ouvrez le panneau de nouveau.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/curves_feature.py"/>
-        <source>The edges, wire, sketch or table of points to lay as beads; faces beside edges give the directions.</source>
+        <source>The edges, wire, sketch or table of points to deposit as beads; faces next to edges set the directions.</source>
         <translation>Les arêtes, le fil, l&apos;esquisse ou le tableau de points à déposer en cordons ; des faces à côté des arêtes donnent les directions.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
-        <source>The faces on which the first of geodesic and offset layers lies; none: where they stand.</source>
-        <translation>Les faces sur lesquelles repose la première des couches géodésiques ou décalées ; aucune : là où elles sont posées.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/cladding_feature.py"/>
         <source>The faces to cover.</source>
         <translation>Les faces à recouvrir.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
-        <source>The faces to cover; of an object that is not a solid all of them, where none is picked.</source>
-        <translation>Les faces à recouvrir ; d&apos;un objet qui n&apos;est pas un solide, toutes, si aucune n&apos;est choisie.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -5773,7 +5928,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
-        <source>The file to write; its ending follows the kind</source>
+        <source>The file to write; its extension follows the format</source>
         <translation>Le fichier à écrire ; son extension suit le type</translation>
     </message>
     <message>
@@ -5783,7 +5938,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/form.py"/>
-        <source>The first layer that is shown</source>
+        <source>The first layer shown</source>
         <translation>La première couche montrée</translation>
     </message>
     <message>
@@ -5793,8 +5948,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
-        <source>The frame of the first row in that of the base, and the flange in that of the last row. mm and deg; about X first, then Y, then Z of the outer frame.</source>
-        <translation>Le repère de la première ligne dans celui de la base, et la bride dans celui de la dernière ligne. mm et deg ; d&apos;abord autour de X, puis Y, puis Z du repère extérieur.</translation>
+        <source>The fixed link</source>
+        <translation>Le corps fixe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>The flange link, with Z out of the flange: tool0 in ROS-Industrial files</source>
+        <translation>Le corps de la bride, Z sortant de la bride : tool0 dans les fichiers ROS-Industrial</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
@@ -5808,12 +5968,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/after.py"/>
-        <source>The job is ready. Simulate… plays it; double-click Program to read it, Cell to set your machine up.</source>
+        <source>The job is ready. Simulate… plays it; double-click Program to read it, Cell to configure your machine.</source>
         <translation>Le travail est prêt. Simuler… le joue ; double-cliquez sur le programme pour le lire, sur la cellule pour régler votre machine.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/after.py"/>
-        <source>The joint path is ready; no post writes a program for this machine and set-up yet. Simulate… plays it, Export Path… writes its points as a table.</source>
+        <source>The joint path is ready, but no post writes a program for this machine and setup yet. Simulate… plays it, Export Path… writes its points as a table.</source>
         <translation>La trajectoire articulaire est prête ; aucun post-processeur n&apos;écrit encore de programme pour cette machine et cette configuration. Simuler… la joue, Exporter la trajectoire… écrit ses points dans un tableau.</translation>
     </message>
     <message>
@@ -5828,7 +5988,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
-        <source>The largest share of a joint&apos;s greatest speed at the travel speed</source>
+        <source>The largest joint speed at the travel speed, as a share of its maximum</source>
         <translation>La plus grande part de la vitesse maximale d&apos;une articulation à la vitesse d&apos;avance</translation>
     </message>
     <message>
@@ -5838,43 +5998,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/form.py"/>
-        <source>The last layer that is shown</source>
+        <source>The last layer shown</source>
         <translation>La dernière couche montrée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/form.py"/>
-        <source>The last point that is shown, counted from 0 in the last layer</source>
+        <source>The last point shown, counted from 0 in the last layer</source>
         <translation>Le dernier point montré, compté à partir de 0 dans la dernière couche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
-        <source>The layer that is shown; -1 for all of them</source>
-        <translation>La couche regardée ; -1 pour toutes</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
-        <source>The least share of half a joint&apos;s range that is left to a limit</source>
-        <translation>La plus petite part de la demi-plage d&apos;une articulation qui reste jusqu&apos;à une limite</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
-        <source>The least sigma_min / sigma_max of the Jacobian</source>
-        <translation>Le plus petit sigma_min / sigma_max du jacobien</translation>
+        <source>The layer shown; -1 for all layers</source>
+        <translation>La couche montrée ; -1 pour toutes les couches</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>The limits of J3 as it is shown can be given on the page before.</source>
+        <source>The limits of J3 as shown can be entered on the previous page.</source>
         <translation>Les limites de J3 tel qu&apos;il est montré peuvent être données à la page précédente.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
-        <source>The link that stands still</source>
-        <translation>Le corps qui reste immobile</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
-        <source>The link whose frame is the flange, with its Z out of it: tool0 in files of ROS-Industrial</source>
-        <translation>Le corps dont le repère est la bride, avec son Z hors d&apos;elle : tool0 dans les fichiers de ROS-Industrial</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/post.py"/>
@@ -5883,32 +6023,32 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>The machine does not give these poses, and no sign, zero, coupling or frame alone explains it. Look for a slip of typing, the way angles are written, the tool frame, and lengths.</source>
-        <translation>La machine ne donne pas ces poses, et aucun signe, zéro, couplage ou repère seul ne l&apos;explique. Cherchez une faute de frappe, l&apos;écriture des angles, le repère outil, et les longueurs.</translation>
+        <source>The machine does not reproduce these poses, and no single sign, zero, coupling or frame explains it. Check for typing errors, the angle convention, the tool frame, and lengths.</source>
+        <translation>La machine ne donne pas ces poses, et aucun signe, zéro, couplage ou repère ne l&apos;explique à lui seul. Cherchez des fautes de frappe, et vérifiez la convention d&apos;angles, le repère outil et les longueurs.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>The machine does not give these poses. It would if:</source>
+        <source>The machine does not reproduce these poses. It would if:</source>
         <translation>La machine ne donne pas ces poses. Elle le ferait si :</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>The machine does not give these poses; three or more would show what is wrong.</source>
-        <translation>La machine ne donne pas ces poses ; ce qui est faux peut se dire à partir de trois ou plus.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>The machine gives all {} poses, within {} mm.</source>
-        <translation>La machine donne toutes les {} poses, à {} mm près.</translation>
+        <source>The machine does not reproduce these poses; enter at least three to locate the error.</source>
+        <translation>La machine ne donne pas ces poses ; entrez-en au moins trois pour localiser l&apos;erreur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
-        <source>The machine is kept in the folder of your own machines; cells and jobs know it by its name.</source>
+        <source>The machine is saved in the folder of your own machines; cells and jobs refer to it by this name.</source>
         <translation>La machine est gardée dans le dossier de vos propres machines ; cellules et travaux la connaissent par son nom.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>The machine reproduces all {} poses, within {} mm.</source>
+        <translation>La machine donne toutes les {} poses, à {} mm près.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/new_job/fields.py"/>
-        <source>The machine that deposits, or a saved cell; the program is written for its controller</source>
+        <source>The machine that deposits, or a saved cell; the program matches its controller</source>
         <translation>La machine qui dépose, ou une cellule enregistrée ; le programme est écrit pour sa commande</translation>
     </message>
     <message>
@@ -5928,8 +6068,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
-        <source>The next page compares this with poses of your controller, and says what is likely to be wrong: leave what you do not know as it is.</source>
-        <translation>La page suivante compare ceci à des poses de votre commande, et dit ce qui est probablement faux : laissez tel quel ce que vous ne savez pas.</translation>
+        <source>The next page compares these values with poses of your controller and points out likely errors: leave unknown values as they are.</source>
+        <translation>La page suivante compare ces valeurs avec des poses de votre commande et indique les erreurs probables : laissez les valeurs inconnues telles quelles.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -5942,11 +6082,6 @@
         <translation>La buse reste dégagée pendant les rapides</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>The number of a schedule is set on a group output; named by the arc instructions, which then switch the deposit; or is that of a program that is called.</source>
-        <translation>Le numéro d&apos;un programme de soudage est mis sur une sortie de groupe ; nommé par les instructions d&apos;arc, qui commutent alors le dépôt ; ou est celui d&apos;un programme appelé.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>The outputs and inputs are linked to the process</source>
         <translation>Les sorties et entrées sont liées au procédé</translation>
@@ -5957,34 +6092,19 @@
         <translation>La vitesse générale est à 100 %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>The part lies inside the predicted deposit, by its machining allowance</source>
-        <translation>La pièce est à l&apos;intérieur du dépôt prédit, avec sa surépaisseur d&apos;usinage</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
-        <source>The part that they are laid on; none is needed on a platform.</source>
-        <translation>La pièce sur laquelle ils sont déposés ; inutile sur un plateau.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
-        <source>The part that they stand on; none is needed on a platform.</source>
-        <translation>La pièce sur laquelle ils reposent ; aucune n&apos;est nécessaire sur un plateau.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
-        <source>The path, or an external axis at the point that was clicked last, the other axes as planned there</source>
+        <source>The path, or an external axis at the point clicked last, with the other axes as planned there</source>
         <translation>La trajectoire, ou un axe externe au dernier point cliqué, les autres axes comme prévu à cet endroit</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>The pendant&apos;s tool frame on the flange (mm, deg); zeros for the flange itself</source>
-        <translation>Le repère outil du pupitre sur la bride (mm, deg) ; des zéros pour la bride elle-même</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>The placement was closed: {}</source>
         <translation>Le placement a été fermé : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>The plot shows an earlier state; recompute the document.</source>
+        <translation>Fait à partir d&apos;un état antérieur ; recalculez le document.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/dock.py"/>
@@ -5993,13 +6113,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>The predicted deposit holds what the wire feeds</source>
-        <translation>Le dépôt prédit contient ce que le fil apporte</translation>
+        <source>The predicted deposit covers the part and its machining allowance</source>
+        <translation>La pièce est à l&apos;intérieur du dépôt prédit, avec sa surépaisseur d&apos;usinage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/preview.py"/>
-        <source>The preview is being computed.</source>
-        <translation>L&apos;aperçu est en cours de calcul.</translation>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>The predicted deposit holds what the wire feeds</source>
+        <translation>Le dépôt prédit contient ce que le fil apporte</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/dock.py"/>
@@ -6012,19 +6132,14 @@
         <translation>Le robot tient la durée de chaque mouvement à travers les lissages</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>The same layer of all solids on a base in turn, around the axis, the same ring of each and the inner ones first; or solid by solid (feature).</source>
-        <translation>La même couche de tous les solides d&apos;une base tour à tour, autour de l&apos;axe, le même anneau de chacun et les intérieurs d&apos;abord ; ou solide par solide (feature).</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>The same motion without deposit.</source>
         <translation>Le même mouvement sans dépôt.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/scan.py"/>
-        <source>The scan was made after this layer, counted from 0: the layers above are fitted to it; none: it is of the bare substrate.</source>
-        <translation>La numérisation a été faite après cette couche, comptée à partir de 0 : les couches au-dessus y sont ajustées ; aucune : elle est du substrat nu.</translation>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>The schedule number is set on a group output; or arc instructions name it and switch the deposit; or it selects the program to call.</source>
+        <translation>Le numéro de programme de soudage est mis sur une sortie groupée ; ou les instructions d&apos;arc le nomment et commutent le dépôt ; ou il choisit le programme à appeler.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
@@ -6032,24 +6147,24 @@
         <translation>La forme à déposer, ou certaines de ses faces.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>The side of the faces that is covered: where their normals point, outwards of a solid (front), or the other side of faces that are of no solid (back).</source>
-        <translation>Le côté des faces qui est recouvert : celui vers lequel pointent leurs normales, l&apos;extérieur d&apos;un solide (front), ou l&apos;autre côté de faces qui ne sont d&apos;aucun solide (back).</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/simulation/dock.py"/>
         <source>The simulation has ended: {why}.</source>
         <translation>La simulation est terminée : {why}.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
+        <source>The smallest distance to a limit, as a share of half the range of the joint</source>
+        <translation>La plus petite part de la demi-plage d&apos;une articulation qui reste jusqu&apos;à une limite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
+        <source>The smallest inverse condition number of the Jacobian, sigma_min / sigma_max</source>
+        <translation>Le plus petit sigma_min / sigma_max du jacobien</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
         <source>The solid part or closed mesh that the wall grows on; none is needed where edges are chosen.</source>
         <translation>La pièce solide ou le maillage fermé sur lequel croît la paroi ; inutile si des arêtes sont choisies.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
-        <source>The solids or closed meshes to deposit, one after the other; a click on one again leaves it out.</source>
-        <translation>Les solides ou maillages fermés à déposer, l&apos;un après l&apos;autre ; un nouveau clic sur l&apos;un le retire.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
@@ -6063,7 +6178,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
-        <source>The surfaces that solids stand on.</source>
+        <source>The surfaces below the solids.</source>
         <translation>Les surfaces sur lesquelles reposent les solides.</translation>
     </message>
     <message>
@@ -6098,8 +6213,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/form.py"/>
-        <source>The toolpath or joint path to look at</source>
-        <translation>La trajectoire d&apos;outil ou articulaire à regarder</translation>
+        <source>The toolpath or joint path to show</source>
+        <translation>La trajectoire d&apos;outil ou articulaire à montrer</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -6113,8 +6228,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/dock.py"/>
-        <source>The toolpath, joint path or program to look at</source>
-        <translation>La trajectoire d&apos;outil, la trajectoire articulaire ou le programme à regarder</translation>
+        <source>The toolpath, joint path or program to plot</source>
+        <translation>La trajectoire d&apos;outil, trajectoire articulaire ou programme à tracer</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
@@ -6128,17 +6243,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/proposal.py"/>
-        <source>The whole of {} is taken. To take single faces, click several with Ctrl; for a single one, use the panel of Feature or Wall on Part.</source>
+        <source>The whole of {} is used. To use single faces, click several with Ctrl; for a single one, use the panel of Feature or Wall on Part.</source>
         <translation>{} est pris en entier. Pour des faces seules, cliquez-en plusieurs avec Ctrl ; pour une seule, utilisez le panneau d’Élément ou de Paroi sur pièce.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/features/wall.py"/>
-        <source>The whole of {} is taken; Pick takes single faces, click by click.</source>
+        <source>The whole of {} is used; Pick selects single faces, click by click.</source>
         <translation>{} est pris en entier ; Choisir prend des faces seules, clic par clic.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
-        <source>The whole of {} is taken; Pick takes the selected faces only.</source>
+        <source>The whole of {} is used; Pick uses the selected faces only.</source>
         <translation>{} est pris en entier ; Choisir ne prend que les faces sélectionnées.</translation>
     </message>
     <message>
@@ -6177,18 +6292,13 @@
         <translation>Il n&apos;y a pas de trajectoire articulaire à simuler ; faites-en d&apos;abord une.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
-        <source>There is no other feature in this document; make it first.</source>
-        <translation>Il n&apos;y a pas d&apos;autre élément dans ce document ; créez-le d&apos;abord.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/path/dock.py"/>
-        <source>There is no path to look at yet: make a toolpath or a joint path.</source>
-        <translation>Il n&apos;y a pas encore de trajectoire à regarder : faites une trajectoire d&apos;outil ou articulaire.</translation>
+        <source>There is no path to show yet: make a toolpath or a joint path.</source>
+        <translation>Il n&apos;y a pas encore de trajectoire à montrer : créez une trajectoire d&apos;outil ou une trajectoire articulaire.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/suggestions.py"/>
-        <source>There is no post for this machine&apos;s controller yet: all is planned, checked and simulated, but no program is written. Export Path… writes its points as a table.</source>
+        <source>There is no post for this controller yet: the job is planned, checked and simulated, but no program is written. Export Path… writes its points as a table.</source>
         <translation>Il n&apos;y a pas encore de post-processeur pour la commande de cette machine : tout est planifié, vérifié et simulé, mais aucun programme n&apos;est écrit. Exporter une trajectoire… écrit ses points en tableau.</translation>
     </message>
     <message>
@@ -6197,19 +6307,9 @@
         <translation>Il n&apos;y a pas de trajectoire d&apos;outil avec une cellule à placer ; faites-en d&apos;abord une.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
-        <source>There is nothing to compare with in this document; open the part first.</source>
-        <translation>Il n&apos;y a rien à quoi comparer dans ce document ; ouvrez d&apos;abord la pièce.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/plots/dock.py"/>
         <source>There is nothing to plot yet: make a toolpath or a joint path.</source>
         <translation>Il n&apos;y a encore rien à tracer : faites une trajectoire d&apos;outil ou articulaire.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
-        <source>These are proposals of the window for what is made from now on, and its looks. Existing documents, jobs and macros never depend on them.</source>
-        <translation>Ce sont des propositions de la fenêtre pour ce qui est fait désormais, et son aspect. Les documents, travaux et macros existants n&apos;en dépendent jamais.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -6227,18 +6327,28 @@
         <translation>Cette courbe</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
+        <source>This document has no other feature; create it first.</source>
+        <translation>Il n&apos;y a pas d&apos;autre élément dans ce document ; créez-le d&apos;abord.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <source>This document has nothing to compare with; open the part first.</source>
+        <translation>Il n&apos;y a rien à quoi comparer dans ce document ; ouvrez d&apos;abord la pièce.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/simulation/fields.py"/>
-        <source>This is an earlier plan; recompute the document for the present one.</source>
+        <source>This is an earlier plan; recompute the document to update it.</source>
         <translation>C&apos;est une planification antérieure ; recalculez le document pour l&apos;actuelle.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/program/window.py"/>
-        <source>This text is of an earlier plan; do not run it.</source>
+        <source>This text belongs to an earlier plan; do not run it.</source>
         <translation>Ce texte est d&apos;une planification antérieure ; ne l&apos;exécutez pas.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
-        <source>Three axes that slide and two that turn.</source>
+        <source>Three prismatic and two revolute axes.</source>
         <translation>Trois axes de translation et deux de rotation.</translation>
     </message>
     <message>
@@ -6250,6 +6360,21 @@
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>Time</source>
         <translation>Temps</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Time by which the deposit is switched ahead, during the motion, to compensate the delay of the equipment. None: the robot stops to switch.</source>
+        <translation>Durée d&apos;avance de la commutation du dépôt, pendant le mouvement, pour compenser le retard de l&apos;équipement. Aucune : le robot s&apos;arrête pour commuter.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Time by which the deposit is switched off after a bead ends.</source>
+        <translation>Dépôt coupé ce temps après la fin d&apos;un cordon.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Time by which the deposit is switched on before a bead starts.</source>
+        <translation>Dépôt mis en marche ce temps avant le début d&apos;un cordon.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -6308,12 +6433,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>Tool axis turned forward along the bead, from the build direction.</source>
+        <source>Tool axis tilted forward along the bead, from the build direction.</source>
         <translation>Axe de l&apos;outil tourné vers l&apos;avant le long du cordon, à partir de la direction de dépôt.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>Tool axis turned sideways, towards the outside of the wall, from the build direction.</source>
+        <source>Tool axis tilted sideways, towards the outside of the wall, from the build direction.</source>
         <translation>Axe de l&apos;outil tourné de côté, vers l&apos;extérieur de la paroi, à partir de la direction de dépôt.</translation>
     </message>
     <message>
@@ -6322,8 +6447,13 @@
         <translation>Repère outil</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>Tool frame of the pendant on the flange (mm, deg); zeros for the flange itself</source>
+        <translation>Le repère outil du pupitre sur la bride (mm, deg) ; des zéros pour la bride elle-même</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Tool on robot only: points of the part and where the tip has touched them, three or more, which take the place of the deposition point, such as: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5. In the part file and in the maker&apos;s base frame, mm.</source>
+        <source>Tool on robot only: points of the part and the positions where the tip touched them, at least three, which replace the deposition point, such as: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5. In the part file and in the manufacturer&apos;s base frame, mm.</source>
         <translation>Outil sur le robot seulement : points de la pièce et où la pointe les a palpés, trois ou plus, qui remplacent le point de dépôt, par exemple : 0 0 0 = 900.4 2.1 -99.7 ; 100 0 0 = 1000.3 1.2 -99.9 ; 0 80 0 = 901 82 -99.5. Dans le fichier de la pièce et dans le repère de base du constructeur, en mm.</translation>
     </message>
     <message>
@@ -6340,11 +6470,6 @@
         <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Toolpath…</source>
         <translation>Trajectoire d&apos;outil…</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Torch turned outwards about the bead on outer contours.</source>
-        <translation>Torche tournée vers l&apos;extérieur autour du cordon sur les contours extérieurs.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -6367,9 +6492,14 @@
         <translation>Vitesse d&apos;avance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Tries where the part, its positioner or the deposition point can stand, and shows the robot&apos;s reach</source>
-        <translation>Essaie où la pièce, son positionneur ou le point de dépôt peut se trouver, et montre la portée du robot</translation>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Travel speed there.</source>
+        <translation>Vitesse de la torche à cet endroit.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Travel speed while depositing.</source>
+        <translation>Vitesse de la torche le long du dépôt.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
@@ -6388,8 +6518,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/form.py"/>
-        <source>Try all poses beside the window; it can be cancelled</source>
-        <translation>Essayer toutes les poses à côté de la fenêtre ; cela peut être annulé</translation>
+        <source>Try all poses in the background; can be cancelled</source>
+        <translation>Essayer toutes les poses en arrière-plan ; peut être annulé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
@@ -6398,7 +6528,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Turn of the bead within the wall that smooth layers stay below where the band allows.</source>
+        <source>Turn of the bead within the wall that smooth layers stay below if the band allows.</source>
         <translation>Rotation du cordon dans la paroi au-dessous de laquelle restent les couches smooth là où la bande le permet.</translation>
     </message>
     <message>
@@ -6443,8 +6573,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>URScript moves a tool that the flange carries, at its speed; with the part on the robot the tool stands and the speed at the deposition point is another one at every point of the part, which no documented instruction of URScript holds; use `motion: joint`</source>
-        <translation>URScript déplace un outil porté par la bride, à la vitesse de celui-ci ; avec la pièce sur le robot, l&apos;outil est fixe et la vitesse au point de dépôt est une autre en chaque point de la pièce, ce qu&apos;aucune instruction documentée d&apos;URScript ne tient ; utilisez `motion: joint`</translation>
+        <source>URScript programs the speed of a tool on the flange; with the part on the robot the tool is fixed and the speed at the deposition point varies from point to point, which no documented instruction controls; use `motion: joint`</source>
+        <translation>URScript programme la vitesse d&apos;un outil sur la bride ; avec la pièce sur le robot l&apos;outil est fixe et la vitesse au point de dépôt varie d&apos;un point à l&apos;autre, ce qu&apos;aucune instruction documentée ne règle ; utilisez `motion: joint`</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
@@ -6463,7 +6593,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Unit of the measured coordinates; auto: the one that the file names, else mm.</source>
+        <source>Unit of the measured coordinates; auto: the unit in the file, otherwise mm.</source>
         <translation>Unité des coordonnées mesurées ; auto : celle que nomme le fichier, sinon mm.</translation>
     </message>
     <message>
@@ -6473,8 +6603,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
-        <source>Use beads {0} mm wider on either side, by process.bead_width, or leave less of it to machine</source>
+        <source>Use beads {0} mm wider on either side, by process.bead_width, or a smaller allowance</source>
         <translation>Utilisez des cordons plus larges de {0} mm de chaque côté, par process.bead_width, ou laissez moins à usiner</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
+        <source>Use the curve for the joint path, and plan it again</source>
+        <translation>Utiliser la courbe pour la trajectoire articulaire, et la planifier de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/form.py"/>
@@ -6485,6 +6620,11 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>User frame</source>
         <translation>Repère utilisateur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
+        <source>Uses the current selection, or the next click. {}</source>
+        <translation>Prend la sélection actuelle, ou le clic suivant. {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
@@ -6518,7 +6658,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Value of that output at 1 m/min of wire.</source>
+        <source>Value of the analogue output at 1 m/min of wire.</source>
         <translation>Valeur de cette sortie à 1 m/min de fil.</translation>
     </message>
     <message>
@@ -6557,6 +6697,11 @@
         <translation>Attente entre les couches</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Waiting time between layers.</source>
+        <translation>Temps d&apos;attente entre les couches.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>Waits</source>
         <translation>Attentes</translation>
@@ -6592,9 +6737,9 @@
         <translation>Balayage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>What a joint path is judged by.</source>
-        <translation>Ce qui juge une trajectoire articulaire.</translation>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Weave number of the controller for the beads; 0 or none: straight.</source>
+        <translation>Numéro du balayage propre à la commande avec lequel les cordons sont déposés ; 0 ou aucun : droits.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/payload.py"/>
@@ -6602,174 +6747,19 @@
         <translation>Ce qui porte la pièce porte son poids</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>What differs for classes of beads (first_layer, contour, fill, closing, link, wall), such as: contour: travel_speed 8, schedule 3; fill: lead 5; or none.</source>
-        <translation>Ce qui diffère pour des classes de cordons (first_layer, contour, fill, closing, link, wall), par exemple : contour : travel_speed 8, schedule 3 ; fill : lead 5 ; ou none.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
-        <source>What is changed of one bead is changed of all</source>
-        <translation>Ce qui est changé d&apos;un cordon l&apos;est de tous</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>What is deposited lies on the part</source>
-        <translation>Ce qui est déposé se trouve sur la pièce</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
-        <source>What is deposited: click it in the tree or the 3D view</source>
-        <translation>Ce qui est déposé : cliquez dessus dans l&apos;arbre ou la vue 3D</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/plots/dock.py"/>
-        <source>What is drawn</source>
-        <translation>Ce qui est dessiné</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/tools/export_path.py"/>
-        <source>What is made of the path</source>
-        <translation>Ce qui est fait de la trajectoire</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>What is moved: the deposition point (with the tool on the robot the fixed platform), the platform on the flange or the table, or the base of the positioner; auto: the one that places the part.</source>
-        <translation>Ce qui est déplacé : le point de dépôt (avec l&apos;outil sur le robot, le plateau fixe), le plateau sur la bride ou la table, ou la base du positionneur ; auto : ce qui place la pièce.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/program/preflight_list.py"/>
-        <source>What is promised of this program, how it was checked and where it is worst; a click goes there</source>
-        <translation>Ce qui est promis de ce programme, comment cela a été vérifié et où c’est le pire ; un clic y mène</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
-        <source>What it grows on: click it with Ctrl in the tree or the 3D view</source>
-        <translation>Ce sur quoi cela croît : cliquez dessus avec Ctrl dans l&apos;arbre ou la vue 3D</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>What makes a feasible pose the best one: the largest least margin, the shortest time, or the largest distance of the arm from everything.</source>
-        <translation>Ce qui fait d&apos;une pose réalisable la meilleure : la plus grande des plus petites marges, le temps le plus court, ou la plus grande distance du bras à tout le reste.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
-        <source>What stands beside a robot: a cell names it as external axis.</source>
-        <translation>Ce qui se trouve à côté d&apos;un robot : une cellule le nomme comme axe externe.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/path/form.py"/>
-        <source>What the colours of the beads show</source>
-        <translation>Ce que disent les couleurs des cordons</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/placement/form.py"/>
-        <source>What the colours of the places show</source>
-        <translation>Ce que disent les couleurs des endroits</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
-        <source>What the colours show</source>
-        <translation>Ce que disent les couleurs</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
-        <source>What the file has beside one another; each gets a machine file of its own</source>
-        <translation>Ce que le fichier a côte à côte ; chacun reçoit son propre fichier de machine</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>What the layers are: parallel planes; at equal distances by the way through the part from where it stands, so that nothing needs support (geodesic); at equal distances straight from there (offset); or planes normal to a guide curve (along).</source>
-        <translation>Ce que sont les couches : des plans parallèles ; à distances égales par le chemin à travers la pièce depuis là où elle repose, de sorte que rien n&apos;a besoin de support (geodesic) ; à distances égales en ligne droite depuis là (offset) ; ou des plans normaux à une courbe guide (along).</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>What the polynomial gives: the true rotation about the tool axis, or RZ of the paper.</source>
         <translation>Ce que donne le polynôme : la vraie rotation autour de l&apos;axe de l&apos;outil, ou le RZ de l&apos;article.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>What the positions of Cartesian programs are relative to, in the part&apos;s coordinates: x y z mm, RX RY RZ deg; auto: the frame that sits on the platform.</source>
-        <translation>À quoi se rapportent les positions des programmes cartésiens, dans les coordonnées de la pièce : x y z mm, RX RY RZ deg ; auto : le repère qui repose sur le plateau.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/new_job/fields.py"/>
-        <source>What the robot carries. Where the job cannot be done in the cell that suits the robot, another place, another branch or a positioner is proposed, and the robot shown there.</source>
+        <source>What the robot carries. If the job is infeasible in the proposed cell, another position, another branch or a positioner is proposed and shown.</source>
         <translation>Ce que porte le robot. Si le travail ne peut se faire dans la cellule qui convient au robot, un autre emplacement, une autre branche ou un positionneur est proposé, et le robot y est montré.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Where beads start: where the seam says (aligned), or apart from those of neighbouring contours and layers, lines of every second layer at their other end (spread).</source>
-        <translation>Départ des cordons : où le dit la couture (alignés), ou loin de ceux des contours et couches voisins, les lignes d&apos;une couche sur deux par leur autre bout (répartis).</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Where closed beads start.</source>
-        <translation>Là où commencent les cordons fermés.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Where in its height a layer takes its outline from the part.</source>
-        <translation>À quelle hauteur une couche prend son contour de la pièce.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Where it takes less motion than a polynomial, the rotation about the tool axis is free at every point of a bead: the best course that is found, for the objective displacement. Takes up to seconds per bead.</source>
-        <translation>Là où le mouvement est moindre qu’avec un polynôme, la rotation autour de l’axe de l’outil est libre en chaque point d’un cordon : le meilleur parcours trouvé, pour l’objectif displacement. Prend jusqu’à quelques secondes par cordon.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
-        <source>Where programs are written first; empty for the folder of last time, or next to the document</source>
-        <translation>Là où les programmes sont d&apos;abord écrits ; vide pour le dossier de la dernière fois, ou à côté du document</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
-        <source>Where the check poses are from</source>
-        <translation>D&apos;où viennent les poses de contrôle</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Where the figures of the material are from; carried to the report.</source>
-        <translation>D&apos;où viennent les valeurs du matériau ; repris dans le rapport.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Where the fit begins: three or more pairs of a measured point and the same point of the part, each x y z &gt; x y z in mm, with a semicolon between; empty: it is searched for.</source>
-        <translation>Là où commence l&apos;ajustement : trois paires ou plus d&apos;un point mesuré et du même point de la pièce, chacune x y z &gt; x y z en mm, séparées par un point-virgule ; vide : il est cherché.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
-        <source>Where the geometry comes from</source>
-        <translation>D&apos;où vient la géométrie</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Where the locked axis stands; auto: where the largest angle left is least.</source>
-        <translation>Là où se tient l&apos;axe bloqué ; auto : là où le plus grand angle restant est le plus petit.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Which frame sits on the platform: the feature&apos;s own, or that of the part file.</source>
-        <translation>Quel repère repose sur le plateau : celui de l&apos;élément à déposer, ou celui du fichier de la pièce.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Which of part and tool the robot carries, or a machine with rotary axes.</source>
+        <source>Whether the robot carries the tool or the part, or a machine with rotary axes.</source>
         <translation>Ce que porte le robot, la pièce ou l&apos;outil, ou une machine à axes rotatifs.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Which of the controller&apos;s external axes e1 is; the others follow: eax_a, E1 are 1.</source>
-        <translation>Lequel des axes externes de la commande est e1 ; les autres suivent : eax_a, E1 sont 1.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Which set of joint limits of the machine file holds.</source>
-        <translation>Quel jeu de limites articulaires du fichier machine vaut.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Which side of a wall was measured: that of its outer normals, the inner one, or both.</source>
-        <translation>Quel côté d&apos;une paroi a été mesuré : celui de ses normales extérieures, l&apos;intérieur, ou les deux.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -6783,7 +6773,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Widest gap that may stay open between beads, as a share of the bead spacing.</source>
+        <source>Widest gap allowed between beads, as a share of the bead spacing.</source>
         <translation>Plus large jour qui peut rester ouvert entre les cordons, en part de la distance des cordons.</translation>
     </message>
     <message>
@@ -6798,7 +6788,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Width of the bead; held by the bead model. Solids on hubs are filled with beads that wide.</source>
+        <source>Width of the bead; the bead model keeps it. Solids on hubs are filled with beads of this width.</source>
         <translation>Largeur du cordon ; tenue par le modèle de cordon. Les solides sur moyeux sont remplis de cordons de cette largeur.</translation>
     </message>
     <message>
@@ -6825,6 +6815,16 @@
         <location filename="../../freecad_am/objects/fields/preferences.py"/>
         <source>Wire feed</source>
         <translation>Dévidage du fil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Wire feed: constant, or proportional to the travel speed of a bead model, so that beads keep their cross-section.</source>
+        <translation>Vitesse du fil : constante, ou proportionnelle à la vitesse d&apos;avance que règle un modèle de cordon, pour que les cordons gardent leur section.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Wire feed; auto: the feed for the bead width and layer height at the travel speed, or that of the bead model. 0: no wire.</source>
+        <translation>Vitesse du fil ; auto : celle qui fait des cordons de leur largeur et de la hauteur de couche à la vitesse d&apos;avance, ou celle des cordons du modèle de cordon. 0 : pas de fil.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -6862,14 +6862,9 @@
         <translation>Écrire le programme…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/export_path.py"/>
-        <source>Write the moves between beads as well, on a layer of their own; toolpaths have none</source>
-        <translation>Écrire aussi les mouvements entre les cordons, sur un calque à eux ; les trajectoires d&apos;outil n&apos;en ont pas</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Writes a path as STEP or DXF wires, a table or a report, or makes a CAM path or Robot trajectory of it</source>
-        <translation>Écrit une trajectoire en fils STEP ou DXF, en tableau ou en rapport, ou en fait une trajectoire CAM ou Robot</translation>
+        <source>Writes a path as STEP or DXF wires, a table or a report, or converts it to a CAM path or Robot trajectory</source>
+        <translation>Écrit une trajectoire en fils STEP ou DXF, un tableau ou un rapport, ou la convertit en trajectoire CAM ou trajectoire Robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/program/window.py"/>
@@ -6878,12 +6873,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Writes the controller&apos;s program of a joint path</source>
+        <source>Writes the controller program for a joint path</source>
         <translation>Écrit le programme de la commande pour une trajectoire articulaire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
-        <source>Writes the figures and the deviation of every point into a folder</source>
+        <source>Writes the results and the deviation of every point into a folder</source>
         <translation>Écrit les chiffres et l&apos;écart de chaque point dans un dossier</translation>
     </message>
     <message>
@@ -6908,12 +6903,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/dock.py"/>
-        <source>Zoom in; so does the wheel, with Ctrl up and down</source>
+        <source>Zoom in, also with Ctrl and the wheel</source>
         <translation>Agrandir ; la molette aussi, avec Ctrl vers le haut et le bas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/dock.py"/>
-        <source>Zoom into a rectangle that the mouse draws; else it moves the picture</source>
+        <source>Zoom into a rectangle drawn with the mouse; otherwise dragging moves the picture</source>
         <translation>Agrandir un rectangle tracé à la souris ; sinon elle déplace l&apos;image</translation>
     </message>
     <message>
@@ -6932,34 +6927,34 @@
         <translation>`velocity` au `&lt;limit&gt;` de chacune de ses articulations</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/slicing/tubes/smooth_spacing.py"/>
+        <source>a band of {0} % is too narrow for {1} points around: use more points</source>
+        <translation>une bande de {0} % est trop étroite pour {1} points sur le tour : prenez-en davantage</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>a band of {0} % does not suffice: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm elsewhere. The robot slows down there; a wider strategy.band rounds them</source>
+        <source>a band of {0} % is too narrow: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm elsewhere. The robot slows down there; a wider strategy.band rounds them</source>
         <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm ailleurs. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>a band of {0} % does not suffice: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm. The robot slows down there; a wider strategy.band rounds them</source>
+        <source>a band of {0} % is too narrow: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm. The robot slows down there; a wider strategy.band rounds them</source>
         <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>a band of {0} % does not suffice: within the wall {1} of {2} layers turn by more than {3} deg/mm, {4} of them in corners, first layer {5}, by up to {6} deg/mm elsewhere. The robot slows down there; a wider strategy.band rounds them</source>
-        <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, dont {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm ailleurs. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
+        <source>a band of {0} % is too narrow: within the wall {1} of {2} layers turn by more than {3} deg/mm, {4} in corners, first layer {5}, by up to {6} deg/mm elsewhere. The robot slows down there; a wider strategy.band rounds them</source>
+        <translation>une bande de {0} % est trop étroite : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm ailleurs. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>a band of {0} % does not suffice: within the wall {1} of {2} layers turn by more than {3} deg/mm, {4} of them in corners, first layer {5}, by up to {6} deg/mm. The robot slows down there; a wider strategy.band rounds them</source>
-        <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, dont {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/slicing/tubes/smooth_spacing.py"/>
-        <source>a band of {0} % is too narrow for {1} points around: use more of them</source>
-        <translation>une bande de {0} % est trop étroite pour {1} points sur le tour : prenez-en davantage</translation>
+        <source>a band of {0} % is too narrow: within the wall {1} of {2} layers turn by more than {3} deg/mm, {4} in corners, first layer {5}, by up to {6} deg/mm. The robot slows down there; a wider strategy.band rounds them</source>
+        <translation>une bande de {0} % est trop étroite : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/curves.py"/>
-        <source>a bead runs along the direction in which it is laid, at {0}: the nozzle would be in its own way; give another strategy.direction, faces, or directions in the table</source>
-        <translation>un cordon suit la direction dans laquelle il est déposé, en {0} : la buse se gênerait elle-même ; donnez une autre strategy.direction, des faces, ou des directions dans le tableau</translation>
+        <source>a bead runs parallel to its tool direction, at {0}, so the nozzle would hit it; set another strategy.direction, choose faces, or give directions in the table</source>
+        <translation>un cordon est parallèle à la direction de son outil, en {0}, si bien que la buse le heurterait ; fixez un autre strategy.direction, choisissez des faces, ou donnez des directions dans le tableau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/directions/wall.py"/>
@@ -6968,8 +6963,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/sections/cell.py"/>
-        <source>a calibration is that of a machine; write machine: {{name: ur-ur10e, calibration: my_robot.yaml}}</source>
-        <translation>un étalonnage est celui d&apos;une machine ; écrivez machine: {{name: ur-ur10e, calibration: my_robot.yaml}}</translation>
+        <source>a calibration needs its machine; write machine: {{name: ur-ur10e, calibration: my_robot.yaml}}</source>
+        <translation>un étalonnage demande sa machine ; écrivez machine: {{name: ur-ur10e, calibration: my_robot.yaml}}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/placement/moved.py"/>
@@ -6990,11 +6985,6 @@
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>a cone</source>
         <translation>un cône</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>a controller of this kind was known to have room for about {0} MB in all</source>
-        <translation>une commande de ce type a de la place pour environ {0} Mo en tout</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
@@ -7043,13 +7033,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>a gap of {0} mm between faces of {1} was bridged</source>
+        <source>a gap of {0} mm between faces of {1} is bridged</source>
         <translation>un jour de {0} mm entre des faces de {1} est comblé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>a height alone is not a cone; give the radius of its base circle too, or base: auto</source>
-        <translation>une hauteur seule n&apos;est pas un cône ; donnez aussi le rayon de son cercle de base, ou base: auto</translation>
+        <source>a height without a radius does not define a cone; give the radius of the base circle too, or base: auto</source>
+        <translation>une hauteur sans rayon ne définit pas un cône ; donnez aussi le rayon du cercle de base, ou base: auto</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
@@ -7058,12 +7048,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
-        <source>a layer all the way round the hub is filled with {0}; strategy.fill = {1} is for regions with an end</source>
+        <source>a layer all around the hub is filled with {0}; strategy.fill = {1} needs regions with an end</source>
         <translation>une couche sur tout le tour du moyeu est remplie de {0} ; strategy.fill = {1} est pour les régions qui ont une fin</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/tubes/iso_parameter.py"/>
-        <source>a layer height of {0} mm is more than the wall&apos;s bend allows; lower it</source>
+        <source>a layer height of {0} mm is too large for the bend of the wall; lower it</source>
         <translation>une hauteur de couche de {0} mm est plus que ne permet le coude de la paroi ; réduisez-la</translation>
     </message>
     <message>
@@ -7077,8 +7067,13 @@
         <translation>un maillage de basse résolution qui accompagne des tranches</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/user_machines.py"/>
+        <source>a machine {0} already exists; choose another name</source>
+        <translation>il y a déjà une machine {0} ; choisissez un autre nom</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
-        <source>a mesh has no cylinders and cones; give strategy.base, or a solid part as substrate</source>
+        <source>a mesh has no cylinders or cones; set strategy.base, or choose a solid part as substrate</source>
         <translation>un maillage n&apos;a ni cylindres ni cônes ; donnez strategy.base, ou une pièce solide comme substrat</translation>
     </message>
     <message>
@@ -7088,7 +7083,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/cladding_feature.py"/>
-        <source>a mesh has no faces to choose; leave them out</source>
+        <source>a mesh has no selectable faces; remove them</source>
         <translation>un maillage n&apos;a pas de faces à choisir ; omettez-les</translation>
     </message>
     <message>
@@ -7098,8 +7093,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>a module would have more than {0} speeds, each of which is data of its own here; use fewer speeds, or a smaller program.max_points</source>
-        <translation>un module aurait plus de {0} vitesses, dont chacune est une donnée à part ici ; utilisez moins de vitesses, ou un program.max_points plus petit</translation>
+        <source>a module would need more than {0} speeddata items; use fewer speeds, or a smaller program.max_points</source>
+        <translation>un module demanderait plus de {0} données de vitesse ; utilisez moins de vitesses, ou un program.max_points plus petit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
@@ -7118,7 +7113,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc/numbers.py"/>
-        <source>a move of {0} s cannot be written; moves take {1} to {2} s: use another speed or a larger chord error</source>
+        <source>a move of {0} s cannot be written; the range is {1} to {2} s: use another speed or a larger chord error</source>
         <translation>un mouvement de {0} s ne peut pas être écrit ; les mouvements prennent de {1} à {2} s : utilisez une autre vitesse ou une plus grande erreur de corde</translation>
     </message>
     <message>
@@ -7128,12 +7123,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/numbers.py"/>
-        <source>a move takes {0} ms, less than the {1} ms in which the controller steps; use a larger strategy.chord_error or a lower process.travel_speed</source>
+        <source>a move takes {0} ms, less than the {1} ms cycle of the controller; use a larger strategy.chord_error or a lower process.travel_speed</source>
         <translation>un mouvement dure {0} ms, moins que le pas de {1} ms de la commande ; utilisez un strategy.chord_error plus grand ou un process.travel_speed plus petit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/numbers.py"/>
-        <source>a move takes {0} s, less than the {1} s that can be written; use a larger chord error or a lower speed</source>
+        <source>a move takes {0} s, below the minimum of {1} s; use a larger chord error or a lower speed</source>
         <translation>un mouvement prend {0} s, moins que les {1} s qui peuvent s&apos;écrire ; prenez une erreur de corde plus grande ou une vitesse plus faible</translation>
     </message>
     <message>
@@ -7143,13 +7138,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/numbers.py"/>
-        <source>a move would need {0} % of the largest joint speed, which cannot be written; use another speed, so that it is {1} to 100 %</source>
+        <source>a move would need {0} % of the largest joint speed, which cannot be written; use a speed that gives {1} to 100 %</source>
         <translation>un mouvement demanderait {0} % de la plus grande vitesse articulaire, ce qui ne peut pas être écrit ; utilisez une autre vitesse, pour qu&apos;il soit de {1} à 100 %</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>a move would need {0} % of the largest joint speed, which is programmed in steps of {1} %; use another speed, so that it is {2} to 100 %</source>
-        <translation>un mouvement demanderait {0} % de la plus grande vitesse articulaire, qui se dit par pas de {1} % ; utilisez une autre vitesse, pour qu&apos;il soit de {2} à 100 %</translation>
+        <source>a move would need {0} % of the largest joint speed, which is programmed in steps of {1} %; use a speed that gives {2} to 100 %</source>
+        <translation>un mouvement demanderait {0} % de la plus grande vitesse articulaire, qui se dit par pas de {1} % ; utilisez une autre vitesse, pour qu&apos;il soit de {2} à 100 %</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/quantity.py"/>
@@ -7178,7 +7173,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/moves.py"/>
-        <source>a point of {0} asks for another configuration of the arm</source>
+        <source>a point of {0} needs another arm configuration</source>
         <translation>un point de {0} demande une autre configuration du bras</translation>
     </message>
     <message>
@@ -7203,7 +7198,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>a position of a station or of base axes has a value for each of them from the first one on; use 1, not {0}</source>
+        <source>a position of a station or of base axes has one value per axis, from the first axis on; use 1, not {0}</source>
         <translation>une position d&apos;une station ou d&apos;axes de base a une valeur pour chacun d&apos;eux à partir du premier ; utiliser 1, pas {0}</translation>
     </message>
     <message>
@@ -7217,13 +7212,18 @@
         <translation>une position sur la pièce demande X Y Z et tous les axes rotatifs</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <source>a prismatic axis has two ends; enter both</source>
+        <translation>un axe de translation a deux bouts ; saisissez les deux</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/names.py"/>
         <source>a program&apos;s name</source>
         <translation>le nom d&apos;un programme</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>a quaternion is not all zeros; enter the one that the controller shows</source>
+        <source>a quaternion cannot be all zeros; enter the one shown on the controller</source>
         <translation>un quaternion n&apos;est pas tout à zéro ; saisissez celui que la commande affiche</translation>
     </message>
     <message>
@@ -7233,7 +7233,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/classes.py"/>
-        <source>a ramp of {0} mm leads from or to the travel_speed there, and there is none; give it, or leave the ramp out</source>
+        <source>a ramp of {0} mm connects to a travel_speed that is not set; set travel_speed, or remove the ramp</source>
         <translation>une rampe de {0} mm mène de ou vers travel_speed, qui n&apos;y est pas donnée ; donnez-la, ou omettez la rampe</translation>
     </message>
     <message>
@@ -7248,8 +7248,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/text.py"/>
-        <source>a rapid would need {0} % of the largest joint speed, and KRL takes whole percentages from {1} to 100; use another rapid speed</source>
-        <translation>un rapide demanderait {0} % de la plus grande vitesse articulaire, et KRL prend des pourcentages entiers de {1} à 100 ; prenez une autre vitesse rapide</translation>
+        <source>a rapid would need {0} % of the largest joint speed, but KRL uses whole percentages from {1} to 100; use another rapid speed</source>
+        <translation>un rapide demanderait {0} % de la plus grande vitesse articulaire, et KRL prend des pourcentages entiers de {1} à 100 ; prenez une autre vitesse rapide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/filling/strips.py"/>
@@ -7303,12 +7303,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
-        <source>a spiral has no layers to wait between; use path: layers, a slower process.travel_speed, or leave it out</source>
+        <source>a spiral has no layers to wait between; use path: layers, a slower process.travel_speed, or remove it</source>
         <translation>une spirale n&apos;a pas de couches entre lesquelles attendre ; utilisez path: layers, une process.travel_speed plus lente, ou retirez cette clé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/fit.py"/>
-        <source>a spiral turns an axis without end, and this set of limits ends it; use path: layers, or a limit set with an endless axis</source>
+        <source>a spiral needs a continuous axis, but this set of limits bounds it; use path: layers, or a limit set with a continuous axis</source>
         <translation>une spirale tourne un axe sans fin, et ce jeu de limites l&apos;arrête ; utilisez path: layers, ou un jeu de limites à axe sans fin</translation>
     </message>
     <message>
@@ -7343,7 +7343,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>a track has no name of its own here, it is {0}; leave unit out</source>
+        <source>a track has no name here, it is {0}; remove unit</source>
         <translation>un rail n&apos;a pas ici de nom à lui, c&apos;est {0} ; laisser unit de côté</translation>
     </message>
     <message>
@@ -7367,18 +7367,13 @@
         <translation>une rotation par longueur comme 10 deg/mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/checks/placed.py"/>
-        <source>a value is an object that was deleted; give a number or a text</source>
-        <translation>une valeur est un objet qui a été supprimé ; donnez un nombre ou un texte</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/staubli/files.py"/>
         <source>a value is not a plain number</source>
         <translation>une valeur n&apos;est pas un nombre simple</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
-        <source>a value of {0} is set, but {1} is not made from it; check the names</source>
+        <source>a value of {0} is set, but {1} does not depend on it; check the names</source>
         <translation>une valeur de {0} est fixée, mais {1} n&apos;en dépend pas ; vérifiez les noms</translation>
     </message>
     <message>
@@ -7413,7 +7408,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>a work offset of LinuxCNC turns about Z only, and the part leans on the table by RX {0} and RY {1} deg; enter an upright origin, as cell.platform: [{2}, {3}, {4}, 0, 0, {5}], or use `motion: joint`</source>
+        <source>a work offset of LinuxCNC rotates only about Z, but the part is tilted on the table by RX {0} and RY {1} deg; enter an upright origin, as cell.platform: [{2}, {3}, {4}, 0, 0, {5}], or use `motion: joint`</source>
         <translation>un décalage d&apos;origine de LinuxCNC ne tourne qu&apos;autour de Z, et la pièce penche sur la table de RX {0} et RY {1} deg ; entrez une origine droite, comme cell.platform: [{2}, {3}, {4}, 0, 0, {5}], ou utilisez `motion: joint`</translation>
     </message>
     <message>
@@ -7433,18 +7428,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
-        <source>about {0} cm3 of beads are laid over others of their layer, {1} % of those of {2}: they come nearer to each other than they are wide, or cross; layers get higher there. Use narrower beads, or leave out what is there twice</source>
-        <translation>environ {0} cm3 de cordons sont déposés sur d&apos;autres de leur couche, {1} % de ceux de {2} : ils s&apos;approchent plus que leur largeur, ou se croisent ; les couches y deviennent plus hautes. Prenez des cordons plus étroits, ou omettez ce qui est en double</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
-        <source>about {0} cm3 of beads are laid over others of their layer, {1} % of {2}: where lines and their links meet contours, and where room is left for less than a bead; layers get higher there. Use fill: contours, narrower beads, or a wider strategy.gap</source>
-        <translation>environ {0} cm3 de cordons sont déposés sur d&apos;autres de leur couche, {1} % de {2} : là où les lignes et leurs liaisons rejoignent les contours, et là où il reste de la place pour moins d&apos;un cordon ; les couches y deviennent plus hautes. Utilisez fill : contours, des cordons plus étroits, ou un strategy.gap plus large</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
-        <source>about {0} cm3 of beads lie outside the {1} cm3 of {2}: beads of {3} mm stand out where it is narrower; use narrower beads, or machine it off</source>
-        <translation>environ {0} cm3 de cordons sont à côté des {1} cm3 de {2} : des cordons de {3} mm en débordent là où c&apos;est plus étroit ; prenez des cordons plus étroits, ou usinez l&apos;excédent</translation>
+        <source>about {0} cm3 of beads are outside the {1} cm3 of {2}: beads of {3} mm exceed narrow regions; use narrower beads, or machine off the excess</source>
+        <translation>environ {0} cm3 de cordons sont hors des {1} cm3 de {2} : des cordons de {3} mm débordent des régions étroites ; utilisez des cordons plus étroits, ou usinez l&apos;excès</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
@@ -7458,18 +7443,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
-        <source>about {0} of the {1} cm3 of {2}, all that lies within its hub, are not deposited</source>
+        <source>about {0} of the {1} cm3 of {2}, the volume inside its hub, are not deposited</source>
         <translation>environ {0} des {1} cm3 de {2}, tout ce qui est à l’intérieur de son moyeu, ne sont pas déposés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
-        <source>about {0} of {1} cm3 of beads lie outside {2}, which is {3} mm thick there, and beads are {4} mm wide; give process.bead_width, or machine it off</source>
-        <translation>environ {0} des {1} cm3 de cordons sont à côté de {2}, qui y a {3} mm d’épaisseur, et les cordons ont {4} mm de large ; donnez process.bead_width, ou enlevez-les par usinage</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/size.py"/>
-        <source>about {0} points in {1} layers are planned, which takes about {2} min of the processor and {3} GB of memory; a larger strategy.layer_height or strategy.chord_error makes them fewer</source>
-        <translation>environ {0} points en {1} couches sont planifiés, ce qui prend environ {2} min de processeur et {3} Go de mémoire ; une plus grande valeur de strategy.layer_height ou de strategy.chord_error en réduit le nombre</translation>
+        <source>about {0} of {1} cm3 of beads are outside {2}, which is {3} mm thick, while beads are {4} mm wide; set process.bead_width, or machine off the excess</source>
+        <translation>environ {0} sur {1} cm3 de cordons sont hors de {2}, qui a {3} mm d&apos;épaisseur, alors que les cordons ont {4} mm de large ; fixez process.bead_width, ou usinez l&apos;excès</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -7480,16 +7460,6 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>acceleration</source>
         <translation>accélération</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>against link 2</source>
-        <translation>par rapport au corps 2</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>against the horizontal</source>
-        <translation>par rapport à l&apos;horizontale</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -7508,7 +7478,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>
-        <source>all beads get the same length of wire to each millimetre; measure at least two speeds at one wire feed</source>
+        <source>all beads have the same wire length per millimetre; measure at least two speeds at one wire feed</source>
         <translation>tous les cordons reçoivent la même longueur de fil par millimètre ; mesurez au moins deux vitesses à une même vitesse de fil</translation>
     </message>
     <message>
@@ -7578,8 +7548,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
-        <source>an alias here stands for itself; write the value out</source>
-        <translation>un alias se désigne ici lui-même ; écrivez la valeur en toutes lettres</translation>
+        <source>an alias refers to itself; write the value out</source>
+        <translation>un alias renvoie à lui-même ; écrivez la valeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
@@ -7590,11 +7560,6 @@
         <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>an angle such as 30 deg</source>
         <translation>un angle comme 30 deg</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
-        <source>an axis that slides has two ends; enter both</source>
-        <translation>un axe de translation a deux bouts ; saisissez les deux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/current.py"/>
@@ -7638,12 +7603,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
-        <source>analogue inputs are whole numbers, not {0}; change below, gain or zero so that it is one</source>
+        <source>analogue inputs are whole numbers, not {0}; change below, gain or zero accordingly</source>
         <translation>les entrées analogiques sont des nombres entiers, et non {0} ; changez below, gain ou zero pour qu&apos;il en soit un</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>analogue output {0} carries the speed of the wire; use another one for schedules</source>
+        <source>analogue output {0} carries the wire feed; use another one for schedules</source>
         <translation>la sortie analogique {0} transmet la vitesse du fil ; prenez-en une autre pour les programmes de soudage</translation>
     </message>
     <message>
@@ -7665,6 +7630,11 @@
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>another analogue input is read than the one that is waited for</source>
         <translation>une autre entrée analogique est lue que celle qui est attendue</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>another computation is running; wait until it ends, or cancel it</source>
+        <translation>autre chose est en cours de calcul ; attendez que ce soit fini, ou annulez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
@@ -7732,11 +7702,6 @@
         <translation>la hauteur que leur couche a là, {0} à {1} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/size.py"/>
-        <source>as it is this job cannot be carried out; looking for what would make it feasible takes up to {0} min of the processor</source>
-        <translation>tel quel, ce travail n&apos;est pas réalisable ; chercher ce qui le rendrait réalisable prend jusqu&apos;à {0} min de processeur</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/widgets/pendant.py"/>
         <source>as on the pendant of</source>
         <translation>comme sur le pupitre de</translation>
@@ -7767,6 +7732,16 @@
         <translation>en ({0}) la spline qui l&apos;approche s&apos;écarte de {1} mm, plus que {2} mm ; reconstruisez la face, par exemple par un lissage ou un balayage</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/revolution/tilt.py"/>
+        <source>at every possible tilt, the nozzle touches platform or deposit, beads of {0} mm, in {1} layer(s), from layer {2} on; use a slimmer nozzle, another wall, or a smaller process.bead_width if the beads are narrower</source>
+        <translation>si fort qu&apos;elle soit redressée, la buse touche le plateau ou le dépôt, des cordons de {0} mm, dans {1} couche(s), à partir de la couche {2} ; utilisez une buse plus fine, une autre paroi, ou un process.bead_width plus petit là où les cordons sont moins larges</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/clearance/notes.py"/>
+        <source>at every possible tilt, the nozzle touches substrate, fixture, platform or deposit at {0} point(s) of layers {1} to {2}</source>
+        <translation>quelle que soit l&apos;inclinaison de l&apos;outil, la buse touche le substrat, un montage, la plateforme ou le dépôt en {0} point(s) des couches {1} à {2}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>at least {0}</source>
         <translation>au moins {0}</translation>
@@ -7777,19 +7752,24 @@
         <translation>au plus {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <source>at the requested tool axes the nozzle touches beads of {0} points; the search for clear tilts takes about {1} min of the processor, several times that where the tool would turn too fast; a smaller build_direction.lead and build_direction.tilt, or clearance: none, avoids it</source>
+        <translation>avec les axes d&apos;outil demandés, la buse touche des cordons de {0} points ; trouver des inclinaisons qui la dégagent prend environ {1} min de processeur, plusieurs fois plus là où l&apos;outil tournerait trop vite ; un build_direction.lead et un build_direction.tilt plus petits, ou clearance: none, l&apos;évitent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>at the switching point the tip moves at {0} mm/s, too slowly to program the lead as a distance; set a retract distance, or remove program.trigger.lead</source>
+        <translation>au point de commutation la pointe avance à {0} mm/s, trop lentement pour programmer l&apos;avance comme une distance ; fixez une distance de retrait, ou retirez program.trigger.lead</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
-        <source>at {0} ends of beads the retract of {1} mm would leave limits, reach or condition; it is {2} to {3} mm there, {4} times in another direction than along the tool axis and {5} times with the tool turned</source>
+        <source>at {0} bead ends the retract of {1} mm would violate limits, reach or the condition; it is {2} to {3} mm there, {4} times off the tool axis and {5} times with the tool turned</source>
         <translation>à {0} extrémités de cordons le retrait de {1} mm sortirait des limites, de l&apos;atteinte ou du conditionnement ; il y est de {2} à {3} mm, {4} fois dans une autre direction que le long de l&apos;axe de l&apos;outil et {5} fois avec l&apos;outil tourné</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
         <source>at {0} of {1} places in layer {2} the scan has no nearby points, first at {3}; the scan extends over {4} mm, the layer over {5} mm: scan the whole area below the layer, or check unit and fit</source>
         <translation>à {0} des {1} endroits de la couche {2} il n&apos;y a pas de points de la numérisation autour, le premier en {3} ; elle s&apos;étend sur {4} mm, la couche sur {5} mm : numérisez tout ce sur quoi la couche repose, ou vérifiez son unité et son ajustement</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
-        <source>at {0} short places, {1} mm in all, the deposit is slowed, here to {2} mm/s, for the axes go no faster; up to {3} mm of the bead more than meant lie there{4}</source>
-        <translation>en {0} endroits courts, {1} mm en tout, le dépôt est ralenti, ici à {2} mm/s, car les axes ne vont pas plus vite ; jusqu&apos;à {3} mm de cordon de plus que prévu s&apos;y trouvent{4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/fields.py"/>
@@ -7818,7 +7798,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>axes are moved in another frame than that of the machine</source>
+        <source>axes move in a frame other than the machine frame</source>
         <translation>des axes sont déplacés dans un autre repère que celui de la machine</translation>
     </message>
     <message>
@@ -7848,8 +7828,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>axis {0} has no limits, but joint values of this controller count every turn up to a limit; use limits that have one for axis {1}</source>
+        <source>axis {0} has no limits, but joint values of the controller count every turn up to a limit; use a limit set with one for axis {1}</source>
         <translation>l&apos;axe {0} n&apos;a pas de limites, mais les valeurs articulaires de ce contrôleur comptent chaque tour jusqu&apos;à une limite ; utilisez des limites qui en ont une pour l&apos;axe {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
+        <source>axis {0} is at {1} deg, where a Cartesian position has no reliable turn number; use `motion: joint`</source>
+        <translation>l&apos;axe {0} est à {1} deg, où une position cartésienne n&apos;a pas de numéro de tour sûr ; utilisez `motion: joint`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/turns/locked.py"/>
+        <source>axis {0} is locked at {1} deg; the tool is up to {2} deg off the requested direction</source>
+        <translation>l&apos;axe {0} est bloqué à {1} deg ; l&apos;outil s&apos;écarte jusqu&apos;à {2} deg de la direction demandée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/turns/locked.py"/>
+        <source>axis {0} is locked at {1} deg; the tool is up to {2} deg off the requested direction, more than joints.max_residual allows ({3} deg); lock the other axis, use another position or none</source>
+        <translation>l&apos;axe {0} est bloqué à {1} deg ; l&apos;outil s&apos;écarte jusqu&apos;à {2} deg de la direction demandée, plus que joints.max_residual ne permet ({3} deg) ; bloquez l&apos;autre axe, à une autre position, ou aucun</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/points.py"/>
@@ -7857,38 +7852,18 @@
         <translation>l&apos;axe {0} est jusqu&apos;à {1} {2} de la valeur planifiée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
-        <source>axis {0} stands at {1} deg and its turn number cannot be given reliably in a Cartesian position; use `motion: joint`</source>
-        <translation>l&apos;axe {0} se tient à {1} deg et son tour ne peut pas être dit sûrement dans une position cartésienne ; utilisez `motion: joint`</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/turns/locked.py"/>
-        <source>axis {0} stands at {1} deg; the tool is up to {2} deg off the direction asked for</source>
-        <translation>l&apos;axe {0} se tient à {1} deg ; l&apos;outil s&apos;écarte jusqu&apos;à {2} deg de la direction demandée</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/turns/locked.py"/>
-        <source>axis {0} stands at {1} deg; the tool is up to {2} deg off the direction asked for, more than joints.max_residual allows ({3} deg); lock the other axis, elsewhere or none</source>
-        <translation>l&apos;axe {0} se tient à {1} deg ; l&apos;outil s&apos;écarte jusqu&apos;à {2} deg de la direction demandée, plus que joints.max_residual ne permet ({3} deg) ; bloquez l&apos;autre axe, ailleurs ou aucun</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
-        <source>axis {0} turns back {1} times between beads, first before layer {2}</source>
+        <source>axis {0} rewinds {1} times between beads, first before layer {2}</source>
         <translation>l&apos;axe {0} revient en arrière {1} fois entre les cordons, d&apos;abord avant la couche {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
-        <source>axis {0} turns {1} deg in one move; an axis of continuous turn goes less than 180 deg per move: add points, or limit the axis</source>
-        <translation>l&apos;axe {0} tourne de {1} deg en un mouvement ; un axe à rotation continue fait moins de 180 deg par mouvement : ajoutez des points, ou limitez l&apos;axe</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/siemens/post.py"/>
-        <source>axis {0} turns {1} deg in one move; an axis without end goes less than 180 deg per move: add points, or limit the axis</source>
+        <source>axis {0} turns {1} deg in one move; a continuous axis moves less than 180 deg per move: add points, or limit the axis</source>
         <translation>l&apos;axe {0} tourne de {1} deg en un mouvement ; un axe sans fin fait moins de 180 deg par mouvement : ajoutez des points, ou limitez l&apos;axe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
-        <source>axis {0} would move at {1} {2}/s, it can do {3}; {4}</source>
+        <source>axis {0} would move at {1} {2}/s, above its limit of {3}; {4}</source>
         <translation>l&apos;axe {0} irait à {1} {2}/s, il peut {3} ; {4}</translation>
     </message>
     <message>
@@ -7922,6 +7897,11 @@
         <translation>cordon</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>bead volume beyond the bead spacing of the layer, compared with 10 % of the beads</source>
+        <translation>volume des cordons au-delà de l&apos;écart entre cordons de la couche, comparé à 10 % des cordons</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>bead width</source>
         <translation>largeur de cordon</translation>
@@ -7947,29 +7927,14 @@
         <translation>largeur de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/material.py"/>
-        <source>beads are laid at {0} to {1} mm/s, and {2} at {3} mm/s or more; change process.travel_speed, process.bead_width or process.classes, or measure beads at these speeds</source>
-        <translation>les cordons sont déposés de {0} à {1} mm/s, et {2} à {3} mm/s ou plus ; changez process.travel_speed, process.bead_width ou process.classes, ou mesurez des cordons à ces vitesses</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/model/material.py"/>
-        <source>beads are laid at {0} to {1} mm/s, and {2} at {3} to {4} mm/s; change process.travel_speed, process.bead_width or process.classes, or measure beads at these speeds</source>
-        <translation>les cordons sont déposés de {0} à {1} mm/s, et {2} de {3} à {4} mm/s ; changez process.travel_speed, process.bead_width ou process.classes, ou mesurez des cordons à ces vitesses</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/process/model/predicted.py"/>
-        <source>beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm; set strategy.layer_height to what the beads make{4}</source>
+        <source>beads are predicted {0} to {1} mm high, {2} mm on average, for layers of {3} mm; set strategy.layer_height to the predicted height{4}</source>
         <translation>les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm ; réglez strategy.layer_height sur ce que font les cordons{4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/predicted.py"/>
-        <source>beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm{4}</source>
+        <source>beads are predicted {0} to {1} mm high, {2} mm on average, for layers of {3} mm{4}</source>
         <translation>les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/shapes/chord_error.py"/>
-        <source>beads are straight within {0} mm, as suits a part {1} mm large and its beads; set strategy.chord_error for another value</source>
-        <translation>les cordons sont droits à {0} mm près, selon la taille de la pièce ({1} mm) et ses cordons ; fixez strategy.chord_error pour une autre valeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/events.py"/>
@@ -7978,42 +7943,37 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>beads change their schedule, and as far as is known this controller sets outputs between moves ahead of the motion; give start and end nothing but other speeds, or use another controller</source>
+        <source>beads change their schedule, but this controller appears to set outputs between moves ahead of the motion; let start and end change only the speed, or use another controller</source>
         <translation>les cordons changent de programme de soudage, et ce contrôleur met les sorties entre les mouvements en avance sur le mouvement, autant qu&apos;on sache ; ne donnez à start et end que d&apos;autres vitesses, ou prenez un autre contrôleur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
-        <source>beads get wider with speed (m = {0}); check the table&apos;s columns</source>
-        <translation>les cordons s&apos;élargissent avec la vitesse (m = {0}) ; vérifiez les colonnes du tableau</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
-        <source>beads leave {0} gap(s) open, the widest of {1} mm at {2}; strategy.gap allows {3} mm</source>
+        <source>beads leave {0} gap(s), the widest {1} mm at {2}; strategy.gap allows {3} mm</source>
         <translation>les cordons laissent {0} jour(s) ouverts, le plus large de {1} mm en {2} ; strategy.gap permet {3} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program/beads.py"/>
-        <source>beads of the class {0} have no schedule, and would be laid by that of the bead before; give process.schedule, or one in process.classes.{1}</source>
-        <translation>les cordons de la classe {0} n&apos;ont pas de programme de soudage, et seraient déposés avec celui du cordon précédent ; donnez process.schedule, ou un dans process.classes.{1}</translation>
+        <source>beads of the class {0} have no schedule, and would use the schedule of the previous bead; set process.schedule, or one in process.classes.{1}</source>
+        <translation>les cordons de la classe {0} n&apos;ont pas de programme de soudage, et prendraient celui du cordon précédent ; donnez process.schedule, ou un dans process.classes.{1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program/beads.py"/>
-        <source>beads of the class {0} have no schedule, which arc instructions name; give process.schedule, or one in process.classes.{1}</source>
+        <source>beads of the class {0} have no schedule, which arc instructions need; set process.schedule, or one in process.classes.{1}</source>
         <translation>les cordons de la classe {0} n&apos;ont pas de programme de soudage, que les instructions d&apos;arc nomment ; donnez process.schedule, ou un dans process.classes.{1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
-        <source>beads {0} mm wide (process.bead_width) lie {1} mm apart (strategy.bead_overlap): the wire feeds {2} mm3 for each mm of bead, {3} times the {4} mm3 that it has room for; {5}</source>
-        <translation>des cordons larges de {0} mm (process.bead_width) sont espacés de {1} mm (strategy.bead_overlap) : le fil apporte {2} mm3 par mm de cordon, {3} fois les {4} mm3 qui y tiennent ; {5}</translation>
+        <source>beads {0} mm wide (process.bead_width) are {1} mm apart (strategy.bead_overlap): the wire feeds {2} mm3 per mm of bead, {3} times the available {4} mm3; {5}</source>
+        <translation>des cordons de {0} mm de large (process.bead_width) sont espacés de {1} mm (strategy.bead_overlap) : le fil amène {2} mm3 par mm de cordon, {3} fois les {4} mm3 disponibles ; {5}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
-        <source>beads {0} mm wide (process.bead_width) lie {1} mm apart (strategy.bead_spacing): the wire feeds {2} mm3 for each mm of bead, {3} times the {4} mm3 that it has room for; {5}</source>
-        <translation>des cordons larges de {0} mm (process.bead_width) sont espacés de {1} mm (strategy.bead_spacing) : le fil apporte {2} mm3 par mm de cordon, {3} fois les {4} mm3 qui y tiennent ; {5}</translation>
+        <source>beads {0} mm wide (process.bead_width) are {1} mm apart (strategy.bead_spacing): the wire feeds {2} mm3 per mm of bead, {3} times the available {4} mm3; {5}</source>
+        <translation>des cordons de {0} mm de large (process.bead_width) sont espacés de {1} mm (strategy.bead_spacing) : le fil amène {2} mm3 par mm de cordon, {3} fois les {4} mm3 disponibles ; {5}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
-        <source>beads {0} mm wide (process.bead_width), {1} mm apart, leave stripes of {2} mm open between them; use {3} mm or less, or wider beads</source>
+        <source>beads {0} mm wide (process.bead_width), {1} mm apart, leave stripes of {2} mm between them; use {3} mm or less, or wider beads</source>
         <translation>des cordons larges de {0} mm (process.bead_width), distants de {1} mm, laissent entre eux des bandes ouvertes de {2} mm ; prenez {3} mm ou moins, ou des cordons plus larges</translation>
     </message>
     <message>
@@ -8023,17 +7983,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
-        <source>before {0} beads the rapid way is led round what is in the way of all retracts, by places between</source>
-        <translation>avant {0} cordons le déplacement rapide contourne, par des positions intermédiaires, ce qui gêne tous les retraits</translation>
+        <source>before {0} beads the rapid takes a detour through intermediate points, as all direct retracts are blocked</source>
+        <translation>avant {0} cordons le rapide fait un détour par des points intermédiaires, car tous les retraits directs sont bloqués</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
-        <source>before {0} beads the tool is retracted in another direction than along its axis, or turned on the way, to pass clear</source>
+        <source>before {0} beads the tool retracts off its axis, or turns on the way, for clearance</source>
         <translation>avant {0} cordons l&apos;outil est retiré dans une autre direction que le long de son axe, ou tourné en chemin, pour passer sans toucher</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
-        <source>before {0} beads the tool is withdrawn by up to {1} mm instead of {2} mm to pass clear</source>
+        <source>before {0} beads the tool retracts up to {1} mm instead of {2} mm for clearance</source>
         <translation>avant {0} cordons l&apos;outil est retiré jusqu&apos;à {1} mm au lieu de {2} mm pour passer sans toucher</translation>
     </message>
     <message>
@@ -8098,7 +8058,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>both sides of a wall have a thickness between; give it</source>
+        <source>both sides of a wall need its thickness; add it</source>
         <translation>entre les deux côtés d&apos;une paroi il y a une épaisseur ; donnez-la</translation>
     </message>
     <message>
@@ -8117,24 +8077,19 @@
         <translation>directions de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/directions/wall.py"/>
-        <source>build directions cannot be brought below {0} deg/mm on a bead of {1} mm: allow a faster turn, or use the mode fixed</source>
-        <translation>les directions de dépôt ne peuvent pas être ramenées sous {0} deg/mm sur un cordon de {1} mm : permettez une rotation plus rapide, ou utilisez le mode fixed</translation>
+        <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
+        <source>build directions of {0} layers, with nozzle clearance</source>
+        <translation>directions de dépôt de {0} couches, en tenant la buse éloignée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
-        <source>build directions of {0} layers, keeping the nozzle clear</source>
-        <translation>directions de dépôt de {0} couches, en tenant la buse éloignée</translation>
+        <location filename="../../freecad_am/core/slicing/directions/wall.py"/>
+        <source>build directions still turn faster than {0} deg/mm on a bead of {1} mm: allow a faster turn, or use the mode fixed</source>
+        <translation>les directions de dépôt ne peuvent pas être ramenées sous {0} deg/mm sur un cordon de {1} mm : permettez une rotation plus rapide, ou utilisez le mode fixed</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
         <source>building moves and events</source>
         <translation>construction des mouvements et événements</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>by {0} touched points the part&apos;s coordinates are at [{1}] mm and deg in the robot&apos;s base; left at the points: {2} mm, {3} mm in the mean of squares</source>
-        <translation>d&apos;après {0} points palpés, le repère de la pièce est en [{1}] mm et deg dans la base du robot ; écarts aux points : {2} mm, {3} mm en moyenne quadratique</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -8173,7 +8128,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/interop/export.py"/>
-        <source>cells are written as .yaml; end the name with it</source>
+        <source>cells are written as .yaml; use the extension .yaml</source>
         <translation>les cellules sont écrites en .yaml ; terminez le nom ainsi</translation>
     </message>
     <message>
@@ -8182,13 +8137,23 @@
         <translation>vérifiez-le là où il a été dessiné (Part, Vérifier la géométrie), et redessinez ou cousez ces faces</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/report/of_document.py"/>
+        <source>checking the program</source>
+        <translation>contrôle du programme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/on_its_part.py"/>
+        <source>checking whether the deposit is on the part</source>
+        <translation>vérification que le dépôt est sur la pièce</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>choose a URDF file</source>
         <translation>choisissez un fichier URDF</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>choose a robot with six that turn; those beside it are `cell.external`</source>
+        <source>choose a robot with six revolute axes; further axes belong in `cell.external`</source>
         <translation>choisissez un robot qui en a six rotatifs ; ceux d&apos;à côté sont dans `cell.external`</translation>
     </message>
     <message>
@@ -8287,19 +8252,14 @@
         <translation>comparaison de l&apos;espacement des couches</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/slicing/fronts/layers.py"/>
+        <source>computing layer {0}</source>
+        <translation>recherche de la couche {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>condition</source>
         <translation>condition</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/findings.py"/>
-        <source>condition {0} is below the {1} asked for: too near a singularity</source>
-        <translation>la condition {0} est au-dessous de {1} demandés : trop près d&apos;une singularité</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
-        <source>condition {0} on a rapid move before or after the bead is below the {1} allowed, and no other height, direction or rotation is farther from a singularity; lower joints.min_condition or move the part in the cell</source>
-        <translation>le conditionnement {0} lors d&apos;un mouvement rapide avant ou après le cordon est inférieur aux {1} admis, et aucune autre hauteur, direction ou rotation n&apos;est plus loin d&apos;une singularité ; diminuez joints.min_condition ou déplacez la pièce dans la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/readout.py"/>
@@ -8382,18 +8342,13 @@
         <translation>cubes du dépôt contre section du fil x vitesse x temps, ou ce que comptent les cordons là où aucun fil n&apos;est connu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/size.py"/>
-        <source>curved layers are searched for on a grid of about {0} nodes, which takes about {1} min of the processor; a larger strategy.layer_height, or layers: planes, takes less</source>
-        <translation>les couches courbes sont cherchées sur une grille d&apos;environ {0} nœuds, ce qui prend environ {1} min de processeur ; un strategy.layer_height plus grand, ou layers: planes, en prend moins</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/inspection/surfaces.py"/>
         <source>curves and cladding have no planned surface; compare the points with the part</source>
         <translation>les courbes et le rechargement ne planifient pas de surface ; comparez les points à la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
-        <source>curves have no faces that a deposit could be held against; leave out process.machining_allowance</source>
+        <source>curves have no faces to compare a deposit with; remove process.machining_allowance</source>
         <translation>les courbes n&apos;ont pas de faces auxquelles comparer un dépôt ; omettez process.machining_allowance</translation>
     </message>
     <message>
@@ -8423,13 +8378,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/payload.py"/>
-        <source>deposit and what it grows on, where that is closed, at {0} g/cm3 (process.density), against what {1} carries</source>
-        <translation>dépôt et ce sur quoi il repose, dans la mesure où c’est fermé, à {0} g/cm3 (process.density), comparé à ce que {1} porte</translation>
+        <source>deposit and closed substrate, at {0} g/cm3 (process.density), compared with the payload of {1}</source>
+        <translation>dépôt et substrat fermé, à {0} g/cm3 (process.density), comparés à la charge de {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/payload.py"/>
-        <source>deposit and what it grows on, where that is closed, at {0} g/cm3 (process.density), against what {1} carries, and its moment about the last axis, as it grows</source>
-        <translation>dépôt et ce sur quoi il repose, dans la mesure où c’est fermé, à {0} g/cm3 (process.density), comparé à ce que {1} porte, et son moment autour du dernier axe, à mesure qu’il croît</translation>
+        <source>deposit and closed substrate, at {0} g/cm3 (process.density), compared with the payload of {1}, and its moment about the last axis, as it grows</source>
+        <translation>dépôt et substrat fermé, à {0} g/cm3 (process.density), comparés à la charge de {1}, et son moment autour du dernier axe, à mesure qu&apos;il croît</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -8468,27 +8423,27 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>digital inputs are 1 to {0} (1 to 8 are digital_in[0] to [7], 9 to {1} the configurable ones), not {2}; use one of these</source>
+        <source>digital inputs are 1 to {0} (1 to 8 are digital_in[0] to [7], 9 to {1} the configurable ones), not {2}; choose one in this range</source>
         <translation>les entrées numériques vont de 1 à {0} (1 à 8 sont digital_in[0] à [7], 9 à {1} les configurables), pas {2} ; utilisez l&apos;une de celles-ci</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>digital inputs are 1 to {0} (motion.digital-in-00 is number 1), not {1}; use one of these</source>
+        <source>digital inputs are 1 to {0} (motion.digital-in-00 is number 1), not {1}; choose one in this range</source>
         <translation>les entrées logiques vont de 1 à {0} (motion.digital-in-00 est le numéro 1), et non {1} ; utilisez l&apos;une de celles-ci</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>digital outputs are 1 to {0} (1 to 8 are digital_out[0] to [7], 9 to {1} the configurable ones), not {2}; use one of these</source>
+        <source>digital outputs are 1 to {0} (1 to 8 are digital_out[0] to [7], 9 to {1} the configurable ones), not {2}; choose one in this range</source>
         <translation>les sorties numériques vont de 1 à {0} (1 à 8 sont digital_out[0] à [7], 9 à {1} les configurables), pas {2} ; utilisez l&apos;une de celles-ci</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>digital outputs are 1 to {0} (motion.digital-out-00 is number 1), not {1}; use one of these</source>
+        <source>digital outputs are 1 to {0} (motion.digital-out-00 is number 1), not {1}; choose one in this range</source>
         <translation>les sorties logiques vont de 1 à {0} (motion.digital-out-00 est le numéro 1), et non {1} ; utilisez l&apos;une de celles-ci</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>digital outputs are 1 to {0}, not {1}; use one of these</source>
+        <source>digital outputs are 1 to {0}, not {1}; choose one in this range</source>
         <translation>les sorties numériques vont de 1 à {0}, pas {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
     <message>
@@ -8503,18 +8458,28 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>distance by which the predicted deposit, in cubes of {0} mm filled bead by bead from the wire feed, extends beyond {1} points on the part faces, along their normals</source>
+        <translation>de combien un dépôt de cubes de {0} mm, remplis cordon par cordon de ce que le fil apporte, dépasse {1} endroits des faces de la pièce, le long de leurs normales</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
         <source>distance in space of each point to the layer below, against what the strategy allows</source>
         <translation>distance dans l’espace de chaque point à la couche du dessous, comparée à ce que permet la stratégie</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>distance of {0} places of the beads to the shape itself, less what a scan moved their layers</source>
-        <translation>distance de {0} endroits des cordons à la forme elle-même, moins ce dont un scan a déplacé leurs couches</translation>
+        <source>distance of {0} bead points to the original shape, independent of slicing</source>
+        <translation>distance de {0} endroits des cordons à la forme elle-même, que le tranchage n’emploie pas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>distance of {0} places of the beads to the shape itself, which slicing does not use</source>
-        <translation>distance de {0} endroits des cordons à la forme elle-même, que le tranchage n’emploie pas</translation>
+        <source>distance of {0} bead points to the original shape, less the layer shift from a scan</source>
+        <translation>distance de {0} endroits des cordons à la forme elle-même, moins ce dont un scan a déplacé leurs couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/cladding.py"/>
+        <source>doubly curved faces cannot be flattened without distortion: the bead spacing varies by up to {0} %; strategy.distortion limits it</source>
+        <translation>les faces à double courbure ne peuvent pas être mises à plat sans distorsion : l&apos;écart entre cordons varie jusqu&apos;à {0} % ; strategy.distortion le limite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
@@ -8538,18 +8503,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/program.py"/>
-        <source>dry run, nothing is deposited</source>
+        <source>dry run without deposit</source>
         <translation>marche à vide, rien n&apos;est déposé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>each short piece of a bead, against its build direction, over earlier deposit as wide as it is and what is there</source>
-        <translation>chaque court morceau de cordon, contre sa direction de dépôt, sur le dépôt précédent de sa largeur et ce qui est là</translation>
+        <source>each short piece of a bead, against its build direction, above earlier deposit with its actual width and existing parts</source>
+        <translation>chaque court morceau de cordon, contre sa direction de dépôt, au-dessus du dépôt antérieur à sa largeur réelle et des pièces existantes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>edges of {0} are chosen, which are laid as beads</source>
-        <translation>des arêtes de {0} sont choisies, qui sont déposées comme cordons</translation>
+        <source>edges of {0} are selected, to be deposited as beads</source>
+        <translation>des arêtes de {0} sont choisies, à déposer en cordons</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/legend.py"/>
@@ -8558,8 +8523,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
-        <source>enter speed, acceleration and jerk of more than 0, or leave them empty</source>
+        <source>enter both ends of the range, or neither for a continuous axis</source>
+        <translation>donnez les deux bouts de sa plage, ou aucun pour un axe sans fin</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <source>enter positive values for speed, acceleration and jerk, or leave them empty</source>
         <translation>saisissez une vitesse, une accélération et un jerk supérieurs à 0, ou laissez-les vides</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>enter the lower end first, or leave both empty</source>
+        <translation>donnez d&apos;abord la valeur basse, ou laissez les deux vides</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
@@ -8598,7 +8573,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>external axes would move where it stands</source>
+        <source>external axes would move although it is fixed</source>
         <translation>des axes externes bougeraient là où il est à l&apos;arrêt</translation>
     </message>
     <message>
@@ -8612,28 +8587,8 @@
         <translation>des faces du maillage de la paroi sont tournées en sens opposés : orientez-les pareillement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>faces of {0} are chosen, which do not turn about one axis, and it is thicker there than a bead of {1} mm, so they are covered</source>
-        <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe, et elle y est plus épaisse qu&apos;un cordon de {1} mm, elles sont donc recouvertes</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>faces of {0} are chosen, which do not turn about one axis, so they are a wall that starts on the platform where nothing carries it</source>
-        <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe : c&apos;est une paroi qui part du plateau là où rien ne la porte</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>faces of {0} are chosen, which do not turn about one axis, so they are a wall; it needs a substrate, or edges to start from</source>
-        <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe : c&apos;est une paroi ; il lui faut un substrat, ou des arêtes d&apos;où partir</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/cladding.py"/>
-        <source>faces that are bent both ways cannot be laid flat without distortion: beads are up to {0} % nearer together or farther apart than the bead spacing; strategy.distortion bounds that</source>
-        <translation>les faces courbées dans les deux sens ne peuvent pas être mises à plat sans déformation : les cordons sont jusqu&apos;à {0} % plus proches ou plus éloignés que l&apos;espacement des cordons ; strategy.distortion le limite</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/strategies/size.py"/>
-        <source>facets meet at sharp angles along about {0} mm of edges; finding layers around these takes about {1} min of the processor; a larger strategy.layer_height, or a mesh with rounded edges, takes less</source>
+        <source>facets meet at sharp angles along about {0} mm of edges; computing layers around them takes about {1} min of processor time; a larger strategy.layer_height, or a mesh with rounded edges, takes less</source>
         <translation>des facettes se rejoignent à angle vif le long d&apos;environ {0} mm d&apos;arêtes ; y trouver les couches prend environ {1} min de processeur ; un strategy.layer_height plus grand, ou un maillage aux arêtes arrondies, en prend moins</translation>
     </message>
     <message>
@@ -8670,11 +8625,6 @@
         <location filename="../../freecad_am/core/geometry/regions/region.py"/>
         <source>filling solids needs the Python package shapely (1.8 or newer), which is not installed; on Debian: apt-get install python3-shapely, elsewhere: pip install shapely</source>
         <translation>les solides sont remplis avec le paquet Python shapely (1.8 ou plus récent), qui n&apos;est pas installé ; sous Debian : apt-get install python3-shapely, ailleurs : pip install shapely</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/slicing/fronts/layers.py"/>
-        <source>finding layer {0}</source>
-        <translation>recherche de la couche {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/plan.py"/>
@@ -8732,29 +8682,49 @@
         <translation>suivi des cordons</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/clearance/notes.py"/>
+        <source>for clearance, tool axes turn by up to {0} deg/mm, faster than build_direction.max_turn ({1} deg/mm); use a slimmer nozzle or allow a faster turn</source>
+        <translation>pour tenir la buse éloignée, les axes de l&apos;outil tournent jusqu&apos;à {0} deg/mm, plus vite que build_direction.max_turn ({1} deg/mm) ; utilisez une buse plus fine ou permettez une rotation plus rapide</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machines/catalogue.py"/>
         <source>freecad-am machines</source>
         <translation>freecad-am machines</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution/spiral.py"/>
-        <source>from here the flat last turn comes down from {0} to 0 mm above the turn before, and half of it is deposited over that. Machine the top, or use path: layers</source>
-        <translation>à partir d&apos;ici, le dernier tour, plat, descend de {0} à 0 mm au-dessus du tour précédent, et la moitié est déposée par-dessus. Usinez le haut ou utilisez path: layers</translation>
+        <location filename="../../freecad_am/core/planning/program/beads.py"/>
+        <source>from an earlier version</source>
+        <translation>d&apos;une version antérieure</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/simulation/payload.py"/>
+        <source>from here on the part weighs more than {0} kg, {1} kg when finished including {2} kg of substrate, above the payload of {3}; {4}</source>
+        <translation>à partir d&apos;ici la pièce pèse plus de {0} kg, {1} kg finie dont {2} kg de substrat, plus que la charge de {3} ; {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/spiral.py"/>
-        <source>from here the second turn rises from 0 to {0} mm above the flat first one, and half of it is deposited over that; the end of the turn is right. Machine the foot, or use path: layers</source>
-        <translation>à partir d&apos;ici, le deuxième tour monte de 0 à {0} mm au-dessus du premier, plat, et la moitié est déposée par-dessus ; la fin du tour est juste. Usinez le pied ou utilisez path: layers</translation>
+        <source>from here the flat last turn descends from {0} to 0 mm above the previous turn, so the second half of it is over-deposited. Machine the top, or use path: layers</source>
+        <translation>à partir d&apos;ici le dernier tour plat descend de {0} à 0 mm au-dessus du tour précédent, si bien que sa deuxième moitié reçoit trop de matière. Usinez le haut, ou utilisez path: layers</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/revolution/spiral.py"/>
+        <source>from here the second turn rises from 0 to {0} mm above the flat first turn, so the first half of it is over-deposited; the end of the turn is correct. Machine the foot, or use path: layers</source>
+        <translation>à partir d&apos;ici le deuxième tour monte de 0 à {0} mm au-dessus du premier tour plat, si bien que sa première moitié reçoit trop de matière ; la fin du tour est juste. Usinez le pied, ou utilisez path: layers</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/tilt.py"/>
-        <source>from layer {0} on, directions are tilted back to keep the nozzle clear, by up to {1} deg in layer {2}</source>
+        <source>from layer {0} on, directions are tilted back for clearance, by up to {1} deg in layer {2}</source>
         <translation>à partir de la couche {0}, les directions sont redressées pour tenir la buse éloignée, jusqu&apos;à {1} deg dans la couche {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/tilt.py"/>
-        <source>from layer {0} on, max_tilt holds directions within {1} deg</source>
+        <source>from layer {0} on, max_tilt limits directions to {1} deg</source>
         <translation>à partir de la couche {0}, max_tilt tient les directions à {1} deg au plus</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <source>from the controller of the machine</source>
+        <translation>ce que lit la commande de la machine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
@@ -8798,7 +8768,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>fronts follow no lines of a surface, as iso-parameter layers do; leave strategy.method out, or use constant-distance or smooth</source>
+        <source>fronts do not follow surface lines, as iso-parameter layers do; remove strategy.method, or use constant-distance or smooth</source>
         <translation>les fronts ne suivent pas les lignes d&apos;une surface comme le font les couches iso-parameter ; retirez strategy.method, ou utilisez constant-distance ou smooth</translation>
     </message>
     <message>
@@ -8828,18 +8798,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
-        <source>give a table of the columns x,y,z, then i,j,k where directions are given, then bead where there are several</source>
+        <source>give a table with the columns x,y,z, then i,j,k for directions, then bead for several beads</source>
         <translation>donnez un tableau des colonnes x,y,z, puis i,j,k si des directions sont données, puis bead s&apos;il y en a plusieurs</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>give absolute or relative moves, G0 to G3 with E, as a slicer for filament or pellets writes them</source>
         <translation>donnez des déplacements absolus ou relatifs, G0 à G3 avec E, comme les écrit un trancheur pour filament ou granulés</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
-        <source>give both ends of its range, or none for an endless axis</source>
-        <translation>donnez les deux bouts de sa plage, ou aucun pour un axe sans fin</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/links/bodies.py"/>
@@ -8850,11 +8815,6 @@
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>give the geometry with more digits</source>
         <translation>donnez la géométrie avec plus de chiffres</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
-        <source>give the lower end first, or leave both empty</source>
-        <translation>donnez d&apos;abord la valeur basse, ou laissez les deux vides</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -8927,43 +8887,18 @@
         <translation>la façon dont un programme INFORM commute une sortie avant un lieu n&apos;a pas été confirmée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>how far a deposit of cubes of {0} mm, filled bead by bead with what the wire feeds, reaches beyond {1} places of the part&apos;s faces, along their normals</source>
-        <translation>de combien un dépôt de cubes de {0} mm, remplis cordon par cordon de ce que le fil apporte, dépasse {1} endroits des faces de la pièce, le long de leurs normales</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>how many pulses {0} counts to a degree of each axis is not known, and no two models are alike; make a machine file of your own of it, with controller.pulses_per_degree as the pendant shows them (a position in pulses over the same in degrees), or plan without a program</source>
-        <translation>combien d&apos;impulsions {0} compte par degré de chaque axe n&apos;est pas connu, et deux modèles diffèrent toujours ; faites-en un fichier machine à vous, avec controller.pulses_per_degree d&apos;après le pupitre (une position en impulsions divisée par la même en degrés), ou planifiez sans programme</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>how much the controller takes is not known here; look it up</source>
-        <translation>la capacité de la commande n&apos;est pas connue ici ; vérifiez-la</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/revolution/tilt.py"/>
-        <source>however far it is tilted back, the nozzle touches platform or deposit, beads of {0} mm, in {1} layer(s), from layer {2} on; use a slimmer nozzle, another wall, or a smaller process.bead_width where beads are not that wide</source>
-        <translation>si fort qu&apos;elle soit redressée, la buse touche le plateau ou le dépôt, des cordons de {0} mm, dans {1} couche(s), à partir de la couche {2} ; utilisez une buse plus fine, une autre paroi, ou un process.bead_width plus petit là où les cordons sont moins larges</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/clearance/notes.py"/>
-        <source>however the tool is tilted, the nozzle touches substrate, fixture, platform or deposit at {0} point(s) of layers {1} to {2}</source>
-        <translation>quelle que soit l&apos;inclinaison de l&apos;outil, la buse touche le substrat, un montage, la plateforme ou le dépôt en {0} point(s) des couches {1} à {2}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>i, j, k are 0; give a direction, such as 0, 0, 1</source>
         <translation>i, j, k sont 0 ; donnez une direction, comme 0, 0, 1</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/clearance/notes.py"/>
-        <source>in layer {0}, tool axes are tilted back to keep the nozzle clear, by up to {1} deg</source>
+        <source>in layer {0}, tool axes are tilted back for clearance, by up to {1} deg</source>
         <translation>dans la couche {0}, les axes de l&apos;outil sont redressés pour tenir la buse éloignée, jusqu&apos;à {1} deg</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/clearance/notes.py"/>
-        <source>in layers {0} to {1}, tool axes are tilted back to keep the nozzle clear, by up to {2} deg</source>
+        <source>in layers {0} to {1}, tool axes are tilted back for clearance, by up to {2} deg</source>
         <translation>dans les couches {0} à {1}, les axes de l&apos;outil sont redressés pour tenir la buse éloignée, jusqu&apos;à {2} deg</translation>
     </message>
     <message>
@@ -9000,6 +8935,16 @@
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>inverse condition number of the Jacobian at the points of the deposit, against the least one allowed</source>
         <translation>inverse du conditionnement de la jacobienne aux points du dépôt, comparé au minimum permis</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/findings.py"/>
+        <source>inverse condition number {0} is below the required {1}: too near a singularity</source>
+        <translation>la condition {0} est au-dessous de {1} demandés : trop près d&apos;une singularité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
+        <source>inverse condition number {0} on a rapid before or after the bead is below {1}, and no other height, direction or rotation is farther from a singularity; lower joints.min_condition or move the part in the cell</source>
+        <translation>le conditionnement {0} lors d&apos;un mouvement rapide avant ou après le cordon est inférieur aux {1} admis, et aucune autre hauteur, direction ou rotation n&apos;est plus loin d&apos;une singularité ; diminuez joints.min_condition ou déplacez la pièce dans la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/quantity.py"/>
@@ -9047,14 +8992,14 @@
         <translation>paramètre constant</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/solids/overlap.py"/>
-        <source>it and {0} fill the same place, as at {1}, which would be deposited twice; fuse them into one solid, or move one</source>
-        <translation>lui et {0} remplissent le même endroit, comme en {1}, qui serait déposé deux fois ; fusionnez-les en un solide, ou déplacez-en un</translation>
+        <location filename="../../freecad_am/objects/shapes/cell_obstacles.py"/>
+        <source>it already touches the nozzle at the first point of the job, in every arm configuration; its pose is in the manufacturer&apos;s base frame, and its file in mm: move it, or the deposition point</source>
+        <translation>il touche déjà la buse au premier point du travail, dans toute configuration du bras ; sa pose est dans le repère de base du fabricant, et son fichier en mm : déplacez-le, ou le point de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/followed.py"/>
-        <source>it begins with a position and names no configuration of the arm; say it in the cell, branch: [front, up, flip]</source>
-        <translation>il commence par une position et ne nomme aucune configuration du bras ; indiquez-la dans la cellule, branch: [front, up, flip]</translation>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>it applies to the whole program, not to one feature; set it at the top level</source>
+        <translation>cela vaut pour tout le programme, non pour un de ses éléments ; donnez-le au premier niveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -9088,7 +9033,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/settings.py"/>
-        <source>it cannot follow an expression; give a plain value</source>
+        <source>it cannot follow an expression; enter a plain value</source>
         <translation>il ne peut pas suivre une expression ; donnez une valeur simple</translation>
     </message>
     <message>
@@ -9132,9 +9077,9 @@
         <translation>il ne construit aucun triangle{0} ; exportez la pièce de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
-        <source>it could at {0} mm/s, but the bead model asks for {1} mm/s and too much would pile up: turn the torch more slowly (build_direction.max_turn), lean it less, mount the part otherwise, or ask for a wider bead (process.bead_width), which is laid more slowly</source>
-        <translation>il le pourrait à {0} mm/s, mais le modèle de cordon demande {1} mm/s et trop s&apos;y amasserait : tournez la torche plus lentement (build_direction.max_turn), penchez-la moins, montez la pièce autrement, ou demandez un cordon plus large (process.bead_width), qui est posé plus lentement</translation>
+        <location filename="../../freecad_am/objects/shapes/meshes.py"/>
+        <source>it contains shapes and meshes, which cannot be used together; choose its objects one by one</source>
+        <translation>il contient des formes et des maillages, et une seule sorte est utilisable à la fois ; choisissez ses objets un par un</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wire.py"/>
@@ -9145,6 +9090,11 @@
         <location filename="../../freecad_am/posts/staubli/files.py"/>
         <source>it declares a document type, which no controller writes</source>
         <translation>il déclare un type de document, ce qu&apos;aucune commande n&apos;écrit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/files.py"/>
+        <source>it does not contain the code of a program {0}</source>
+        <translation>il ne contient pas le code d&apos;un programme {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -9162,11 +9112,6 @@
         <translation>il ne finit pas par M30, ou s&apos;appelle lui-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/files.py"/>
-        <source>it does not hold the code of a program {0}</source>
-        <translation>il ne contient pas le code d&apos;un programme {0}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>it does not say how many pulses there are to a degree of each axis, a mm of a track</source>
         <translation>il ne dit pas combien d&apos;impulsions fait un degré de chaque axe, ou un mm d&apos;un rail</translation>
@@ -9175,21 +9120,6 @@
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>it does not say what unit V has</source>
         <translation>il ne dit pas quelle unité a V</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
-        <source>it does not stand on the hub: it begins {0} mm outside of {1}, at {2}; move it, or choose its base{3}</source>
-        <translation>il ne repose pas sur le moyeu : il commence à {0} mm en dehors de {1}, en {2} ; déplacez-le, ou choisissez sa base{3}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
-        <source>it does not stand on the hub: it lies inside of the hub; move it, or choose its base{0}</source>
-        <translation>il ne repose pas sur le moyeu : il est à l&apos;intérieur du moyeu ; déplacez-le, ou choisissez sa base{0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
-        <source>it does not stand on the hub: it passes {0} beside the face, near {1}; move it, or choose its base{2}</source>
-        <translation>il ne repose pas sur le moyeu : il passe à {0} à côté de la face, près de {1} ; déplacez-le, ou choisissez sa base{2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
@@ -9287,11 +9217,6 @@
         <translation>il a plus de {0} caractères</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
-        <source>it has more values than there are columns; write decimals with a point</source>
-        <translation>il a plus de valeurs que de colonnes ; écrivez les décimales avec un point</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>it has neither faces nor edges; choose another object</source>
         <translation>il n&apos;a ni faces ni arêtes ; choisissez un autre objet</translation>
@@ -9312,9 +9237,9 @@
         <translation>elle n&apos;a pas de direction fermée ; choisissez un tube fermé sur son tour</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
-        <source>it has no column {0}; name in its first line {1}</source>
-        <translation>il n&apos;a pas de colonne {0} ; nommez dans sa première ligne {1}</translation>
+        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
+        <source>it has no cross-section at its base</source>
+        <translation>il n&apos;a pas de section à sa base</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/curves.py"/>
@@ -9442,11 +9367,6 @@
         <translation>ce sont {0} morceaux qui ne tiennent pas ensemble, et aucune couche ne commence sur celui en {1}, à {2} mm du départ des couches ; choisissez aussi son arête comme départ, ou déposez-le seul</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/toolpath.py"/>
-        <source>it holds for the whole program, not for one of its features; give it at the top level</source>
-        <translation>cela vaut pour tout le programme, non pour un de ses éléments ; donnez-le au premier niveau</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
         <source>it holds no shape, only annotations; export the part again</source>
         <translation>il ne contient aucune forme, seulement des annotations ; exportez la pièce de nouveau</translation>
@@ -9467,9 +9387,9 @@
         <translation>il ne contient pas de triangles ; exportez la pièce de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/meshes.py"/>
-        <source>it holds shapes and meshes, and only one kind can be used at a time; choose the objects in it one by one</source>
-        <translation>il contient des formes et des maillages, et une seule sorte est utilisable à la fois ; choisissez ses objets un par un</translation>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>it interrupts the lines of another instruction</source>
+        <translation>il interrompt les lignes d&apos;une autre instruction</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/walls/clad_mesh.py"/>
@@ -9547,24 +9467,9 @@
         <translation>il est vide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
-        <source>it is empty; a machine file is worth no more than its check poses</source>
-        <translation>il est vide ; un fichier de machine ne vaut pas plus que ses poses de contrôle</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>it is empty; fill the gap, or remove the line</source>
         <translation>elle est vide ; remplissez le vide, ou enlevez la ligne</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/figure_table.py"/>
-        <source>it is empty; give a number</source>
-        <translation>c&apos;est vide ; donnez un nombre</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/widgets/quantity.py"/>
-        <source>it is empty; give a quantity in {0}</source>
-        <translation>c&apos;est vide ; donnez une grandeur en {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -9573,12 +9478,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/macro/suit.py"/>
-        <source>it is for kind: solid, not for {0}; leave it out</source>
+        <source>it is for kind: solid, not for {0}; remove it</source>
         <translation>c’est pour kind: solid, pas pour {0} ; omettez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>it is for solids, not for cladding; use {0}</source>
+        <source>it is for solids, not cladding; use {0}</source>
         <translation>c&apos;est pour les solides, pas pour le rechargement ; utilisez {0}</translation>
     </message>
     <message>
@@ -9588,7 +9493,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/run.py"/>
-        <source>it is neither a joint path nor a program; select one of them</source>
+        <source>it is neither a joint path nor a program; select one</source>
         <translation>ce n&apos;est ni une trajectoire articulaire ni un programme ; sélectionnez l&apos;un d&apos;eux</translation>
     </message>
     <message>
@@ -9598,7 +9503,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/placed.py"/>
-        <source>it is neither a toolpath nor a joint path; give one</source>
+        <source>it is neither a toolpath nor a joint path; choose one</source>
         <translation>ce n&apos;est ni une trajectoire d&apos;outil ni une trajectoire articulaire ; donnez-en une</translation>
     </message>
     <message>
@@ -9628,7 +9533,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/array_elements.py"/>
-        <source>it is not a link array; give the object itself</source>
+        <source>it is not a link array; choose the object itself</source>
         <translation>ce n&apos;est pas un réseau de liens ; donnez l&apos;objet lui-même</translation>
     </message>
     <message>
@@ -9643,7 +9548,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>it is not a module with one routine of the file&apos;s name, that begins with &amp;ACCESS RVP, &amp;REL 1 and DEF and ends with END: {0}</source>
+        <source>it is not a module with one routine named like the file, that begins with &amp;ACCESS RVP, &amp;REL 1 and DEF and ends with END: {0}</source>
         <translation>ce n’est pas un module avec une seule routine du nom du fichier, qui commence par &amp;ACCESS RVP, &amp;REL 1 et DEF et finit par END : {0}</translation>
     </message>
     <message>
@@ -9678,23 +9583,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/macro/steps.py"/>
-        <source>it is not a stage of this workbench; choose one</source>
+        <source>it is not a stage of the workbench; choose one</source>
         <translation>ce n&apos;est pas une étape de cet atelier ; choisissez-en une</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_table.py"/>
-        <source>it is not a table: it holds bytes that are not text in UTF-8; save it as CSV in UTF-8</source>
+        <source>it is not a table: it contains bytes that are not UTF-8 text; save it as CSV in UTF-8</source>
         <translation>ce n&apos;est pas un tableau : il contient des octets qui ne sont pas du texte UTF-8 ; enregistrez-le en CSV UTF-8</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
         <source>it is not an AdaOne toolpath, or it is damaged ({0}); export it again</source>
         <translation>ce n&apos;est pas une trajectoire d&apos;AdaOne, ou elle est endommagée ({0}) ; exportez-la à nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
-        <source>it is not known how wide its beads count; plan it again</source>
-        <translation>la largeur que comptent ses cordons n&apos;est pas connue ; replanifiez-la</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/draft.py"/>
@@ -9705,6 +9605,21 @@
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
         <source>it is not of revolution</source>
         <translation>elle n&apos;est pas de révolution</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
+        <source>it is not on the hub: it is inside the hub; move it, or choose its base{0}</source>
+        <translation>il n&apos;est pas sur le moyeu : il est à l&apos;intérieur du moyeu ; déplacez-le, ou choisissez sa base{0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
+        <source>it is not on the hub: it passes {0} off the face, near {1}; move it, or choose its base{2}</source>
+        <translation>il n&apos;est pas sur le moyeu : il passe à {0} de la face, près de {1} ; déplacez-le, ou choisissez sa base{2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
+        <source>it is not on the hub: it starts {0} mm outside {1}, at {2}; move it, or choose its base{3}</source>
+        <translation>il n&apos;est pas sur le moyeu : il commence à {0} mm en dehors de {1}, en {2} ; déplacez-le, ou choisissez sa base{3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
@@ -9745,11 +9660,6 @@
         <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
         <source>it is several solids</source>
         <translation>ce sont plusieurs solides</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/shapes/places.py"/>
-        <source>it is shown by several link groups ({0}), each at a place of its own; choose one of these, or make a link to it</source>
-        <translation>il est affiché par plusieurs groupes de liens ({0}), chacun à sa place ; choisissez l&apos;un d&apos;eux ou créez un lien vers lui</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/hub.py"/>
@@ -9808,7 +9718,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it moves a motor alone; leave it out</source>
+        <source>it moves a single motor; remove it</source>
         <translation>il ne déplace qu&apos;un moteur ; retirez-le</translation>
     </message>
     <message>
@@ -9828,7 +9738,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/followed.py"/>
-        <source>it names turns of other axes than the last one, which cannot be followed; give these positions in joints</source>
+        <source>it names turns of axes other than the last one, which cannot be simulated; use joint values for these positions</source>
         <translation>il nomme des tours d&apos;autres axes que le dernier, ce qui ne peut être suivi ; donnez ces positions en valeurs d&apos;axes</translation>
     </message>
     <message>
@@ -9840,6 +9750,11 @@
         <location filename="../../freecad_am/core/layers/curved/field.py"/>
         <source>it needs planar layers; use {0}, or layers: planes</source>
         <translation>c&apos;est pour les couches planes, pas pour les courbes ; utilisez {0}, ou layers: planes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/solids/overlap.py"/>
+        <source>it overlaps {0}, as at {1}, so the overlap would be deposited twice; fuse them into one solid, or move one</source>
+        <translation>lui et {0} remplissent le même endroit, comme en {1}, qui serait déposé deux fois ; fusionnez-les en un solide, ou déplacez-en un</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -9897,24 +9812,19 @@
         <translation>il décale l&apos;origine ; retirez-le ou utilisez G92</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>it stands among the lines of another instruction</source>
-        <translation>elle se trouve parmi les lignes d&apos;une autre instruction</translation>
+        <location filename="../../freecad_am/read_back/followed.py"/>
+        <source>it starts with a position without a configuration of the arm; set it in the cell, branch: [front, up, flip]</source>
+        <translation>il commence par une position et ne nomme aucune configuration du bras ; indiquez-la dans la cellule, branch: [front, up, flip]</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/clearance/helpful.py"/>
-        <source>it still does with {0}, each of which was tried; {1}</source>
-        <translation>elle le fait aussi avec {0}, qui ont été essayés un à un ; {1}</translation>
+        <source>it still does with {0} (all tested); {1}</source>
+        <translation>elle la touche encore avec {0} (tous essayés) ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>it takes one object alone; give that, and names of its faces apart</source>
-        <translation>il faut un seul objet ; donnez-le, et à part les noms de ses faces</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/shapes/cell_obstacles.py"/>
-        <source>it touches the nozzle at the first point of the job already, however the arm stands; its pose is that in the maker&apos;s base frame, and files are in mm: move it, or the deposition point</source>
-        <translation>il touche déjà la buse au premier point du travail, quelle que soit la posture du bras ; sa pose est donnée dans le repère de base du constructeur, et les fichiers sont en mm : déplacez-le, ou le point de dépôt</translation>
+        <source>it takes a single object; pass it, and the names of its faces separately</source>
+        <translation>il prend un seul objet ; donnez-le, et les noms de ses faces à part</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
@@ -9923,8 +9833,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/solids/unrolled.py"/>
-        <source>it winds {0} times about the cone and would lie on itself when laid flat; divide it into shorter solids</source>
-        <translation>il s&apos;enroule {0} fois autour du cône et se recouvrirait une fois mis à plat ; divisez-le en solides plus courts</translation>
+        <source>it winds {0} times around the cone and would overlap when unrolled; divide it into shorter solids</source>
+        <translation>il s&apos;enroule {0} fois autour du cône et se recouvrirait une fois déroulé ; divisez-le en solides plus courts</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -9948,7 +9858,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/views/joint_path.py"/>
-        <source>its cell is gone; choose a cell for it</source>
+        <source>its cell was deleted; choose another cell</source>
         <translation>sa cellule a disparu ; choisissez-lui une cellule</translation>
     </message>
     <message>
@@ -9998,12 +9908,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
-        <source>its end cuts the first layer off; make it longer</source>
+        <source>its end cuts the first layer; make it longer</source>
         <translation>son extrémité coupe la première couche ; allongez-la</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/plan.py"/>
-        <source>its end does not lie above the substrate all around; make it longer</source>
+        <source>its end is not above the substrate all around; make it longer</source>
         <translation>son extrémité n&apos;est pas au-dessus du substrat sur tout le tour ; allongez-la</translation>
     </message>
     <message>
@@ -10028,12 +9938,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>its group is not that of its positions</source>
+        <source>its group differs from the group of its positions</source>
         <translation>son groupe n&apos;est pas celui de ses positions</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/records.py"/>
-        <source>its header moves groups {0}, and its positions are of groups {1}</source>
+        <source>its header moves groups {0}, but its positions have groups {1}</source>
         <translation>son en-tête déplace les groupes {0} et ses positions sont des groupes {1}</translation>
     </message>
     <message>
@@ -10048,7 +9958,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/interop/source.py"/>
-        <source>its joint path is gone; choose a joint path</source>
+        <source>its joint path was deleted; choose a joint path</source>
         <translation>sa trajectoire articulaire a disparu ; choisissez-en une</translation>
     </message>
     <message>
@@ -10058,12 +9968,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/source.py"/>
-        <source>its machine has two rotary axes, which leave no rotation about the tool to choose; open the map of a robot</source>
+        <source>its machine has two rotary axes and no tool redundancy; open the map of a robot</source>
         <translation>sa machine a deux axes rotatifs, qui ne laissent aucune rotation autour de l&apos;outil à choisir ; ouvrez la carte d&apos;un robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/modules.py"/>
-        <source>its module is called {0}, and the file is not, or another one is too</source>
+        <source>its module is called {0}, but the file has another name, or another file has the same one</source>
         <translation>son module s&apos;appelle {0}, mais pas le fichier, ou un autre porte ce nom aussi</translation>
     </message>
     <message>
@@ -10088,8 +9998,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>its routine is {0}, which is not the file&apos;s name; rename one of them</source>
-        <translation>sa routine est {0}, ce qui n’est pas le nom du fichier ; renommez l’un des deux</translation>
+        <source>its routine {0} and the file have different names; rename one</source>
+        <translation>sa routine {0} et le fichier ont des noms différents ; renommez l&apos;un des deux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
@@ -10113,7 +10023,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/views/joint_path.py"/>
-        <source>its toolpath is gone; choose another, or delete the joint path too</source>
+        <source>its toolpath was deleted; choose another, or delete the joint path too</source>
         <translation>sa trajectoire d&apos;outil a disparu ; choisissez-en une autre, ou supprimez aussi la trajectoire articulaire</translation>
     </message>
     <message>
@@ -10188,12 +10098,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/chord_error.py"/>
-        <source>joint motion leaves the bead between two points however many are added: near a singularity</source>
+        <source>joint motion deviates from the bead between two points, no matter how many are added: it is near a singularity</source>
         <translation>le mouvement articulaire quitte le cordon entre deux points, si nombreux qu&apos;on les ajoute : près d&apos;une singularité</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>joint moves of KRL run at whole percents of the axes&apos; speeds, so the speed along a bead would not be the one asked for; use `motion: cartesian`</source>
+        <source>joint moves of KRL use whole percents of the axis speeds, which changes the speed along a bead; use `motion: cartesian`</source>
         <translation>les mouvements articulaires de KRL vont à des pourcentages entiers des vitesses des axes, et la vitesse le long d&apos;un cordon ne serait pas celle demandée ; prenez `motion: cartesian`</translation>
     </message>
     <message>
@@ -10208,22 +10118,22 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/certificate/bound.py"/>
-        <source>joints.certificate: several solutions of this arm bear the same configuration, so no lower bound is known; leave it out</source>
-        <translation>joints.certificate : plusieurs solutions de ce bras portent la même configuration, aucune borne inférieure n’est donc connue ; retirez ce paramètre</translation>
+        <source>joints.certificate: the lower bound is undefined, as several solutions of the arm share a configuration; remove it</source>
+        <translation>joints.certificate : la borne inférieure n&apos;est pas définie, car plusieurs solutions du bras partagent une configuration ; retirez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/external/rule.py"/>
-        <source>joints.external_axes: {0} is of no effect without cell.external; leave it out</source>
+        <source>joints.external_axes: {0} has no effect without cell.external; remove it</source>
         <translation>joints.external_axes : {0} est sans effet sans cell.external ; à omettre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rotation/given.py"/>
-        <source>joints.given is of no effect on the method {0}; use {1}, or take it out</source>
+        <source>joints.given has no effect with the method {0}; use {1}, or remove it</source>
         <translation>joints.given est sans effet sur la méthode {0} ; utilisez {1}, ou retirez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rotation/given.py"/>
-        <source>joints.given names beads that are not there: {0}; take them out</source>
+        <source>joints.given names unknown beads: {0}; remove them</source>
         <translation>joints.given nomme des cordons qui n&apos;existent pas : {0} ; retirez-les</translation>
     </message>
     <message>
@@ -10240,6 +10150,11 @@
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>kind of bead</source>
         <translation>type de cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
+        <source>known controllers of this type store about {0} MB in total</source>
+        <translation>les commandes connues de ce type enregistrent environ {0} Mo en tout</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
@@ -10343,12 +10258,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
-        <source>layers: {0} have no guide; use layers: along, or leave the guide out</source>
+        <source>layers: {0} do not use a guide; use layers: along, or remove the guide</source>
         <translation>les couches {0} n&apos;ont pas de guide ; utilisez layers: along, ou enlevez le guide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
-        <source>layers: {0} have no start faces; use layers: geodesic or offset, or leave the faces out</source>
+        <source>layers: {0} do not use start faces; use layers: geodesic or offset, or remove the faces</source>
         <translation>`layers: {0}` n&apos;a pas de faces de départ ; utilisez layers: geodesic ou offset, ou omettez les faces</translation>
     </message>
     <message>
@@ -10358,8 +10273,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/tilt.py"/>
-        <source>lead and tilt alone lean the tool by more than max_tilt ({0} deg); make them smaller or the cap larger</source>
-        <translation>l&apos;angle d&apos;avance et l&apos;inclinaison seuls penchent l&apos;outil de plus que max_tilt ({0} deg) ; diminuez-les ou augmentez le maximum</translation>
+        <source>lead and tilt together already exceed max_tilt ({0} deg); reduce them or raise the limit</source>
+        <translation>l&apos;angle d&apos;avance et l&apos;inclinaison ensemble dépassent déjà max_tilt ({0} deg) ; réduisez-les ou augmentez la limite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -10375,6 +10290,16 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>level</source>
         <translation>à plat</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/model/predicted.py"/>
+        <source>limited to the speed of the axes, beads are predicted {0} to {1} mm high, {2} mm on average, for layers of {3} mm; set strategy.layer_height to the predicted height{4}</source>
+        <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm ; réglez strategy.layer_height sur ce que font les cordons{4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/model/predicted.py"/>
+        <source>limited to the speed of the axes, beads are predicted {0} to {1} mm high, {2} mm on average, for layers of {3} mm{4}</source>
+        <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/plots/look.py"/>
@@ -10448,7 +10373,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>linear moves at the speed of a fixed nozzle over a part on the robot need the controller&apos;s external reference point, whose instruction is not documented well enough to write it; use `motion: joint`</source>
+        <source>linear moves at the speed of a fixed nozzle over a part on the robot need the external reference point of the controller, whose instruction is not documented well enough; use `motion: joint`</source>
         <translation>les mouvements linéaires à la vitesse d&apos;une buse fixe sur une pièce portée par le robot demandent le point de référence externe de la commande, dont l&apos;instruction n&apos;est pas assez documentée pour l&apos;écrire ; utilisez `motion: joint`</translation>
     </message>
     <message>
@@ -10478,7 +10403,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
-        <source>link {0} comes nearer than {1} mm to {2}, or touches it on the rapid way to the bead; move one of them in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <source>link {0} comes nearer than {1} mm to {2}, or touches it on the rapid way to the bead; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
@@ -10488,7 +10413,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
-        <source>link {0} comes nearer than {1} mm to {2}, or touches it; move one of them in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <source>link {0} comes nearer than {1} mm to {2}, or touches it; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
@@ -10503,13 +10428,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/collisions.py"/>
-        <source>link {0} of the arm, as drawn, has {1} in the inner half of its radius on {2} % of the motion, first with the nozzle at {3}; unless the robot is slimmer or hollow there, it collides: look at it in Simulate, give the links the shapes of the manufacturer, or set cell.arm_clearance</source>
-        <translation>le corps {0} du bras, tel que dessiné, a {1} dans la moitié intérieure de son rayon sur {2} % du mouvement, d&apos;abord avec la buse en {3} ; sauf si le robot y est plus mince ou creux, il y a collision : regardez-le dans Simuler, donnez aux corps les formes du constructeur ou fixez cell.arm_clearance</translation>
+        <source>link {0} of the arm, as drawn, has {1} within half its radius on {2} % of the motion, first with the nozzle at {3}; it collides unless the robot is slimmer or hollow there: check it in Simulate, give the links the shapes of the manufacturer, or set cell.arm_clearance</source>
+        <translation>le corps {0} du bras, tel que dessiné, a {1} à moins de la moitié de son rayon sur {2} % du mouvement, d&apos;abord avec la buse en {3} ; il y a collision sauf si le robot est plus mince ou creux à cet endroit : vérifiez-le dans Simuler, donnez aux corps les formes du fabricant, ou fixez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/collisions.py"/>
-        <source>link {0} of the arm, as drawn, touches {1} on {2} % of the motion, first with the nozzle at {3}; the inner half of its radius stays clear, so look at it in Simulate, or set cell.arm_clearance</source>
-        <translation>le corps {0} du bras, tel que dessiné, touche {1} sur {2} % du mouvement, d&apos;abord avec la buse en {3} ; la moitié intérieure de son rayon reste dégagée : regardez-le dans Simuler ou fixez cell.arm_clearance</translation>
+        <source>link {0} of the arm, as drawn, touches {1} on {2} % of the motion, first with the nozzle at {3}; the inner half of its radius stays clear: check it in Simulate, or set cell.arm_clearance</source>
+        <translation>le corps {0} du bras, tel que dessiné, touche {1} sur {2} % du mouvement, d&apos;abord avec la buse en {3} ; la moitié intérieure de son rayon reste dégagée : vérifiez-le dans Simuler, ou fixez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -10532,16 +10457,6 @@
         <translation>local : tangente à la paroi en chaque point ; layer : une direction par couche ; fixed : l&apos;axe de la pièce.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/report/of_document.py"/>
-        <source>looking at what is promised</source>
-        <translation>vérification de ce qui est promis</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/suited.py"/>
-        <source>looking for a cell in which it can be done: {0}</source>
-        <translation>recherche d&apos;une cellule où cela peut se faire : {0}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/planned/in_sequence.py"/>
         <source>looking for beads over nothing</source>
         <translation>recherche de cordons au-dessus du vide</translation>
@@ -10550,21 +10465,6 @@
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>looking for collisions of the arm</source>
         <translation>recherche de collisions du bras</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/upright.py"/>
-        <source>looking for what would clear the nozzle: {0}</source>
-        <translation>recherche de ce qui dégagerait la buse : {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/remedies.py"/>
-        <source>looking for what would make it feasible: {0}</source>
-        <translation>recherche de ce qui le rendrait faisable : {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/checks/on_its_part.py"/>
-        <source>looking whether the deposit lies on the part</source>
-        <translation>vérification que le dépôt est sur la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
@@ -10758,12 +10658,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
-        <source>no bead of {0} mm or more finds room in any layer; use a smaller bead spacing, or thin = single</source>
+        <source>no bead of {0} mm or more fits in any layer; use a smaller bead spacing, or thin = single</source>
         <translation>aucun cordon de {0} mm ou plus ne trouve place dans aucune couche ; prenez une plus petite distance des cordons, ou thin = single</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/cladding.py"/>
-        <source>no bead of {0} mm or more finds room on its faces; use a smaller bead spacing, or thin = single</source>
+        <source>no bead of {0} mm or more fits on its faces; use a smaller bead spacing, or thin = single</source>
         <translation>aucun cordon de {0} mm ou plus ne trouve de place sur ses faces ; utilisez un espacement des cordons plus petit, ou thin = single</translation>
     </message>
     <message>
@@ -10782,19 +10682,14 @@
         <translation>aucune face de {0} ne touche les faces de départ, qui sont à {1} mm ; choisissez des faces en contact, ou aucune</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/inspection.py"/>
-        <source>no file of measured points is given; choose one</source>
-        <translation>aucun fichier de points mesurés n&apos;est donné ; choisissez-en un</translation>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>no file can have this name ({0}); check the path</source>
+        <translation>un tel fichier ne peut pas exister ({0}) ; vérifiez le chemin</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>no file says what {0} is made of</source>
+        <source>no file describes the shape of {0}</source>
         <translation>aucun fichier ne dit de quoi {0} est fait</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>no file says what {0} is made of, so nozzle, torch and robot are not kept clear of it; give its machine file bodies, or name what of it stands still in cell.obstacles</source>
-        <translation>aucun fichier ne dit de quoi {0} est fait, si bien que buse, torche et robot n’en sont pas tenus à l’écart ; donnez bodies à son fichier de machine, ou nommez dans cell.obstacles ce qui en est immobile</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
@@ -10862,11 +10757,6 @@
         <translation>aucun point n’est atteint</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/tubes/constant_distance.py"/>
-        <source>no point of the wall at v = {0} lies {1} mm from the layer below; keep the layer height below the wall&apos;s smallest radius of curvature</source>
-        <translation>aucun point de la paroi en v = {0} n&apos;est à {1} mm de la couche du dessous ; gardez la hauteur de couche au-dessous du plus petit rayon de courbure de la paroi</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/read_back/ways.py"/>
         <source>no positioner</source>
         <translation>aucun positionneur</translation>
@@ -10877,19 +10767,19 @@
         <translation>aucun résultat ne correspond à ses entrées ({0}) ; recalculez-le d&apos;abord</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/figures.py"/>
-        <source>no rotation about the tool serves the others</source>
-        <translation>aucune rotation autour de l&apos;outil ne dessert les autres</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
-        <source>no section lies where it stands</source>
-        <translation>aucune section là où il repose</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/api.py"/>
         <source>no source</source>
         <translation>pas de source</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/remedies.py"/>
+        <source>no tested change makes the job feasible: {0}</source>
+        <translation>aucun changement essayé ne rend le travail faisable : {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/figures.py"/>
+        <source>no tool rotation reaches the others</source>
+        <translation>aucune rotation autour de l&apos;outil ne dessert les autres</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
@@ -10918,8 +10808,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
-        <source>none of its solids stands on a cylinder or cone of another: name the hub as substrate, choose a face of it, or give strategy.base; what stands on a flat base is deposited by kind: solid</source>
-        <translation>aucun de ses solides ne repose sur un cylindre ou un cône d&apos;un autre : nommez le moyeu comme substrat, choisissez une face de celui-ci, ou donnez strategy.base ; ce qui repose sur une base plane est déposé par kind: solid</translation>
+        <source>none of its solids is on a cylinder or cone of another: name the hub as substrate, choose a face, or set strategy.base; for a flat base use kind: solid</source>
+        <translation>aucun de ses solides n&apos;est sur un cylindre ou un cône d&apos;un autre : nommez le moyeu comme substrat, choisissez une face, ou fixez strategy.base ; pour une base plane utilisez kind: solid</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
@@ -10928,13 +10818,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
-        <source>none of these layers lies on another</source>
+        <source>none of these layers rests on another</source>
         <translation>aucune de ces couches ne repose sur une autre</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/remedies.py"/>
-        <source>none of these makes the job feasible, each was tried: {0}</source>
-        <translation>rien de ceci ne rend le travail faisable, tout a été essayé : {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/near_names.py"/>
@@ -10943,12 +10828,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/methods/constant.py"/>
-        <source>none of {0} values of RZ keeps the links clear in the whole job; joints.method: layer-by-layer chooses one for each bead</source>
+        <source>none of {0} values of RZ clears the links in the whole job; joints.method: layer-by-layer uses one value per bead</source>
         <translation>aucune des {0} valeurs de RZ ne garde les corps dégagés dans tout le travail ; joints.method : layer-by-layer en choisit une par cordon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/methods/constant.py"/>
-        <source>none of {0} values of RZ serves for the whole job; the nearest to it is {1} deg</source>
+        <source>none of {0} values of RZ works for the whole job; the best one is {1} deg</source>
         <translation>aucune de {0} valeurs de RZ ne sert pour tout le travail ; la plus proche est {1} deg</translation>
     </message>
     <message>
@@ -10988,7 +10873,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>not checked: no file says what {0} is made of</source>
+        <source>not checked: no file describes the shape of {0}</source>
         <translation>non vérifié : aucun fichier ne dit de quoi {0} est fait</translation>
     </message>
     <message>
@@ -11003,8 +10888,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/payload.py"/>
-        <source>not checked: the file of {0} gives no payload; deposit and what it grows on, where that is closed, at {1} g/cm3 (process.density)</source>
-        <translation>non vérifié : le fichier de {0} n’indique pas de charge ; dépôt et ce sur quoi il repose, dans la mesure où c’est fermé, à {1} g/cm3 (process.density)</translation>
+        <source>not checked: the file of {0} states no payload; deposit and closed substrate, at {1} g/cm3 (process.density)</source>
+        <translation>non vérifié : le fichier de {0} n&apos;indique pas de charge ; dépôt et substrat fermé, à {1} g/cm3 (process.density)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -11023,7 +10908,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>not checked: the welder&apos;s own schedules, which are not known here, set the feed of {0}</source>
+        <source>not checked: the welder schedules, unknown here, set the feed of {0}</source>
         <translation>non vérifié : des programmes de soudage propres, que personne ne connaît ici, disent au poste comment alimenter {0}</translation>
     </message>
     <message>
@@ -11062,11 +10947,6 @@
         <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique touchent {0} avec {1}, regardés tous les {2} deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>not every position has one of the external axes, or these are alone</source>
-        <translation>toutes les positions n&apos;ont pas d&apos;axes externes, ou celles-ci sont seules</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>not known of this machine</source>
         <translation>inconnu de cette machine</translation>
@@ -11082,11 +10962,6 @@
         <translation>remarque</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/sequence.py"/>
-        <source>nothing carries it: {0} of {1} mm of its first layer lie over nothing when they are deposited; move it onto what is there, give its substrate, or deposit first what it stands on</source>
-        <translation>rien ne le porte : {0} des {1} mm de sa première couche sont au-dessus du vide au moment de leur dépôt ; posez-le sur ce qui existe, donnez son substrat, ou déposez d&apos;abord ce sur quoi il repose</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/redundancy_map/dock.py"/>
         <source>nothing forbids it</source>
         <translation>rien ne l&apos;interdit</translation>
@@ -11097,8 +10972,13 @@
         <translation>buse</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>nozzle cone at {0} points, against platform, part and the deposit at that time, with nominal bead width and height</source>
+        <translation>cône de la buse en {0} points, contre le plateau, la pièce et le dépôt à ce moment, cordons de largeur et hauteur nominales</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>nozzle: tilt no more than needed to keep the nozzle clear of deposit and platform.</source>
+        <source>nozzle: tilt only as far as clearance to deposit and platform requires.</source>
         <translation>nozzle : pas plus d&apos;inclinaison qu&apos;il n&apos;en faut pour tenir la buse éloignée du dépôt et du plateau.</translation>
     </message>
     <message>
@@ -11137,11 +11017,6 @@
         <translation>objet {0} de {1} : {2} objets, ou objets imbriqués {3} fois</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program/beads.py"/>
-        <source>of an earlier version</source>
-        <translation>d&apos;une version antérieure</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>of its {0} solids only {1} is a solid of revolution, with {2} of the surface; select its faces to deposit it, and deposit the others as walls on a part or solids on a hub</source>
         <translation>de ses {0} solides, seul {1} tourne autour d’un axe, {2} de sa surface ; nommez les faces de celui-ci pour le déposer seul, et déposez les autres comme parois sur une pièce ou solides sur un moyeu</translation>
@@ -11158,7 +11033,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
-        <source>on its way from the bead before the nozzle would meet {0} at every retract distance and direction tried, and no way round was found; move the seam or the part, or take a more slender nozzle</source>
+        <source>on the travel from the previous bead the nozzle would hit {0} at every retract distance and direction tried, and no detour was found; move the seam or the part, or use a more slender nozzle</source>
         <translation>en venant du cordon précédent la buse rencontrerait {0} à chaque distance et direction de retrait essayée, et aucun contournement n’a été trouvé ; déplacez la couture ou la pièce, ou prenez une buse plus fine</translation>
     </message>
     <message>
@@ -11168,43 +11043,43 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/shape/compare.py"/>
-        <source>on {0} % of the faces the predicted deposit does not reach {1} mm beyond the part, on {2} % it ends within the part: at {3} the part sticks out by {4} mm. {5}</source>
-        <translation>sur {0} % des faces le dépôt prédit ne dépasse pas la pièce de {1} mm, sur {2} % il finit dans la pièce : en {3} la pièce dépasse de {4} mm. {5}</translation>
+        <source>on {0} % of the faces the predicted deposit extends less than {1} mm beyond the part, on {2} % it ends inside the part: at {3} no deposit within {4} mm. {5}</source>
+        <translation>sur {0} % des faces le dépôt prédit ne dépasse pas la pièce de {1} mm, sur {2} % il finit dans la pièce : en {3} aucun dépôt à moins de {4} mm. {5}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/shape/compare.py"/>
-        <source>on {0} % of the faces the predicted deposit does not reach {1} mm beyond the part, on {2} % it ends within the part: at {3} there is none within {4} mm. {5}</source>
-        <translation>sur {0} % des faces le dépôt prédit ne dépasse pas la pièce de {1} mm, sur {2} % il finit dans la pièce : en {3} il n&apos;y en a pas à moins de {4} mm. {5}</translation>
+        <source>on {0} % of the faces the predicted deposit extends less than {1} mm beyond the part, on {2} % it ends inside the part: at {3} the part protrudes by {4} mm. {5}</source>
+        <translation>sur {0} % des faces le dépôt prédit ne dépasse pas la pièce de {1} mm, sur {2} % il finit dans la pièce : en {3} la pièce dépasse de {4} mm. {5}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/shape/compare.py"/>
-        <source>on {0} % of the faces the predicted deposit does not reach {1} mm beyond the part, on {2} % it ends within the part: at {3} {4} mm are left to machine. {5}</source>
-        <translation>sur {0} % des faces le dépôt prédit ne dépasse pas la pièce de {1} mm, sur {2} % il finit dans la pièce : en {3} il reste {4} mm à usiner. {5}</translation>
+        <source>on {0} % of the faces the predicted deposit extends less than {1} mm beyond the part, on {2} % it ends inside the part: at {3} {4} mm are left to machine. {5}</source>
+        <translation>sur {0} % des faces le dépôt prédit ne dépasse pas la pièce de {1} mm, sur {2} % il finit dans la pièce : en {3} il reste {4} mm à usiner. {5}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/notes.py"/>
-        <source>on {0} % of the length, in {1} of {2} beads and {3} segments, the width asked for takes a speed outside of the table&apos;s {4} to {5} mm/min; it is kept within, and the width is not held: it is {6} mm at its farthest from the {7} mm. Straight beads of the table are {8} to {9} mm wide: ask for a process.bead_width among these, or measure beads at other speeds</source>
-        <translation>sur {0} % de la longueur, dans {1} de {2} cordons et {3} segments, la largeur demandée exige une vitesse hors de celles du tableau, {4} à {5} mm/min ; elle y est maintenue, et la largeur n&apos;est pas tenue : elle est de {6} mm au plus loin des {7} mm. Les cordons droits du tableau ont {8} à {9} mm de large : demandez une process.bead_width parmi celles-ci, ou mesurez des cordons à d&apos;autres vitesses</translation>
+        <source>on {0} % of the length, in {1} of {2} beads and {3} segments, the required width needs a speed outside the {4} to {5} mm/min of the table; the speed is clamped, and the width deviates: it is {6} mm at worst instead of {7} mm. Straight beads of the table are {8} to {9} mm wide: set process.bead_width in this range, or measure beads at other speeds</source>
+        <translation>sur {0} % de la longueur, dans {1} de {2} cordons et {3} segments, la largeur demandée exige une vitesse hors de celles du tableau, {4} à {5} mm/min ; elle y est maintenue, et la largeur n&apos;est pas tenue : elle est de {6} mm au plus loin des {7} mm. Les cordons droits du tableau ont {8} à {9} mm de large : demandez une process.bead_width parmi celles-ci, ou mesurez des cordons à d&apos;autres vitesses</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>on {0} of {1} beads in layer {2} bends follow one another too closely to turn the torch round them at {3}: it leans by {4} to {5} deg there instead of {6} deg; lean less, or allow a faster turn</source>
+        <source>on {0} of {1} beads in layer {2} bends are too close together to turn the torch around them at {3}: its tilt is {4} to {5} deg there instead of {6} deg; tilt less, or allow a faster turn</source>
         <translation>sur {0} de {1} cordons de la couche {2} des courbes se suivent de trop près pour que la torche tourne à {3} : elle y penche de {4} à {5} deg au lieu de {6} deg ; penchez moins, ou permettez une rotation plus rapide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>on {0} of {1} beads in {2} layers from {3} to {4} bends follow one another too closely to turn the torch round them at {5}: it leans by {6} to {7} deg there instead of {8} deg; lean less, or allow a faster turn</source>
+        <source>on {0} of {1} beads in {2} layers from {3} to {4} bends are too close together to turn the torch around them at {5}: its tilt is {6} to {7} deg there instead of {8} deg; tilt less, or allow a faster turn</source>
         <translation>sur {0} de {1} cordons dans {2} couches de {3} à {4} des courbes se suivent de trop près pour que la torche tourne à {5} : elle y penche de {6} à {7} deg au lieu de {8} deg ; penchez moins, ou permettez une rotation plus rapide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>on {0} of {1} beads the hub&apos;s normals alone turn by up to {2} deg/mm, faster than {3}; the torch follows them all the same</source>
+        <source>on {0} of {1} beads the hub normals themselves turn by up to {2} deg/mm, faster than {3}; the torch still follows them</source>
         <translation>sur {0} de {1} cordons les normales du moyeu seules tournent jusqu&apos;à {2} deg/mm, plus vite que {3} ; la torche les suit malgré tout</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>on {0} of {1} beads, {2} mm in all, the torch begins to turn ahead of corners, by up to {3} deg from what is asked, to turn no faster than {4}</source>
-        <translation>sur {0} de {1} cordons, {2} mm en tout, la torche commence à tourner avant les angles, jusqu&apos;à {3} deg de ce qui est demandé, pour ne pas tourner plus vite que {4}</translation>
+        <source>on {0} of {1} beads, {2} mm in total, the torch starts to turn before corners, deviating by up to {3} deg, to turn no faster than {4}</source>
+        <translation>sur {0} de {1} cordons, {2} mm en tout, la torche commence à tourner avant les coins, avec un écart jusqu&apos;à {3} deg, pour ne pas tourner plus vite que {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
@@ -11227,8 +11102,13 @@
         <translation>seule une boucle d&apos;attente est comprise</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/program/beads.py"/>
+        <source>only an output can change the schedule within a bead: calls stop the machine, and arc instructions may; use output, or remove the schedules of start and end</source>
+        <translation>un autre programme de soudage à l&apos;intérieur d&apos;un cordon n&apos;est transmis que par une sortie : les appels arrêtent la machine, et que les instructions d&apos;arc ne le fassent pas n&apos;a pas été confirmé ; prenez output, ou omettez les programmes de start et end</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
-        <source>only solids in plane layers have sections and volumes of layers</source>
+        <source>only solids in planar layers have sections and volumes of layers</source>
         <translation>seuls les solides en couches planes ont des sections et des volumes de couche</translation>
     </message>
     <message>
@@ -11250,6 +11130,11 @@
         <location filename="../../freecad_am/core/inspection/figures.py"/>
         <source>only {0} points are within {1} mm of the height {2} mm; measure more points there, choose other heights, or a wider band</source>
         <translation>seulement {0} points sont à moins de {1} mm de la hauteur {2} mm ; mesurez-y plus de points, choisissez d&apos;autres hauteurs, ou une bande plus large</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>only {} are entered, but at least {} are needed, as a machine without them is not loaded; enter more</source>
+        <translation>il y en a {} ; il en faut au moins {}, car une machine sans elles n&apos;est pas chargée ; saisissez-en d&apos;autres</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
@@ -11298,7 +11183,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/readout.py"/>
-        <source>out of reach with this branch</source>
+        <source>out of reach in this configuration</source>
         <translation>hors d&apos;atteinte avec cette branche</translation>
     </message>
     <message>
@@ -11317,9 +11202,19 @@
         <translation>selon</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
+        <source>over-deposition of about {0} cm3, {1} % of the beads of {2}: beads cross, or are closer to each other than their width, and layers get higher there; use narrower beads, or remove duplicates</source>
+        <translation>surdépôt d&apos;environ {0} cm3, {1} % des cordons de {2} : des cordons se croisent, ou sont plus proches que leur largeur, et les couches y deviennent plus hautes ; utilisez des cordons plus étroits, ou retirez les doublons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
+        <source>over-deposition of about {0} cm3, {1} % of {2}: beads overlap where lines and links meet contours, and in spaces narrower than a bead, and layers get higher there; use fill: contours, narrower beads, or a wider strategy.gap</source>
+        <translation>surdépôt d&apos;environ {0} cm3, {1} % de {2} : des cordons se recouvrent là où lignes et liens rencontrent les contours, et dans les espaces plus étroits qu&apos;un cordon, et les couches y deviennent plus hautes ; utilisez fill: contours, des cordons plus étroits, ou un strategy.gap plus grand</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
-        <source>parallel to where it stands</source>
-        <translation>parallèles à son appui</translation>
+        <source>parallel to its base</source>
+        <translation>parallèles à sa base</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -11370,6 +11265,11 @@
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>planned joints of the deposit driven through the joint-frame chain, which planning does not use</source>
         <translation>articulations planifiées du dépôt menées par la chaîne des repères, que la planification n’emploie pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <source>planning about {0} points in {1} layers takes about {2} min of processor time and {3} GB of memory; raise strategy.layer_height or strategy.chord_error to reduce them</source>
+        <translation>environ {0} points en {1} couches sont planifiés, ce qui prend environ {2} min de processeur et {3} Go de mémoire ; une plus grande valeur de strategy.layer_height ou de strategy.chord_error en réduit le nombre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/placement/place.py"/>
@@ -11443,7 +11343,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>positions on the part need the kinematics that M428 chooses; set it to true, or use `motion: joint`</source>
+        <source>positions on the part need the kinematics that M428 selects; set it to true, or use `motion: joint`</source>
         <translation>les positions sur la pièce demandent la cinématique que choisit M428 ; mettez-le à true, ou utilisez `motion: joint`</translation>
     </message>
     <message>
@@ -11458,8 +11358,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/simulation/payload.py"/>
-        <source>process.density sets what it weighs; the payload is in the machine&apos;s file</source>
-        <translation>process.density dit ce qu&apos;elle pèse ; ce que la machine porte est dans son fichier</translation>
+        <source>process.density sets its weight; the payload is in the machine file</source>
+        <translation>process.density donne son poids ; la charge est dans le fichier machine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
@@ -11510,11 +11410,6 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>proportional</source>
         <translation>proportionnelle</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/fields/pendants.py"/>
-        <source>q1 to q4 are together {0} long, a quaternion is 1; look at the digits</source>
-        <translation>q1 à q4 ont ensemble une longueur de {0}, un quaternion en a une de 1 ; vérifiez les chiffres</translation>
     </message>
     <message>
         <location filename="../../freecad_am/plots/fit.py"/>
@@ -11577,11 +11472,6 @@
         <translation>lecture des points</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/program.py"/>
-        <source>reading the program back does not give the planned path; do not use it</source>
-        <translation>la relecture du programme ne donne pas la trajectoire planifiée ; ne l&apos;utilisez pas</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>recompute it</source>
         <translation>recalculez-le</translation>
@@ -11612,23 +11502,33 @@
         <translation>refuser</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>relative to link 2</source>
+        <translation>par rapport au corps 2</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>relative to the horizontal</source>
+        <translation>par rapport à l&apos;horizontale</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>repair the mesh (Mesh, Analyze)</source>
         <translation>réparez le maillage (Mesh, Analyser)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/interop/export.py"/>
-        <source>reports are written as .html; end the name with it</source>
+        <source>reports are written as .html; use the extension .html</source>
         <translation>les rapports sont écrits en .html ; terminez le nom ainsi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>retracts, travels and approaches driven again, at {0} places {1} mm apart, against bodies, platform and beads as wide and high as they are by then</source>
+        <source>retracts, travels and approaches simulated again, at {0} places {1} mm apart, against obstacles, platform and beads with their width and height at that time</source>
         <translation>retraits, transferts et approches menés à nouveau, en {0} points distants de {1} mm, contre les corps, le plateau et les cordons avec leur largeur et leur hauteur du moment</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/locked.py"/>
-        <source>robots need all their axes; only machines with rotary axes can do with four; use none</source>
+        <source>robots need all their axes; only five-axis machines can work with four; use none</source>
         <translation>les robots ont besoin de tous leurs axes ; seules les machines à axes rotatifs peuvent se contenter de quatre ; utilisez none</translation>
     </message>
     <message>
@@ -11653,23 +11553,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/notes.py"/>
-        <source>rows of the bead table were laid alike and measured differently: {0}; measure these beads again, or leave one of each pair out</source>
+        <source>rows of the bead table have the same settings but different results: {0}; measure these beads again, or remove one of each pair</source>
         <translation>des lignes du tableau de cordons ont les mêmes réglages et des mesures différentes : {0} ; mesurez ces cordons de nouveau ou retirez une ligne de chaque paire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>
-        <source>rows that were laid alike were measured differently: {0}; with both of each pair beads would get wider with speed; measure these beads again, or leave the wrong one out</source>
-        <translation>des lignes déposées de la même façon ont été mesurées différemment : {0} ; avec les deux de chaque paire, les cordons s&apos;élargiraient avec la vitesse ; mesurez ces cordons à nouveau, ou retirez la ligne fausse</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/model/predicted.py"/>
-        <source>run as fast as the axes can follow, beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm; set strategy.layer_height to what the beads make{4}</source>
-        <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm ; réglez strategy.layer_height sur ce que font les cordons{4}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/model/predicted.py"/>
-        <source>run as fast as the axes can follow, beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm{4}</source>
-        <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
+        <source>rows with the same settings have different results: {0}; with both of each pair the bead width would increase with speed; measure these beads again, or remove the wrong row</source>
+        <translation>des lignes aux mêmes réglages ont des résultats différents : {0} ; avec les deux de chaque paire la largeur augmenterait avec la vitesse ; mesurez ces cordons à nouveau, ou retirez la ligne fausse</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -11690,6 +11580,21 @@
         <location filename="../../freecad_am/core/planning/turns/fit.py"/>
         <source>seam moved for a limited axis</source>
         <translation>couture déplacée pour un axe limité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/upright.py"/>
+        <source>searching for a change that clears the nozzle: {0}</source>
+        <translation>recherche d&apos;un changement qui dégage la buse : {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/remedies.py"/>
+        <source>searching for a feasible change: {0}</source>
+        <translation>recherche d&apos;un changement faisable : {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/suited.py"/>
+        <source>searching for a suitable cell: {0}</source>
+        <translation>recherche d&apos;une cellule où cela peut se faire : {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/methods/constant.py"/>
@@ -11723,17 +11628,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
-        <source>set strategy.bead_overlap to {0} %, or feed less wire</source>
+        <source>set strategy.bead_overlap to {0} %, or reduce the wire feed</source>
         <translation>réglez strategy.bead_overlap à {0} %, ou apportez moins de fil</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
-        <source>set strategy.bead_overlap to {0} %, or leave it out and set process.fill_width to spacing</source>
+        <source>set strategy.bead_overlap to {0} %, or remove it and set process.fill_width to spacing</source>
         <translation>réglez strategy.bead_overlap à {0} %, ou omettez-le et réglez process.fill_width à spacing</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
-        <source>set strategy.bead_spacing to {0} mm, or feed less wire</source>
+        <source>set strategy.bead_spacing to {0} mm, or reduce the wire feed</source>
         <translation>réglez strategy.bead_spacing à {0} mm, ou apportez moins de fil</translation>
     </message>
     <message>
@@ -11743,7 +11648,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
-        <source>set strategy.layer_height to {0} mm, or feed less wire</source>
+        <source>set strategy.layer_height to {0} mm, or reduce the wire feed</source>
         <translation>réglez strategy.layer_height à {0} mm, ou apportez moins de fil</translation>
     </message>
     <message>
@@ -11753,13 +11658,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
-        <source>several features in one go are not fitted to a scan yet; leave it out, or deposit them one by one</source>
+        <source>several features together cannot be fitted to a scan yet; remove it, or deposit them one by one</source>
         <translation>plusieurs entités à la fois ne s&apos;ajustent pas encore à une numérisation ; retirez-la, ou déposez-les une par une</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/shapes/places.py"/>
+        <source>several link groups show it ({0}), each in its own place; choose one group, or make a link to the object</source>
+        <translation>plusieurs groupes de liens le montrent ({0}), chacun à sa propre place ; choisissez un groupe, ou faites un lien vers l&apos;objet</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/plan.py"/>
-        <source>several solutions of this arm bear the same configuration; along each bead the one it begins with is followed</source>
-        <translation>plusieurs solutions de ce bras ont la même configuration ; le long de chaque cordon, celle du début est suivie</translation>
+        <source>several solutions of the arm share a configuration; each bead keeps the solution of its first point</source>
+        <translation>plusieurs solutions du bras partagent une configuration ; chaque cordon garde la solution de son premier point</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
@@ -11768,22 +11678,22 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>shapes of all links, against each other too, every {0} deg of the whole motion: they come nearer than {1} mm to nothing</source>
+        <source>shapes of all links, also against each other, every {0} deg of the whole motion: they come nearer than {1} mm to nothing</source>
         <translation>formes de tous les corps, les uns par rapport aux autres aussi, tous les {0} deg de tout le mouvement : ils ne s’approchent à moins de {1} mm de rien</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>shapes of all links, against each other too, every {0} deg of the whole motion: they come nearer than {1} mm to {2} with {3}</source>
+        <source>shapes of all links, also against each other, every {0} deg of the whole motion: they come nearer than {1} mm to {2} with {3}</source>
         <translation>formes de tous les corps, les uns par rapport aux autres aussi, tous les {0} deg de tout le mouvement : ils s’approchent à moins de {1} mm de {2} avec {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>shapes of all links, against each other too, every {0} deg of the whole motion: they touch nothing</source>
+        <source>shapes of all links, also against each other, every {0} deg of the whole motion: they touch nothing</source>
         <translation>formes de tous les corps, les uns par rapport aux autres aussi, tous les {0} deg de tout le mouvement : ils ne touchent rien</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>shapes of all links, against each other too, every {0} deg of the whole motion: they touch {1} with {2}</source>
+        <source>shapes of all links, also against each other, every {0} deg of the whole motion: they touch {1} with {2}</source>
         <translation>formes de tous les corps, les uns par rapport aux autres aussi, tous les {0} deg de tout le mouvement : ils touchent {1} avec {2}</translation>
     </message>
     <message>
@@ -11823,7 +11733,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>signs and zeros of {} are others</source>
+        <source>signs and zeros of {} differ</source>
         <translation>les signes et zéros de {} sont autres</translation>
     </message>
     <message>
@@ -11867,19 +11777,14 @@
         <translation>certaines de ses faces n&apos;ont pas de surfaces : il contient des triangles (géométrie tessellée AP242) ; {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
-        <source>some of what is selected is not a solid</source>
-        <translation>une partie de la sélection n&apos;est pas un solide</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>some points have no joint values; plan a joint path that reaches them all</source>
+        <source>some points have no joint values; plan a joint path that reaches all points</source>
         <translation>certains points n&apos;ont pas de valeurs articulaires ; planifiez une trajectoire articulaire qui les atteint tous</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/stage.py"/>
-        <source>something else is being computed; wait until that is done, or cancel it</source>
-        <translation>autre chose est en cours de calcul ; attendez que ce soit fini, ou annulez-le</translation>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
+        <source>some positions lack the external axes, or have only these</source>
+        <translation>certaines positions n&apos;ont pas les axes externes, ou n&apos;ont que ceux-ci</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -11928,17 +11833,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/phases.py"/>
-        <source>start and end take {0} mm of this bead of {1} mm; make process.start and process.end shorter, or those of its class</source>
+        <source>start and end take {0} mm of a bead of {1} mm; shorten process.start and process.end, or those of its class</source>
         <translation>le début et la fin prennent {0} mm de ce cordon de {1} mm ; raccourcissez process.start et process.end, ou ceux de sa classe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/classes.py"/>
-        <source>start and end take {0} mm with their ramps, and a bead of this class in layer {1} is {2} mm long; make them shorter for the class, or lay no beads as short as that</source>
+        <source>start and end take {0} mm with their ramps, but a bead of the class in layer {1} is {2} mm long; shorten them for the class, or avoid such short beads</source>
         <translation>le début et la fin prennent {0} mm avec leurs rampes, et un cordon de cette classe dans la couche {1} est long de {2} mm ; raccourcissez-les pour la classe, ou ne déposez pas de cordons aussi courts</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/classes.py"/>
-        <source>start and end take {0} mm, and a bead of this class in layer {1} is {2} mm long; make them shorter for the class, or lay no beads as short as that</source>
+        <source>start and end take {0} mm, but a bead of the class in layer {1} is {2} mm long; shorten them for the class, or avoid such short beads</source>
         <translation>le début et la fin prennent {0} mm, et un cordon de cette classe dans la couche {1} est long de {2} mm ; raccourcissez-les pour la classe, ou ne déposez pas de cordons aussi courts</translation>
     </message>
     <message>
@@ -11983,7 +11888,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
-        <source>symmetry-plane is for walls; plane layers grow along their normal: use local or fixed</source>
+        <source>symmetry-plane is for walls; planar layers grow along their normal: use local or fixed</source>
         <translation>symmetry-plane est pour les parois ; les couches planes croissent suivant leur normale : choisissez local ou fixed</translation>
     </message>
     <message>
@@ -12027,23 +11932,18 @@
         <translation>il n&apos;a pas été trouvé documenté que VAL 3 mette plusieurs sorties à un seul numéro</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>that a robot swings the part under a torch that stands was not confirmed</source>
-        <translation>qu&apos;un robot balaie avec la pièce sous une torche fixe n&apos;a pas été confirmé</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the X of {0} points out of the flange, not its Z; the flange frame is rotated, as tool0 is from flange</source>
         <translation>sur {0} X sort de la bride, et non Z ; le repère de bride est tourné, comme tool0 par rapport à flange</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>the Z of the flange does not lie along axis 6</source>
+        <source>the Z of the flange is not parallel to axis 6</source>
         <translation>le Z de la bride n&apos;est pas le long de l&apos;axe 6</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>the Z of the flange points back into the wrist, not out of it</source>
+        <source>the Z of the flange points into the wrist instead of outwards</source>
         <translation>le Z de la bride pointe vers le poignet et non vers l&apos;extérieur</translation>
     </message>
     <message>
@@ -12055,11 +11955,6 @@
         <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>the analogue output stops the machine within a bead, or its compressor</source>
         <translation>la sortie analogique arrête la machine au sein d&apos;un cordon, ou son compresseur</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>the arc burns already, or is struck where the robot does not stand</source>
-        <translation>l&apos;arc brûle déjà, ou est amorcé là où le robot n&apos;est pas à l&apos;arrêt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
@@ -12088,12 +11983,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>the arc is already on, or is struck while the robot moves</source>
+        <translation>l&apos;arc est déjà allumé, ou est amorcé pendant que le robot bouge</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
         <source>the arc is struck with other weld data, or another weave</source>
         <translation>l&apos;arc est amorcé avec d&apos;autres données de soudage, ou un autre balayage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/methods/closed_form.py"/>
-        <source>the axes leave the bead by {0} mm, its direction by {1} deg between two points however many are added: near a pole; tilt away from it</source>
+        <source>the axes deviate from the bead by {0} mm and {1} deg between two points, no matter how many are added: it is near a pole; tilt away from it</source>
         <translation>les axes quittent le cordon de {0} mm, sa direction de {1} deg entre deux points, si nombreux qu&apos;on les ajoute : près d&apos;un pôle ; inclinez pour vous en éloigner</translation>
     </message>
     <message>
@@ -12123,7 +12023,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
-        <source>the base comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one of them in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <source>the base comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la base s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
@@ -12133,7 +12033,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
-        <source>the base comes nearer than {0} mm to {1}, or touches it; move one of them in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <source>the base comes nearer than {0} mm to {1}, or touches it; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la base s’approche à moins de {0} mm de {1}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
@@ -12147,13 +12047,18 @@
         <translation>le repère de base</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
+        <source>the base frame of {0} is unknown: positions of the program refer to its base_link. Compare the pose of a known point on the controller before running the program, set base in a copy of the machine file, or use program.motion: joint</source>
+        <translation>le repère de base de {0} est inconnu : les positions du programme se rapportent à son base_link. Comparez la pose d&apos;un point connu sur la commande avant d&apos;exécuter le programme, fixez base dans une copie du fichier machine, ou utilisez program.motion: joint</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
-        <source>the base of {0} has a diameter of {1} mm and reaches over the platform; check cell.platform_diameter (0 for none)</source>
+        <source>the base of {0} has a diameter of {1} mm and exceeds the platform; check cell.platform_diameter (0 for none)</source>
         <translation>la base de {0} a un diamètre de {1} mm et dépasse du plateau ; vérifiez cell.platform_diameter (0 pour aucun)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
-        <source>the base of {0} has a diameter of {1} mm and reaches over the platform; use cell.mount: feature, move the part, or check cell.platform_diameter (0 for none)</source>
+        <source>the base of {0} has a diameter of {1} mm and exceeds the platform; use cell.mount: feature, move the part, or check cell.platform_diameter (0 for none)</source>
         <translation>la base de {0} a un diamètre de {1} mm et dépasse du plateau ; utilisez cell.mount: feature, déplacez la pièce, ou vérifiez cell.platform_diameter (0 pour aucun)</translation>
     </message>
     <message>
@@ -12173,12 +12078,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/classes.py"/>
-        <source>the bead model sets the travel speed of all beads; leave it out, or use bead_model: none</source>
+        <source>the bead model sets the travel speed of every bead; remove it, or use bead_model: none</source>
         <translation>le modèle de cordon règle la vitesse d&apos;avance de tous les cordons ; omettez-la, ou prenez bead_model: none</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <source>the bead width increases with speed (m = {0}); check the columns of the table</source>
+        <translation>les cordons s&apos;élargissent avec la vitesse (m = {0}) ; vérifiez les colonnes du tableau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/model/bead_table.py"/>
-        <source>the calibration table cannot be read ({0}); give none, csw or the path of one</source>
+        <source>the calibration table cannot be read ({0}); use none, csw or the path of a table</source>
         <translation>le tableau d&apos;étalonnage ne peut pas être lu ({0}) ; donnez none, csw ou le chemin d&apos;un tableau</translation>
     </message>
     <message>
@@ -12193,13 +12103,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/simulation/payload.py"/>
-        <source>the centre of gravity of the part, {0} kg by then, is {1} mm from the last axis of {2} ({3} mm when it is finished), which carries {4} mm with {5} kg; put it nearer to the middle (cell.platform may be a pose); {6}</source>
+        <source>the centre of gravity of the part, {0} kg at that time, is {1} mm from the last axis of {2} ({3} mm when finished), whose payload is {4} mm with {5} kg; move it nearer to the axis (cell.platform may be a pose); {6}</source>
         <translation>le centre de gravité de la pièce, {0} kg à ce moment, est à {1} mm du dernier axe de {2} ({3} mm une fois finie), qui porte {4} mm avec {5} kg ; rapprochez-la du milieu (cell.platform peut être une pose) ; {6}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/simulation/payload.py"/>
-        <source>the centre of gravity of the part, {0} kg by then, is {1} mm from the last axis of {2} ({3} mm when it is finished), which carries {4} mm; put it nearer to the middle (cell.platform may be a pose); {5}</source>
+        <source>the centre of gravity of the part, {0} kg at that time, is {1} mm from the last axis of {2} ({3} mm when finished), whose payload is {4} mm; move it nearer to the axis (cell.platform may be a pose); {5}</source>
         <translation>le centre de gravité de la pièce, {0} kg à ce moment, est à {1} mm du dernier axe de {2} ({3} mm une fois finie), qui porte {4} mm ; rapprochez-la du milieu (cell.platform peut être une pose) ; {5}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chord_error.py"/>
+        <source>the chord error is {0} mm, suitable for a part of {1} mm and its beads; set strategy.chord_error to change it</source>
+        <translation>les cordons sont droits à {0} mm près, selon la taille de la pièce ({1} mm) et ses cordons ; fixez strategy.chord_error pour une autre valeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/figures.py"/>
@@ -12213,13 +12128,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_table.py"/>
-        <source>the column {0} is not known; remove it, or name it one of {1}</source>
-        <translation>la colonne {0} est inconnue ; supprimez-la ou nommez-la l&apos;un de {1}</translation>
+        <source>the column {0} appears twice; remove one</source>
+        <translation>la colonne {0} est là deux fois ; gardez-en une</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_table.py"/>
-        <source>the column {0} stands twice; keep one of them</source>
-        <translation>la colonne {0} est là deux fois ; gardez-en une</translation>
+        <source>the column {0} is missing; name in its first line {1}</source>
+        <translation>il n&apos;a pas de colonne {0} ; nommez dans sa première ligne {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
@@ -12227,14 +12142,14 @@
         <translation>{0} est un commentaire sans fin ; fermez-le par )</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/work/faults.py"/>
+        <source>the computation needs more memory than available; use larger steps, such as layer height and chord error, or a smaller part</source>
+        <translation>la mémoire ne suffit pas pour le calculer ; donnez des pas plus grands, comme la hauteur de couche et l&apos;erreur de corde, ou une pièce plus petite</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb/columns.py"/>
         <source>the configurations that its positions name are supervised, and are none</source>
         <translation>les configurations que nomment ses positions sont surveillées, et n&apos;en sont pas</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>the controller has numbers up to {0}, not {1}; use one of these</source>
-        <translation>la commande a des numéros jusqu&apos;à {0}, pas {1} ; prenez l&apos;un de ceux-ci</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -12253,28 +12168,38 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the controller takes schedules up to {0}, not {1}; use another number, there or in process.classes</source>
-        <translation>le contrôleur reçoit des programmes de soudage jusqu&apos;à {0}, non {1} ; prenez un autre numéro, là ou dans process.classes</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the controller&apos;s program reads analogue inputs 1 to {0}, not {1}; use one of these</source>
+        <source>the controller program reads analogue inputs 1 to {0}, not {1}; choose one in this range</source>
         <translation>le programme de la commande lit les entrées analogiques 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/post.py"/>
-        <source>the controller&apos;s program reads inputs 1 to {0}, not {1}; use one of these</source>
+        <source>the controller program reads inputs 1 to {0}, not {1}; choose one in this range</source>
         <translation>le programme de la commande lit les entrées 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc/parts.py"/>
-        <source>the controller&apos;s program sets analogue outputs 1 to {0}, not {1}; use one of these</source>
+        <source>the controller program sets analogue outputs 1 to {0}, not {1}; choose one in this range</source>
         <translation>le programme de la commande règle les sorties analogiques 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the corner before the move at the end of which the deposit is switched is rounded, and leaves {0} s of it, less than the {1} s that it would be switched ahead; use a program.trigger.lead of {2} s at most, a smaller program.blend, or a larger strategy.chord_error</source>
-        <translation>le coin avant le mouvement à la fin duquel le dépôt est commuté est arrondi, et n’en laisse que {0} s, moins que les {1} s d’avance de la commutation ; utilisez un program.trigger.lead d’au plus {2} s, un plus petit program.blend, ou une plus grande strategy.chord_error</translation>
+        <source>the controller supports schedules up to {0}, not {1}; use another number, there or in process.classes</source>
+        <translation>le contrôleur reçoit des programmes de soudage jusqu&apos;à {0}, non {1} ; prenez un autre numéro, là ou dans process.classes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the corner before the switching point is rounded, which leaves {0} s, less than the lead of {1} s; use a program.trigger.lead of at most {2} s, a smaller program.blend, or a larger strategy.chord_error</source>
+        <translation>le coin avant le point de commutation est arrondi, ce qui laisse {0} s, moins que l&apos;avance de {1} s ; utilisez un program.trigger.lead d&apos;au plus {2} s, un program.blend plus petit, ou un strategy.chord_error plus grand</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/process_data.py"/>
+        <source>the data taken from the controller is not weld data of the module, or is taken twice</source>
+        <translation>ce qui est repris de la commande n&apos;est pas une donnée de soudage du module, ou l&apos;est deux fois</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/fields/plain_text.py"/>
+        <source>the deleted object</source>
+        <translation>l&apos;objet supprimé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/texts/touching.py"/>
@@ -12282,23 +12207,18 @@
         <translation>le dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program/linear_approach.py"/>
-        <source>the deposit begins with a linear move onto the bead, and the program begins at the bead itself; give a retract distance, or another {0}</source>
-        <translation>le dépôt commence par un mouvement linéaire vers le cordon, et le programme commence au cordon même ; donnez une distance de retrait, ou un autre {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/program/linear_approach.py"/>
-        <source>the deposit begins with a linear move onto the bead, which would leave the checked way by {0} mm; give a shorter retract distance, or another {1}</source>
-        <translation>le dépôt commence par un mouvement linéaire vers le cordon, qui s&apos;écarterait de {0} mm du chemin examiné ; donnez une distance de retrait plus courte, ou un autre {1}</translation>
+        <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
+        <source>the deposit is slowed at {0} short places, {1} mm in total, here to {2} mm/s, the limit of the axes; over-deposition is up to {3} mm of bead{4}</source>
+        <translation>le dépôt est ralenti à {0} endroits courts, {1} mm en tout, ici à {2} mm/s, la limite des axes ; le surdépôt atteint {3} mm de cordon{4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/switched.py"/>
-        <source>the deposit is still on where the program ends</source>
+        <source>the deposit is still on at the end of the program</source>
         <translation>le dépôt est encore en marche là où le programme se termine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/switched.py"/>
-        <source>the deposit is switched on where it is on already</source>
+        <source>the deposit is switched on although it is already on</source>
         <translation>le dépôt est mis en marche là où il l’est déjà</translation>
     </message>
     <message>
@@ -12307,9 +12227,19 @@
         <translation>le dépôt est commandé autrement que planifié</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/program/linear_approach.py"/>
+        <source>the deposit needs a linear approach to the bead, but the program begins at the bead itself; set a retract distance, or another {0}</source>
+        <translation>le dépôt commence par un mouvement linéaire vers le cordon, et le programme commence au cordon même ; donnez une distance de retrait, ou un autre {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/docks/lookout.py"/>
         <source>the document was closed</source>
         <translation>le document a été fermé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
+        <source>the documentation does not say whether WAIT FOR polls $ANIN</source>
+        <translation>la documentation ne dit pas si WAIT FOR relit $ANIN</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/start_edges.py"/>
@@ -12318,8 +12248,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/curves_feature.py"/>
-        <source>the edges, wire, sketch or table of points to lay as beads; faces beside edges give the directions</source>
+        <source>the edges, wire, sketch or table of points to deposit as beads; faces next to edges set the directions</source>
         <translation>les arêtes, le fil, l&apos;esquisse ou le tableau de points à déposer en cordons ; des faces à côté des arêtes donnent les directions</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
+        <source>the effective bead width is unknown; plan it again</source>
+        <translation>la largeur que comptent ses cordons n&apos;est pas connue ; replanifiez-la</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -12333,23 +12268,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>the external axes are not given in order, or BASE is not coupled to what they move</source>
+        <source>the external axes are out of order, or BASE is not coupled to the part they move</source>
         <translation>les axes externes ne sont pas dans l&apos;ordre, ou BASE n&apos;est pas couplée à ce qu&apos;ils déplacent</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the external axes would end with number {0}, and the controller has {1}; use a smaller first one</source>
+        <source>the external axes would end with number {0}, but the controller has {1}; use a smaller first number</source>
         <translation>les axes externes finiraient au numéro {0}, et la commande en a {1} ; prenez un premier plus petit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/cuts.py"/>
         <source>the face folds back and intersects itself at {0}; {1}</source>
         <translation>la face se replie et se coupe en {0} ; {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>the faces chosen of {0} turn about one axis</source>
-        <translation>les faces choisies de {0} tournent autour d&apos;un axe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/checks.py"/>
@@ -12360,6 +12290,11 @@
         <location filename="../../freecad_am/objects/cladding_feature.py"/>
         <source>the faces to cover</source>
         <translation>les faces à recouvrir</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/sequence.py"/>
+        <source>the feature has no support: {0} of {1} mm of its first layer are unsupported when deposited; move it onto the existing part, set its substrate, or deposit its support first</source>
+        <translation>l&apos;élément n&apos;a pas d&apos;appui : {0} sur {1} mm de sa première couche ne sont pas portés quand ils sont déposés ; déplacez-le sur la pièce existante, fixez son substrat, ou déposez d&apos;abord son appui</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -12373,18 +12308,38 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>the field is empty; a machine file is only as reliable as its check poses</source>
+        <translation>il est vide ; un fichier de machine ne vaut pas plus que ses poses de contrôle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/figure_table.py"/>
+        <source>the field is empty; enter a number</source>
+        <translation>c&apos;est vide ; donnez un nombre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/widgets/quantity.py"/>
+        <source>the field is empty; enter a quantity in {0}</source>
+        <translation>c&apos;est vide ; donnez une grandeur en {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
         <source>the field is empty; give manufacturer and model</source>
         <translation>il est vide ; donnez le constructeur et le modèle</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
-        <source>the file cannot be read: {0}; choose one that can</source>
+        <source>the file cannot be read: {0}; choose another file</source>
         <translation>le fichier ne peut pas être lu : {0} ; choisissez-en un qui peut l&apos;être</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
         <source>the file does not exist; check its name and folder</source>
         <translation>il n&apos;y a pas de tel fichier ; vérifiez le nom et le dossier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
+        <source>the file does not exist; check the path</source>
+        <translation>il n&apos;y a pas de tel fichier ; vérifiez le chemin</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
@@ -12437,6 +12392,16 @@
         <translation>le fichier manque</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/cell.py"/>
+        <source>the file is missing; write machine: {{file: robot.urdf}}</source>
+        <translation>le fichier manque ; écrivez machine: {{file: robot.urdf}}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>the file of measured points is missing; choose one</source>
+        <translation>aucun fichier de points mesurés n&apos;est donné ; choisissez-en un</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/slicing/first_layer.py"/>
         <source>the first layer does not run once around the wall: choose one closed loop of edges that crosses each line up the wall once</source>
         <translation>la première couche ne fait pas une fois le tour de la paroi : choisissez une boucle fermée d&apos;arêtes qui croise une fois chaque ligne montant la paroi</translation>
@@ -12468,8 +12433,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/times.py"/>
-        <source>the first move, from wherever the machine stands, is not as slow as it has to be</source>
-        <translation>le premier mouvement, d&apos;où que parte la machine, n&apos;est pas aussi lent qu&apos;il le doit</translation>
+        <source>the first move, from the unknown start position, is too fast</source>
+        <translation>le premier mouvement, depuis la position de départ inconnue, est trop rapide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
@@ -12483,8 +12448,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>the flange&apos;s origin does not lie on axis 6</source>
+        <source>the flange origin is not on axis 6</source>
         <translation>l&apos;origine de la bride n&apos;est pas sur l&apos;axe 6</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/export.py"/>
+        <source>the folder {0} does not exist; create it, or choose another</source>
+        <translation>il n&apos;y a pas de dossier {0} ; créez-le, ou choisissez-en un autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <source>the folder {} does not exist</source>
+        <translation>il n&apos;y a pas de dossier {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/columns.py"/>
@@ -12518,13 +12493,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
-        <source>the hub has no cylinder and no cone on its outside; choose a face of it, or give strategy.base</source>
+        <source>the hub has no outer cylinder or cone; choose a face, or set strategy.base</source>
         <translation>le moyeu n&apos;a ni cylindre ni cône à son extérieur ; choisissez une de ses faces, ou donnez strategy.base</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
-        <source>the hub, a cylinder or cone that the solids stand on, is not known: choose it as substrate, choose faces of it, or give strategy.base; what stands on a flat base is deposited by kind: solid</source>
-        <translation>le moyeu, un cylindre ou un cône sur lequel reposent les solides, est inconnu : choisissez-le comme substrat, choisissez-en des faces, ou donnez strategy.base ; ce qui repose sur une base plane est déposé par kind: solid</translation>
+        <source>the hub, a cylinder or cone below the solids, is unknown: choose it as substrate, choose its faces, or set strategy.base; for a flat base use kind: solid</source>
+        <translation>le moyeu, un cylindre ou cône sous les solides, est inconnu : choisissez-le comme substrat, choisissez ses faces, ou fixez strategy.base ; pour une base plane utilisez kind: solid</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
@@ -12533,8 +12508,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>the instruction {0} is not understood: of a TRIGGER, which is read ahead of the motion, only one with DISTANCE=1 and a DELAY of at most 0 is</source>
-        <translation>l&apos;instruction {0} n&apos;est pas comprise : parmi les TRIGGER, lus en avance sur le mouvement, seul l&apos;est celui avec DISTANCE=1 et un DELAY d&apos;au plus 0</translation>
+        <source>the instruction {0} is not understood: a TRIGGER, which is read ahead of the motion, is only supported with DISTANCE=1 and a DELAY of at most 0</source>
+        <translation>l&apos;instruction {0} n&apos;est pas comprise : un TRIGGER, qui est lu en avance sur le mouvement, n&apos;est pris en charge qu&apos;avec DISTANCE=1 et un DELAY de 0 au plus</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
@@ -12545,6 +12520,11 @@
         <location filename="../../freecad_am/core/planning/remedies.py"/>
         <source>the job is feasible with {0}; tested, not applied</source>
         <translation>avec {0}, ce travail est faisable ; essayé, non appliqué</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <source>the job is infeasible as it is; the search for a feasible change takes up to {0} min of processor time</source>
+        <translation>le travail est infaisable tel quel ; la recherche d&apos;un changement faisable demande jusqu&apos;à {0} min de processeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
@@ -12578,7 +12558,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
-        <source>the key stands twice (lines {0} and {1}); remove one</source>
+        <source>the key appears twice (lines {0} and {1}); remove one</source>
         <translation>la clé est là deux fois (lignes {0} et {1}) ; retirez-en une</translation>
     </message>
     <message>
@@ -12607,6 +12587,21 @@
         <translation>la cinématique change pendant que le dépôt est en marche</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/read_back/switched.py"/>
+        <source>the last move before the switching point takes {0} s, less than the lead of {1} s; use a program.trigger.lead up to that time, a larger retract distance before switching on, or a larger strategy.chord_error before switching off</source>
+        <translation>le dernier mouvement avant la commutation dure {0} s, moins que l&apos;avance de {1} s ; utilisez un program.trigger.lead qui ne dépasse pas cette durée, une distance de retrait plus grande avant la mise en marche, ou un strategy.chord_error plus grand avant l&apos;arrêt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/shape/compare.py"/>
+        <source>the layer is predicted to end {0} mm above the start of the next one: up to here layers are {1} mm high on average instead of {2} mm; set strategy.layer_height to {3} mm, or change the wire feed</source>
+        <translation>d&apos;après la prédiction, cette couche finit {0} mm au-dessus du début prévu de la suivante : jusqu&apos;ici les couches font en moyenne {1} mm de haut, et {2} mm sont prévus ; mettez strategy.layer_height à {3} mm, ou changez ce que le fil apporte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/shape/compare.py"/>
+        <source>the layer is predicted to end {0} mm below the start of the next one: up to here layers are {1} mm high on average instead of {2} mm; set strategy.layer_height to {3} mm, or change the wire feed</source>
+        <translation>d&apos;après la prédiction, cette couche finit {0} mm au-dessous du début prévu de la suivante : jusqu&apos;ici les couches font en moyenne {1} mm de haut, et {2} mm sont prévus ; mettez strategy.layer_height à {3} mm, ou changez ce que le fil apporte</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the limits of {0} run from {1} to {2} rad, many turns; a URDF uses radians: convert degrees, or make the joint continuous</source>
         <translation>les limites de {0} vont de {1} à {2} rad, soit de nombreux tours ; un URDF est en radians : convertissez les degrés ou rendez l&apos;articulation continue</translation>
@@ -12620,6 +12615,11 @@
         <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
         <source>the line of {0} mm covers only {1} % of the volume</source>
         <translation>la ligne de {0} mm traverse {1} % du volume</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/program/linear_approach.py"/>
+        <source>the linear approach to the bead would leave the checked path by {0} mm; use a shorter retract distance, or another {1}</source>
+        <translation>le dépôt commence par un mouvement linéaire vers le cordon, qui s&apos;écarterait de {0} mm du chemin examiné ; donnez une distance de retrait plus courte, ou un autre {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -12678,7 +12678,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>the machine does not give them; see the deviations</source>
+        <source>the machine does not reproduce them; see the deviations</source>
         <translation>la machine ne les donne pas ; voyez les écarts</translation>
     </message>
     <message>
@@ -12697,19 +12697,19 @@
         <translation>le fichier machine n&apos;a pas de controller.speed_unit ; ajoutez-le</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
+        <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in total, so that at least {4} s pass before it returns to a solid</source>
+        <translation>la machine attend avant {0} de {1} couches, jusqu&apos;à {2} s et {3} s en tout, pour qu&apos;on ne revienne à aucun solide avant {4} s</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/order.py"/>
-        <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in all, so that no layer takes less than {4} s</source>
+        <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in total, so that every layer takes at least {4} s</source>
         <translation>la machine attend avant {0} des {1} couches, jusqu&apos;à {2} s et {3} s au total, afin qu&apos;aucune couche ne dure moins de {4} s</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in all, so that no layer takes less than {4} s and no solid is returned to sooner than after {5} s</source>
+        <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in total, so that every layer takes at least {4} s and at least {5} s pass before it returns to a solid</source>
         <translation>la machine attend avant {0} couches sur {1}, jusqu&apos;à {2} s et {3} s en tout, afin qu&apos;aucune couche ne dure moins de {4} s et qu&apos;on ne revienne à aucun solide avant {5} s</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in all, so that no solid is returned to sooner than after {4} s</source>
-        <translation>la machine attend avant {0} de {1} couches, jusqu&apos;à {2} s et {3} s en tout, pour qu&apos;on ne revienne à aucun solide avant {4} s</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/material.py"/>
@@ -12718,13 +12718,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>the matrix has no inverse; give that of the controller</source>
+        <source>the matrix has no inverse; copy the matrix of the controller</source>
         <translation>la matrice n&apos;a pas d&apos;inverse ; donnez celle de la commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>the measured points cannot be read ({0}); check the path</source>
         <translation>les points mesurés ne peuvent pas être lus ({0}) ; vérifiez le chemin</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
+        <source>the memory of the controller is unknown; look it up</source>
+        <translation>la capacité de la commande n&apos;est pas connue ici ; vérifiez-la</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
@@ -12787,19 +12792,14 @@
         <translation>le module ne règle pas tout ce sur quoi compte le mouvement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/switched.py"/>
-        <source>the move at the end of which the deposit is switched takes {0} s, less than the {1} s that it would be switched ahead; use a program.trigger.lead no longer than that, a larger retract distance where it is switched on, or a larger strategy.chord_error where it is switched off</source>
-        <translation>le mouvement à la fin duquel le dépôt est commuté dure {0} s, moins que les {1} s d&apos;avance de la commutation ; utilisez un program.trigger.lead qui ne dépasse pas cette durée, une plus grande distance de retrait là où il est enclenché, ou une plus grande strategy.chord_error là où il est coupé</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the move at the end of which the deposit is switched takes {0} s, less than the {1} s that it would be switched ahead; use a program.trigger.lead of {2} s at most, a larger retract distance where it is switched on, or a larger strategy.chord_error where it is switched off</source>
-        <translation>le mouvement à la fin duquel le dépôt est commuté dure {0} s, moins que les {1} s d’avance de la commutation ; utilisez un program.trigger.lead d’au plus {2} s, une plus grande distance de retrait là où il est enclenché, ou une plus grande strategy.chord_error là où il est coupé</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>the move before it is to be approximated, and it stops there</source>
         <translation>le mouvement qui précède doit être lissé, et s&apos;arrête là</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the move before the switching point takes {0} s, less than the lead of {1} s; use a program.trigger.lead of at most {2} s, a larger retract distance before switching on, or a larger strategy.chord_error before switching off</source>
+        <translation>le mouvement avant le point de commutation dure {0} s, moins que l&apos;avance de {1} s ; utilisez un program.trigger.lead d&apos;au plus {2} s, une distance de retrait plus grande avant la mise en marche, ou un strategy.chord_error plus grand avant l&apos;arrêt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc/read.py"/>
@@ -12808,8 +12808,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>the move {0} is not understood, or its position is not there</source>
-        <translation>le mouvement {0} n&apos;est pas compris, ou sa position n&apos;existe pas</translation>
+        <source>the move {0} is not understood, or its position is missing</source>
+        <translation>le mouvement {0} n&apos;est pas compris, ou sa position manque</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/post.py"/>
@@ -12827,23 +12827,18 @@
         <translation>la buse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>the nozzle as a cone at {0} points, against platform, part and what is deposited by then; beads as wide and high as they count</source>
-        <translation>la buse comme un cône en {0} points, face au plateau, à la pièce et à ce qui est déposé à ce moment ; cordons de la largeur et de la hauteur qui comptent</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/read_back/into_platform.py"/>
-        <source>the nozzle deposits at 1 point below the platform, by {0} mm; correct its height, or the cell&apos;s platform</source>
+        <source>the nozzle deposits at 1 point below the platform, by {0} mm; correct its height, or the platform of the cell</source>
         <translation>la buse dépose à 1 point sous le plateau, de {0} mm ; corrigez sa hauteur, ou le plateau de la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/into_platform.py"/>
-        <source>the nozzle deposits at {0} points below the platform, here {1} mm; correct their heights, or the cell&apos;s platform</source>
+        <source>the nozzle deposits at {0} points below the platform, here {1} mm; correct their heights, or the platform of the cell</source>
         <translation>la buse dépose à {0} points sous le plateau, ici de {1} mm ; corrigez leurs hauteurs, ou le plateau de la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/upright.py"/>
-        <source>the nozzle is not clear with {0} either, which was tried</source>
+        <source>the nozzle is not clear with {0} either (tested)</source>
         <translation>la buse n&apos;est pas dégagée avec {0} non plus, ce qui a été essayé</translation>
     </message>
     <message>
@@ -12853,7 +12848,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/clearance/look.py"/>
-        <source>the nozzle touches {0} at {1} of {2} points; on parts of revolution it is not tilted away from fixtures: move them, or use a slimmer nozzle</source>
+        <source>the nozzle touches {0} at {1} of {2} points; on parts of revolution it does not tilt away from fixtures: move them, or use a slimmer nozzle</source>
         <translation>la buse touche {0} en {1} de {2} points ; sur les pièces de révolution elle n&apos;est pas écartée des montages : déplacez-les, ou utilisez une buse plus fine</translation>
     </message>
     <message>
@@ -12892,9 +12887,9 @@
         <translation>la buse touche {what}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the number of a schedule is set on one of 1 to {0}, not {1}; use one of these</source>
-        <translation>le numéro d&apos;un programme de soudage est mis sur une sortie de 1 à {0}, non {1} ; prenez l&apos;une d&apos;elles</translation>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
+        <source>the number must be at most {0}, not {1}; use a smaller number</source>
+        <translation>le numéro est au plus {0}, non {1} ; utilisez un numéro plus petit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
@@ -12913,7 +12908,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
-        <source>the part comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one of them in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <source>the part comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la pièce s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
@@ -12923,7 +12918,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
-        <source>the part comes nearer than {0} mm to {1}, or touches it; move one of them in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <source>the part comes nearer than {0} mm to {1}, or touches it; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la pièce s’approche à moins de {0} mm de {1}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
@@ -12938,7 +12933,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
-        <source>the part has no faces above where the deposit begins; choose another part</source>
+        <source>the part has no faces above the start of the deposit; choose another part</source>
         <translation>la pièce n&apos;a pas de faces au-dessus du début du dépôt ; choisissez une autre pièce</translation>
     </message>
     <message>
@@ -12957,11 +12952,6 @@
         <translation>la pièce touche {what}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/simulation/payload.py"/>
-        <source>the part weighs more than {0} kg from here on, {1} kg when it is finished, {2} kg of which it grows on, and {3} carries no more; {4}</source>
-        <translation>la pièce pèse plus de {0} kg à partir d&apos;ici, {1} kg une fois finie, dont {2} kg de ce sur quoi elle pousse, et {3} ne porte pas plus ; {4}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>the path</source>
         <translation>la trajectoire</translation>
@@ -12978,7 +12968,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/tubes/normal_layers.py"/>
-        <source>the planes normal to its centreline do not cut it in one curve each; choose other layers for this wall</source>
+        <source>the planes normal to its centre line do not cut it in one curve each; choose other layers for the wall</source>
         <translation>les plans normaux à sa ligne médiane ne la coupent pas en une courbe chacun ; choisissez d&apos;autres couches pour cette paroi</translation>
     </message>
     <message>
@@ -13023,7 +13013,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>
-        <source>the positioner is out of the robot&apos;s reach: the nearest point of the part is {0} mm from the shoulder, arm and tool stretch {1} mm at most; put the positioner nearer (cell.external)</source>
+        <source>the positioner is out of reach of the robot: the nearest point of the part is {0} mm from the shoulder, and arm and tool reach {1} mm; move the positioner nearer (cell.external)</source>
         <translation>le positionneur est hors d&apos;atteinte du robot : le point de la pièce le plus proche est à {0} mm de l&apos;épaule, bras et outil s&apos;étendent à {1} mm au plus ; rapprochez le positionneur (cell.external)</translation>
     </message>
     <message>
@@ -13072,9 +13062,14 @@
         <translation>le post-processeur {0} écrit {1} axes ; utilisez un autre post-processeur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>the program does not say where the flange is, which blends depend on; plan the joint path again</source>
-        <translation>le programme ne dit pas où est la bride, dont dépendent les lissages ; replanifiez la trajectoire articulaire</translation>
+        <location filename="../../freecad_am/read_back/selected.py"/>
+        <source>the program calls {0}, which is missing, so its motions and signals are not simulated; add its file, or check it on the controller</source>
+        <translation>le programme appelle {0}, qui manque, si bien que ses mouvements et signaux ne sont pas parcourus ; ajoutez son fichier, ou vérifiez-le sur la commande</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/program.py"/>
+        <source>the program does not read back as the planned path; do not use it</source>
+        <translation>la relecture du programme ne donne pas la trajectoire planifiée ; ne l&apos;utilisez pas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
@@ -13082,8 +13077,13 @@
         <translation>le programme n&apos;a pas de configurations de bras ; utilisez `motion: joint`</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the program has no moves; check its start</source>
+        <translation>le programme ne contient pas de mouvements ; vérifiez où il commence</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/program.py"/>
-        <source>the program has no name; give one</source>
+        <source>the program has no name; enter one</source>
         <translation>le programme n&apos;a pas de nom ; donnez-en un</translation>
     </message>
     <message>
@@ -13092,19 +13092,29 @@
         <translation>le programme n&apos;a pas de positions ; utilisez `motion: joint`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the program holds no moves; check where it starts</source>
-        <translation>le programme ne contient pas de mouvements ; vérifiez où il commence</translation>
+        <location filename="../../freecad_am/posts/ur/post.py"/>
+        <source>the program lacks the flange poses, which blends depend on; plan the joint path again</source>
+        <translation>le programme ne dit pas où est la bride, dont dépendent les lissages ; replanifiez la trajectoire articulaire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>the program of {0} will have about {1} points in {2} files, {3} MB: {4}. A larger strategy.chord_error or strategy.layer_height makes it smaller; program.max_points sets the size of a file</source>
+        <source>the program of {0} will have about {1} points in {2} files, {3} MB: {4}. A larger strategy.chord_error or strategy.layer_height makes it smaller; program.max_points limits the size of a file</source>
         <translation>le programme de {0} aura environ {1} points dans {2} fichiers, {3} Mo : {4}. Un plus grand strategy.chord_error ou strategy.layer_height le réduit ; program.max_points fixe la taille d&apos;un fichier</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
+        <source>the pulses per degree of {0} are unknown, and differ between models; make your own machine file with controller.pulses_per_degree as shown on the pendant (a position in pulses divided by the same in degrees), or plan without a program</source>
+        <translation>les impulsions par degré de {0} sont inconnues, et diffèrent d&apos;un modèle à l&apos;autre ; faites votre propre fichier machine avec controller.pulses_per_degree comme sur le pupitre (une position en impulsions divisée par la même en degrés), ou planifiez sans programme</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>the pulses per {0} of {1} differ, or are none</source>
+        <source>the pulses per {0} of {1} differ, or are missing</source>
         <translation>les impulsions par {0} de {1} diffèrent, ou sont nulles</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/fields/pendants.py"/>
+        <source>the quaternion q1 to q4 has length {0} instead of 1; check the digits</source>
+        <translation>le quaternion q1 à q4 a la longueur {0} au lieu de 1 ; vérifiez les chiffres</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/records.py"/>
@@ -13122,6 +13132,11 @@
         <translation>les points mesurés ne se posent pas sur la pièce ; donnez des paires de points pour commencer</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/results/stored.py"/>
+        <source>the result is missing; recompute it</source>
+        <translation>il n&apos;y a pas encore de résultat ; recalculez-le</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
         <source>the retract before or after the bead cannot be reached at any height, direction or rotation tried; lower process.between_layers.lift or move the part in the cell</source>
         <translation>le retrait avant ou après le cordon est hors d&apos;atteinte à chaque hauteur, direction ou rotation essayée ; diminuez process.between_layers.lift ou déplacez la pièce dans la cellule</translation>
@@ -13132,14 +13147,14 @@
         <translation>le robot doit porter soit l&apos;outil, soit l&apos;objet de travail</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/findings.py"/>
-        <source>the rotation about the tool axis would be {0} deg, outside the range allowed</source>
-        <translation>la rotation autour de l&apos;axe de l&apos;outil serait de {0} deg, hors de la plage permise</translation>
+        <location filename="../../freecad_am/objects/fields/pendants.py"/>
+        <source>the rotation vector has a length of {0} rad, more than a turn; enter RX RY RZ in rad, as shown on the pendant</source>
+        <translation>le vecteur de rotation a une longueur de {0} rad, plus d&apos;un tour ; donnez RX RY RZ en rad, comme le pupitre les affiche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/pendants.py"/>
-        <source>the rotation vector is {0} rad long, more than a turn; give RX RY RZ in rad, as the pendant shows them</source>
-        <translation>le vecteur de rotation a une longueur de {0} rad, plus d&apos;un tour ; donnez RX RY RZ en rad, comme le pupitre les affiche</translation>
+        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
+        <source>the row has more values than columns; write decimals with a point</source>
+        <translation>il a plus de valeurs que de colonnes ; écrivez les décimales avec un point</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
@@ -13148,7 +13163,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/scan_checks.py"/>
-        <source>the scan extends over {0} mm, {1} over {2} mm; check its unit, substrate.scan_unit, and what was scanned</source>
+        <source>the scan extends over {0} mm, {1} over {2} mm; check its unit, substrate.scan_unit, and the scanned object</source>
         <translation>la numérisation s&apos;étend sur {0} mm, {1} sur {2} mm ; vérifiez son unité, substrate.scan_unit, et ce qui a été numérisé</translation>
     </message>
     <message>
@@ -13162,24 +13177,64 @@
         <translation>la numérisation est à {0} mm de la couche {1} en {2}, plus que substrate.scan_within = {3} mm ; vérifiez qu&apos;elle montre la bonne pièce, dans la bonne unité et à la bonne place</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the schedule number needs an output from 1 to {0}, not {1}; choose one in this range</source>
+        <translation>le numéro d&apos;un programme de soudage est mis sur une sortie de 1 à {0}, non {1} ; prenez l&apos;une d&apos;elles</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/read_back/events.py"/>
         <source>the schedule that is sent is not the planned one</source>
         <translation>un autre programme de soudage que prévu est transmis</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
-        <source>the seams of {0} beads were moved to keep an axis within its limits</source>
+        <source>the seams of {0} beads were moved to keep an axis within limits</source>
         <translation>les coutures de {0} cordons ont été déplacées pour garder un axe dans ses limites</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/remedies.py"/>
-        <source>the search for what makes the job feasible stopped after {0} s; tried in vain by then: {1}</source>
+        <source>the search for a feasible job stopped after {0} s; tried without success: {1}</source>
         <translation>la recherche d&apos;une solution faisable s&apos;est arrêtée après {0} s ; essayé en vain jusque-là : {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <source>the search for curved layers on a grid of about {0} nodes takes about {1} min of processor time; a larger strategy.layer_height, or layers: planes, takes less</source>
+        <translation>les couches courbes sont cherchées sur une grille d&apos;environ {0} nœuds, ce qui prend environ {1} min de processeur ; un strategy.layer_height plus grand, ou layers: planes, en prend moins</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>the search has {0} poses, more than {1}; use a larger step or a smaller box</source>
+        <translation>cela fait {0} poses, plus que {1} ; donnez un pas plus grand ou une boîte plus petite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/records.py"/>
         <source>the second group of P[{0}] is not understood</source>
         <translation>le deuxième groupe de P[{0}] n&apos;est pas compris</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <source>the selected faces of {0} share no axis of revolution, and the part is thicker there than a bead of {1} mm, so they are covered</source>
+        <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe, et elle y est plus épaisse qu&apos;un cordon de {1} mm, elles sont donc recouvertes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <source>the selected faces of {0} share no axis of revolution, so they are a wall that starts on the platform if nothing else supports it</source>
+        <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe : c&apos;est une paroi qui part du plateau là où rien ne la porte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <source>the selected faces of {0} share no axis of revolution, so they are a wall; it needs a substrate, or start edges</source>
+        <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe : c&apos;est une paroi ; il lui faut un substrat, ou des arêtes d&apos;où partir</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <source>the selected faces of {0} share one axis of revolution</source>
+        <translation>les faces choisies de {0} tournent autour d&apos;un axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <source>the selection includes an object that is not a solid</source>
+        <translation>la sélection contient un objet qui n&apos;est pas un solide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
@@ -13205,6 +13260,11 @@
         <location filename="../../freecad_am/core/kinematics/torch.py"/>
         <source>the shape is open, so its inside is undefined; give closed solids</source>
         <translation>la forme est ouverte, si bien que son intérieur n&apos;est pas défini ; donnez des solides fermés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>the shape of {0} is unknown, so nozzle, torch and robot are not checked against it; add bodies to its machine file, or list its fixed parts in cell.obstacles</source>
+        <translation>la forme de {0} est inconnue, si bien que buse, torche et robot ne sont pas contrôlés par rapport à lui ; ajoutez bodies à son fichier machine, ou énumérez ses parties fixes dans cell.obstacles</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
@@ -13273,7 +13333,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>the speed {0} is none</source>
+        <source>the speed {0} is not valid</source>
         <translation>la vitesse {0} n&apos;en est pas une</translation>
     </message>
     <message>
@@ -13288,12 +13348,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/notes.py"/>
-        <source>the table was measured at a wire feed of {0} mm/s, the job has {1} mm/s; set process.wire.feed to auto or to that, or measure a table at it</source>
+        <source>the table was measured at a wire feed of {0} mm/s, but the job uses {1} mm/s; set process.wire.feed to auto or to the measured feed, or measure a table at the feed of the job</source>
         <translation>le tableau a été mesuré avec un dévidage de {0} mm/s, le travail a {1} mm/s ; mettez process.wire.feed à auto ou à cette valeur, ou mesurez un tableau avec celle du travail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/notes.py"/>
-        <source>the table was measured at a wire feed of {0} to {1} mm/s, the job has {2} mm/s; set process.wire.feed to auto or to that, or measure a table at it</source>
+        <source>the table was measured at a wire feed of {0} to {1} mm/s, but the job uses {2} mm/s; set process.wire.feed to auto or to the measured feed, or measure a table at the feed of the job</source>
         <translation>la table a été mesurée à une vitesse de fil de {0} à {1} mm/s, le travail a {2} mm/s ; mettez process.wire.feed à auto ou à une de celles-ci, ou mesurez une table à cette vitesse</translation>
     </message>
     <message>
@@ -13318,7 +13378,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/verify.py"/>
-        <source>the text has {0} moves, planned are {1}</source>
+        <source>the text has {0} moves, but {1} are planned</source>
         <translation>le texte a {0} mouvements, {1} sont planifiés</translation>
     </message>
     <message>
@@ -13338,12 +13398,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/ways.py"/>
-        <source>the text moves {0} from axis {1} on, the program {2} from axis {3} on</source>
+        <source>the text moves {0} from axis {1} on, but the program {2} from axis {3} on</source>
         <translation>le texte déplace {0} à partir de l&apos;axe {1}, le programme {2} à partir de l&apos;axe {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/ways.py"/>
-        <source>the text names configurations of an arm, and the machine has none</source>
+        <source>the text names arm configurations, which the machine does not have</source>
         <translation>le texte nomme des configurations d&apos;un bras, et la machine n&apos;en a pas</translation>
     </message>
     <message>
@@ -13372,24 +13432,14 @@
         <translation>les temps d&apos;un cordon ne font pas la somme planifiée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>the tip moves at {0} mm/s on the move at the end of which the deposit is switched, and the lead is programmed as a distance before that place; give a retract distance, or leave program.trigger.lead out</source>
-        <translation>la pointe avance à {0} mm/s dans le mouvement à la fin duquel le dépôt est commuté, et l&apos;on indique au contrôleur à quelle distance de cette fin ; donnez une distance de retrait, ou omettez program.trigger.lead</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/planning/external/level.py"/>
-        <source>the tool axis would be {0} deg from the vertical, build_direction.max_from_vertical allows {1} deg, and nothing turns the part; put it on a positioner, or allow more</source>
+        <source>the tool axis would be {0} deg from the vertical, build_direction.max_from_vertical allows {1} deg, and nothing turns the part; put it on a positioner, or raise the limit</source>
         <translation>l&apos;axe de l&apos;outil serait à {0} deg de la verticale, build_direction.max_from_vertical permet {1} deg, et rien ne tourne la pièce ; mettez-la sur un positionneur, ou permettez plus</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/external/level.py"/>
-        <source>the tool axis would be {0} deg from the vertical, build_direction.max_from_vertical allows {1} deg; the positioner cannot turn the part so far: mount the part otherwise, or allow more</source>
-        <translation>l&apos;axe de l&apos;outil serait à {0} deg de la verticale, build_direction.max_from_vertical permet {1} deg ; le positionneur ne peut pas tourner la pièce autant : montez la pièce autrement, ou permettez plus</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/ur/numbers.py"/>
-        <source>the tool goes {0} mm past a point that is not stopped at, too little for a blend radius, and the robot would stop there with the deposit on; use a larger strategy.chord_error, or `program.blend: 0` to stop at every point</source>
-        <translation>l&apos;outil parcourt {0} mm près d&apos;un point sans arrêt, trop peu pour un rayon de lissage, et le robot s&apos;y arrêterait en déposant ; utilisez un strategy.chord_error plus grand, ou `program.blend: 0` pour s&apos;arrêter à chaque point</translation>
+        <source>the tool axis would be {0} deg from the vertical, build_direction.max_from_vertical allows {1} deg, and the positioner cannot compensate; mount the part differently, or raise the limit</source>
+        <translation>l&apos;axe de l&apos;outil serait à {0} deg de la verticale, build_direction.max_from_vertical permet {1} deg, et le positionneur ne peut pas compenser ; montez la pièce autrement, ou augmentez la limite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/points.py"/>
@@ -13400,6 +13450,16 @@
         <location filename="../../freecad_am/verify.py"/>
         <source>the tool is turned otherwise than planned</source>
         <translation>l&apos;outil est tourné autrement que planifié</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur/numbers.py"/>
+        <source>the tool passes a point by {0} mm without a stop, too little for a blend radius, so the robot would stop there with the deposit on; use a larger strategy.chord_error, or `program.blend: 0` to stop at every point</source>
+        <translation>l&apos;outil parcourt {0} mm près d&apos;un point sans arrêt, trop peu pour un rayon de lissage, et le robot s&apos;y arrêterait en déposant ; utilisez un strategy.chord_error plus grand, ou `program.blend: 0` pour s&apos;arrêter à chaque point</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/findings.py"/>
+        <source>the tool rotation would be {0} deg, outside the allowed range</source>
+        <translation>la rotation autour de l&apos;axe de l&apos;outil serait de {0} deg, hors de la plage permise</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -13418,7 +13478,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
-        <source>the torch comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one of them in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <source>the torch comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la torche s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
@@ -13428,7 +13488,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
-        <source>the torch comes nearer than {0} mm to {1}, or touches it; move one of them in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <source>the torch comes nearer than {0} mm to {1}, or touches it; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la torche s’approche à moins de {0} mm de {1}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
@@ -13462,13 +13522,23 @@
         <translation>la transformation change pendant que le dépôt est en marche</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/model/material.py"/>
+        <source>the travel speed of beads is {0} to {1} mm/s, but {2} at {3} mm/s or more; change process.travel_speed, process.bead_width or process.classes, or measure beads at these speeds</source>
+        <translation>les cordons sont déposés de {0} à {1} mm/s, et {2} à {3} mm/s ou plus ; changez process.travel_speed, process.bead_width ou process.classes, ou mesurez des cordons à ces vitesses</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/model/material.py"/>
+        <source>the travel speed of beads is {0} to {1} mm/s, but {2} at {3} to {4} mm/s; change process.travel_speed, process.bead_width or process.classes, or measure beads at these speeds</source>
+        <translation>les cordons sont déposés de {0} à {1} mm/s, et {2} de {3} à {4} mm/s ; changez process.travel_speed, process.bead_width ou process.classes, ou mesurez des cordons à ces vitesses</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>the unit in {0} is not supported; use mm, cm, m, um or inch</source>
         <translation>l&apos;unité dans {0} n&apos;est pas lue ; utilisez mm, cm, m, um ou inch</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>the unit of V is a setting of the controller of {0}, and another one is another speed; give controller.speed_unit in a machine file of your own, or use `motion: joint`</source>
+        <source>the unit of V is a setting of the controller of {0}, and a wrong one changes the speed; set controller.speed_unit in your own machine file, or use `motion: joint`</source>
         <translation>l&apos;unité de V est un réglage de la commande de {0}, et une autre unité est une autre vitesse ; donnez controller.speed_unit dans un fichier machine à vous, ou utilisez `motion: joint`</translation>
     </message>
     <message>
@@ -13482,13 +13552,23 @@
         <translation>l&apos;élément inconnu {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/checks/placed.py"/>
+        <source>the value is a deleted object; give a number or a text</source>
+        <translation>une valeur est un objet qui a été supprimé ; donnez un nombre ou un texte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>the value is missing; give {0}</source>
+        <translation>il n&apos;y a pas de valeur ; donnez {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb/modules.py"/>
         <source>the value of {0} is not understood</source>
         <translation>la valeur de {0} n&apos;est pas comprise</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/files.py"/>
-        <source>the values of {0} are not those from 0 to its size, each once</source>
+        <source>the values of {0} do not run from 0 to its size, each once</source>
         <translation>les valeurs de {0} ne sont pas celles de 0 à sa taille, chacune une fois</translation>
     </message>
     <message>
@@ -13503,8 +13583,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
-        <source>the wall and what it grows on are the same, {0}; choose the part that is there before it, or none where the wall starts on the platform or from edges</source>
-        <translation>la paroi et ce sur quoi elle croît sont la même pièce, {0} ; choisissez la pièce qui est là avant elle, ou aucune si la paroi commence sur la plateforme ou à des arêtes</translation>
+        <source>the wall and its substrate are the same object, {0}; choose the part below the wall, or none if the wall starts on the platform or from edges</source>
+        <translation>la paroi et son substrat sont le même objet, {0} ; choisissez la pièce sous la paroi, ou aucune si la paroi part du plateau ou d&apos;arêtes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/tubes/constant_distance.py"/>
+        <source>the wall at v = {0} has no point {1} mm from the layer below; keep the layer height below the smallest radius of curvature of the wall</source>
+        <translation>aucun point de la paroi en v = {0} n&apos;est à {1} mm de la couche du dessous ; gardez la hauteur de couche au-dessous du plus petit rayon de courbure de la paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall.py"/>
@@ -13517,14 +13602,14 @@
         <translation>la paroi coïncide avec la surface de {0} ; choisissez la pièce sous la paroi, ou videz le substrat si la paroi part du plateau ou d&apos;arêtes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/first_layer.py"/>
-        <source>the wall does not come out of the substrate everywhere (at v = {0}, for instance): let it reach into the substrate all around, or choose the edges it starts from</source>
-        <translation>la paroi ne sort pas partout du substrat (en v = {0}, par exemple) : faites-la pénétrer dans le substrat sur tout le tour, ou choisissez les arêtes de départ</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/walls/first_layer.py"/>
         <source>the wall does not meet {0} in a closed curve (nearest {1} mm); extend it into the substrate all around</source>
         <translation>la paroi ne rencontre pas {0} en une courbe fermée (au plus près {1} mm) ; faites-la pénétrer sur tout le tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/first_layer.py"/>
+        <source>the wall does not rise out of the substrate everywhere (at v = {0}, for instance): extend it into the substrate all around, or choose start edges</source>
+        <translation>la paroi ne sort pas partout du substrat (en v = {0}, par exemple) : faites-la pénétrer dans le substrat sur tout le tour, ou choisissez les arêtes de départ</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
@@ -13535,6 +13620,11 @@
         <location filename="../../freecad_am/brep/walls/wall.py"/>
         <source>the wall faces do not close around; open walls (half shells) cannot be deposited yet: choose a full tube</source>
         <translation>les faces de la paroi ne se ferment pas sur le tour ; les parois ouvertes (demi-coques) ne peuvent pas encore être déposées : choisissez un tube entier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
+        <source>the wall has no closed parameter for layers to follow (several faces, openings, a side or a slanted end); use constant-distance or smooth</source>
+        <translation>cette paroi n&apos;a pas de paramètre fermé dont les lignes puissent guider des couches (plusieurs faces, ouvertures, un côté ou une extrémité oblique) ; utilisez constant-distance ou smooth</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/tubes/smooth_spacing.py"/>
@@ -13603,13 +13693,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/wire.py"/>
-        <source>the wire feeds {0} mm3/s, but beads of these classes, at their own travel speeds, take {1} mm3/s: more or less lies there than there is room for; give them a schedule that feeds the wire so, or the travel speed of the others</source>
-        <translation>le fil apporte {0} mm3/s, mais les cordons de ces classes, à leurs propres vitesses d&apos;avance, en demandent {1} mm3/s : il y a là plus ou moins de matière que de place ; donnez-leur un programme de soudage qui alimente ainsi le fil, ou la vitesse d&apos;avance des autres</translation>
+        <source>the wire feeds {0} mm3/s, but beads of these classes, at their own travel speeds, need {1} mm3/s, so they are over- or under-filled; give them a schedule with a matching wire feed, or the travel speed of the other beads</source>
+        <translation>le fil amène {0} mm3/s, mais les cordons de ces classes, à leurs propres vitesses d&apos;avance, demandent {1} mm3/s, si bien qu&apos;ils reçoivent trop ou trop peu ; donnez-leur un programme de soudage au dévidage voulu, ou la vitesse d&apos;avance des autres cordons</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/wire.py"/>
-        <source>the wire feeds {0} mm3/s, {1} mm/s of {2} mm wire, but beads of {3} x {4} mm at {5} mm/s take {6} mm3/s; set process.wire.feed to {7} mm/s, or to auto, or make width, layer height and travel speed what they are</source>
-        <translation>le fil apporte {0} mm3/s, {1} mm/s d&apos;un fil de {2} mm, mais des cordons de {3} x {4} mm à {5} mm/s en demandent {6} mm3/s ; mettez process.wire.feed à {7} mm/s, ou à auto, ou donnez à la largeur, à la hauteur de couche et à la vitesse d&apos;avance leurs vraies valeurs</translation>
+        <source>the wire feeds {0} mm3/s, {1} mm/s of {2} mm wire, but beads of {3} x {4} mm at {5} mm/s need {6} mm3/s; set process.wire.feed to {7} mm/s or to auto, or correct width, layer height and travel speed</source>
+        <translation>le fil amène {0} mm3/s, {1} mm/s de fil de {2} mm, mais des cordons de {3} x {4} mm à {5} mm/s demandent {6} mm3/s ; mettez process.wire.feed à {7} mm/s ou à auto, ou corrigez largeur, hauteur de couche et vitesse d&apos;avance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/columns.py"/>
@@ -13623,7 +13713,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>the wrist centre lies above axis 3, without a forearm along axis 4</source>
+        <source>the wrist centre is above axis 3, without a forearm along axis 4</source>
         <translation>le centre du poignet est au-dessus de l&apos;axe 3, sans avant-bras le long de l&apos;axe 4</translation>
     </message>
     <message>
@@ -13667,59 +13757,9 @@
         <translation>il y a trop de valeurs ; donnez-en au plus {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>there are {0} applications, expected one with its parts</source>
-        <translation>il y a {0} applications, une seule attendue avec ses parties</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>there are {0} files, expected one script</source>
-        <translation>il y a {0} fichiers, un seul script est attendu</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>there are {0} main programs, expected one with its parts</source>
-        <translation>il y a {0} programmes principaux, un seul attendu avec ses parties</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>there are {0} programs that are not subs, expected one</source>
-        <translation>il y a {0} programmes qui ne sont pas des sous-programmes, un seul attendu</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>there are {}; at least {} are needed, for a machine without them is not loaded; enter more</source>
-        <translation>il y en a {} ; il en faut au moins {}, car une machine sans elles n&apos;est pas chargée ; saisissez-en d&apos;autres</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/sections/tree.py"/>
-        <source>there can be no such file ({0}); check the path</source>
-        <translation>un tel fichier ne peut pas exister ({0}) ; vérifiez le chemin</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/user_machines.py"/>
-        <source>there is a machine {0} already; choose another name</source>
-        <translation>il y a déjà une machine {0} ; choisissez un autre nom</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/planning/program/build.py"/>
         <source>there is no bead {0} in a layer {1}; choose from layers 0 to {2}</source>
         <translation>il n&apos;y a pas de cordon {0} dans une couche {1} ; choisissez parmi les couches 0 à {2}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/sections/cell.py"/>
-        <source>there is no file; write machine: {{file: robot.urdf}}</source>
-        <translation>il n&apos;y a pas de fichier ; écrivez machine: {{file: robot.urdf}}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/interop/export.py"/>
-        <source>there is no folder {0}; make it, or choose another</source>
-        <translation>il n&apos;y a pas de dossier {0} ; créez-le, ou choisissez-en un autre</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
-        <source>there is no folder {}</source>
-        <translation>il n&apos;y a pas de dossier {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -13747,34 +13787,9 @@
         <translation>il n&apos;y a pas de couche au-dessus de {0} : la dernière des {1} est {2} ; donnez-en une plus basse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/results/stored.py"/>
-        <source>there is no result yet; recompute it</source>
-        <translation>il n&apos;y a pas encore de résultat ; recalculez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
-        <source>there is no such file; check the path</source>
-        <translation>il n&apos;y a pas de tel fichier ; vérifiez le chemin</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
-        <source>there is no value; give {0}</source>
-        <translation>il n&apos;y a pas de valeur ; donnez {0}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/process/model/bead_table.py"/>
-        <source>there is no {0}; mend the row, or leave it out</source>
+        <source>there is no {0}; correct or remove the row</source>
         <translation>il n&apos;y a pas de {0} ; corrigez la ligne, ou retirez-la</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/work/faults.py"/>
-        <source>there is not enough memory to compute it; give larger steps, such as layer height and chord error, or a smaller part</source>
-        <translation>la mémoire ne suffit pas pour le calculer ; donnez des pas plus grands, comme la hauteur de couche et l&apos;erreur de corde, ou une pièce plus petite</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
-        <source>there is nothing to be seen in these layers</source>
-        <translation>il n&apos;y a rien à voir dans ces couches</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
@@ -13782,13 +13797,13 @@
         <translation>il n’y a qu’une couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>these are {0} poses, more than {1}; give a larger step or a smaller box</source>
-        <translation>cela fait {0} poses, plus que {1} ; donnez un pas plus grand ou une boîte plus petite</translation>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>these layers have nothing to show</source>
+        <translation>il n&apos;y a rien à voir dans ces couches</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/clearance/helpful.py"/>
-        <source>these points would have room with {0}, which was not tried for the others</source>
+        <source>these points would be clear with {0}, which was not tested for the others</source>
         <translation>ces points auraient de la place avec {0}, ce qui n&apos;a pas été essayé pour les autres</translation>
     </message>
     <message>
@@ -13797,14 +13812,14 @@
         <translation>theta, d, a et alpha doivent être des nombres ; donnez les quatre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/step_wires.py"/>
-        <source>this FreeCAD has no module Import; write DXF instead</source>
-        <translation>ce FreeCAD n&apos;a pas de module Import ; écrivez DXF</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/interop/neighbour.py"/>
         <source>this FreeCAD has no {0} workbench; install it or {1} instead</source>
         <translation>ce FreeCAD n&apos;a pas d&apos;atelier {0} ; installez-le, ou {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/step_wires.py"/>
+        <source>this FreeCAD lacks the module Import; use DXF instead</source>
+        <translation>ce FreeCAD n&apos;a pas de module Import ; écrivez DXF</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
@@ -13832,11 +13847,6 @@
         <translation>ce n&apos;est pas du XML : {0} ; exportez de nouveau l&apos;URDF</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/tree.py"/>
-        <source>this is not YAML: {0}; mend that place</source>
-        <translation>ce n&apos;est pas du YAML : {0} ; corrigez cet endroit</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/api.py"/>
         <source>this is not a cell; choose one</source>
         <translation>ceci n&apos;est pas une cellule ; choisissez-en une</translation>
@@ -13852,6 +13862,11 @@
         <translation>ce n&apos;est pas un ensemble de clés ; donnez des clés comme {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>this is not valid YAML: {0}; correct it</source>
+        <translation>ce n&apos;est pas du YAML : {0} ; corrigez cet endroit</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>this is xacro; convert it to URDF first, with the ROS program xacro</source>
         <translation>c&apos;est du xacro ; faites-en d&apos;abord un URDF, avec le programme xacro de ROS</translation>
@@ -13862,24 +13877,9 @@
         <translation>cette clé manque ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/shape/compare.py"/>
-        <source>this layer is predicted to end {0} mm above where the next one should begin: up to here layers come out {1} mm high in the mean, and {2} mm are planned; set strategy.layer_height to {3} mm, or change what the wire feeds</source>
-        <translation>d&apos;après la prédiction, cette couche finit {0} mm au-dessus du début prévu de la suivante : jusqu&apos;ici les couches font en moyenne {1} mm de haut, et {2} mm sont prévus ; mettez strategy.layer_height à {3} mm, ou changez ce que le fil apporte</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/shape/compare.py"/>
-        <source>this layer is predicted to end {0} mm below where the next one should begin: up to here layers come out {1} mm high in the mean, and {2} mm are planned; set strategy.layer_height to {3} mm, or change what the wire feeds</source>
-        <translation>d&apos;après la prédiction, cette couche finit {0} mm au-dessous du début prévu de la suivante : jusqu&apos;ici les couches font en moyenne {1} mm de haut, et {2} mm sont prévus ; mettez strategy.layer_height à {3} mm, ou changez ce que le fil apporte</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>this machine has no condition</source>
         <translation>cette machine n&apos;a pas de condition</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
-        <source>this wall has no closed parameter whose lines layers could follow (several faces, openings, a side or a slanted end); use constant-distance or smooth</source>
-        <translation>cette paroi n&apos;a pas de paramètre fermé dont les lignes puissent guider des couches (plusieurs faces, ouvertures, un côté ou une extrémité oblique) ; utilisez constant-distance ou smooth</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -13910,11 +13910,6 @@
         <location filename="../../freecad_am/gui/plots/dock.py"/>
         <source>to</source>
         <translation>à</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/clearance/notes.py"/>
-        <source>to keep the nozzle clear, tool axes turn by up to {0} deg/mm, faster than build_direction.max_turn ({1} deg/mm); use a slimmer nozzle or allow a faster turn</source>
-        <translation>pour tenir la buse éloignée, les axes de l&apos;outil tournent jusqu&apos;à {0} deg/mm, plus vite que build_direction.max_turn ({1} deg/mm) ; utilisez une buse plus fine ou permettez une rotation plus rapide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
@@ -14057,6 +14052,11 @@
         <translation>&lt;{0}&gt; dans l&apos;articulation {1} est inconnu et peut déplacer les corps ; supprimez-le</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
+        <source>unknown column {0}; remove it, or rename it to one of {1}</source>
+        <translation>la colonne {0} est inconnue ; supprimez-la ou nommez-la l&apos;un de {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>unknown command {0}; {1}</source>
         <translation>{0} n&apos;est pas connu ; {1}</translation>
@@ -14075,6 +14075,11 @@
         <location filename="../../freecad_am/core/filling/fill.py"/>
         <source>unknown pattern {0}; use one of {1}</source>
         <translation>il n&apos;y a pas de motif {0} ; utilisez l&apos;un de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/catalogue.py"/>
+        <source>unknown post {0}; use one of {1}, or none</source>
+        <translation>{0} n&apos;est pas connu ; utilisez l&apos;un de {1}, ou none</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
@@ -14098,7 +14103,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
-        <source>up to {0} mm of the wall are left above the last whole layer</source>
+        <source>up to {0} mm of the wall remain above the last whole layer</source>
         <translation>jusqu&apos;à {0} mm de la paroi restent au-dessus de la dernière couche entière</translation>
     </message>
     <message>
@@ -14138,7 +14143,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/clearance/helpful.py"/>
-        <source>use other layers or another direction, or leave out what these points belong to</source>
+        <source>use other layers or another direction, or exclude the region of these points</source>
         <translation>prenez d&apos;autres couches ou une autre direction, ou laissez de côté ce à quoi ces points appartiennent</translation>
     </message>
     <message>
@@ -14158,18 +14163,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>volume of the beads, as wide as they are apart, less what they cover, against 10 % of the part</source>
-        <translation>volume des cordons, aussi larges que leur écartement, moins ce qu&apos;ils couvrent, par rapport à 10 % de la pièce</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>volume of the beads, as wide as they are laid, outside of their layers, and of layers outside of the part</source>
-        <translation>volume des cordons, aussi larges que déposés, hors de leurs couches, et des couches hors de la pièce</translation>
+        <source>volume of the beads, as wide as their spacing, less the covered volume, compared with 10 % of the part</source>
+        <translation>volume des cordons, aussi larges que leur écartement, moins ce qu&apos;ils couvrent, par rapport à 10 % de la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
         <source>volume of the beads, as wide as they count, that is wider than the part is thick</source>
         <translation>volume des cordons, de la largeur qui compte, qui dépasse l’épaisseur de la pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>volume of the beads, at their printed width, outside their layers, and of layers outside the part</source>
+        <translation>volume des cordons, aussi larges que déposés, hors de leurs couches, et des couches hors de la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
@@ -14218,8 +14223,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/interop/export.py"/>
-        <source>waypoints are written as .csv; end the name with it</source>
+        <source>waypoints are written as .csv; use this extension</source>
         <translation>les points sont écrits en .csv ; terminez le nom ainsi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>weaving by moving the part below a fixed torch was not confirmed</source>
+        <translation>le balancement par le mouvement de la pièce sous une torche fixe n&apos;a pas été confirmé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/process_data.py"/>
@@ -14232,34 +14242,9 @@
         <translation>ce qui se passe entre les mouvements est dans un autre ordre que planifié</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/process_data.py"/>
-        <source>what is taken of the controller is not weld data of the module, or taken twice</source>
-        <translation>ce qui est repris de la commande n&apos;est pas une donnée de soudage du module, ou l&apos;est deux fois</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>what of beads of one layer is wider than they are apart, against 10 % of the beads</source>
-        <translation>ce que les cordons d&apos;une couche ont de plus large que leur écart, contre 10 % des cordons</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
-        <source>what the machine&apos;s controller reads</source>
-        <translation>ce que lit la commande de la machine</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>what the robot&apos;s own base is on, which no MACHINE_DEF gives</source>
         <translation>ce qui porte la base du robot lui-même, qu&apos;aucun MACHINE_DEF ne dit</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/fields/plain_text.py"/>
-        <source>what was deleted</source>
-        <translation>ce qui a été supprimé</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>where the base frame of {0} lies is not known: positions of the program count from its base_link. Compare the pose of a known point on the controller before the program is run, set base in a copy of the machine file, or use program.motion: joint</source>
-        <translation>la position du repère de base de {0} est inconnue : les positions du programme comptent depuis son base_link. Comparez la pose d&apos;un point connu sur la commande avant de lancer le programme, fixez base dans une copie du fichier de machine, ou utilisez program.motion: joint</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -14270,11 +14255,6 @@
         <location filename="../../freecad_am/posts/abb/process.py"/>
         <source>whether TriggSpeed follows the speed over a part that moves was not confirmed</source>
         <translation>que TriggSpeed suive la vitesse sur une pièce mobile n&apos;a pas été confirmé</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>whether WAIT FOR looks at $ANIN until it changes was not found documented</source>
-        <translation>que WAIT FOR regarde $ANIN jusqu&apos;à ce qu&apos;il change n&apos;a été trouvé documenté nulle part</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
@@ -14293,12 +14273,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_table.py"/>
-        <source>wire feed {0} m/min is not a positive number; mend the row, or leave it out</source>
+        <source>wire feed {0} m/min is not a positive number; correct or remove the row</source>
         <translation>le dévidage {0} m/min n&apos;est pas un nombre positif ; corrigez la ligne, ou retirez-la</translation>
     </message>
     <message>
         <location filename="../../freecad_am/interop/export.py"/>
-        <source>wires are written as .step or .dxf; end the name with one of them</source>
+        <source>wires are written as .step or .dxf; use one of these extensions</source>
         <translation>les fils sont écrits en .step ou .dxf ; terminez le nom par l&apos;un d&apos;eux</translation>
     </message>
     <message>
@@ -14323,13 +14303,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>with the part on the robot linear moves of KRL have a fixed tool ($IPO_MODE #TCP), and whether points are then the nozzle seen from the part or the part seen from the nozzle was not confirmed; use `setup: tool-on-robot`</source>
+        <source>with the part on the robot linear moves of KRL use a fixed tool ($IPO_MODE #TCP), and the reference of the points, nozzle or part, was not confirmed; use `setup: tool-on-robot`</source>
         <translation>avec la pièce sur le robot, les mouvements linéaires de KRL ont un outil fixe ($IPO_MODE #TCP), et que les points soient alors la buse vue de la pièce ou la pièce vue de la buse n&apos;a pas été confirmé ; prenez `setup: tool-on-robot`</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/size.py"/>
-        <source>with the tool axes asked for the nozzle touches beads of {0} points; finding tilts that keep it clear takes about {1} min of the processor, several times that where the tool would turn too fast; a smaller build_direction.lead and build_direction.tilt, or clearance: none, saves it</source>
-        <translation>avec les axes d&apos;outil demandés, la buse touche des cordons de {0} points ; trouver des inclinaisons qui la dégagent prend environ {1} min de processeur, plusieurs fois plus là où l&apos;outil tournerait trop vite ; un build_direction.lead et un build_direction.tilt plus petits, ou clearance: none, l&apos;évitent</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/names.py"/>
@@ -14338,28 +14313,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/size.py"/>
-        <source>with tilts that keep the nozzle clear the tool turns faster than build_direction.max_turn on beads of {0} points; finding slower ones takes up to {1} min of the processor; a larger build_direction.max_turn, a slimmer nozzle, or clearance: none, saves it</source>
+        <source>with tilts for clearance the tool turns faster than build_direction.max_turn on beads of {0} points; the search for slower tilts takes up to {1} min of the processor; a larger build_direction.max_turn, a slimmer nozzle, or clearance: none avoids it</source>
         <translation>avec des inclinaisons qui dégagent la buse, l&apos;outil tourne plus vite que build_direction.max_turn sur des cordons de {0} points ; en chercher de plus lentes prend jusqu&apos;à {1} min de processeur ; un build_direction.max_turn plus grand, une buse plus fine, ou clearance: none, l&apos;évitent</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/clearance/helpful.py"/>
-        <source>with {0} the nozzle is clear, which was tried</source>
+        <source>with {0} the nozzle is clear (tested)</source>
         <translation>avec {0} la buse est dégagée, ce qui a été essayé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/upright.py"/>
-        <source>with {0} the nozzle is clear; the toolpath was planned so, joints were not</source>
+        <source>with {0} the nozzle is clear; the toolpath was planned with it, the joint path was not</source>
         <translation>avec {0} la buse est dégagée ; la trajectoire d&apos;outil a été planifiée ainsi, les articulations non</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/remedies.py"/>
-        <source>with {0} the {1} of the layers in question that were planned again are feasible; the whole job was not tried</source>
+        <source>with {0} the {1} affected layers planned again are feasible; the whole job was not tested</source>
         <translation>avec {0}, les {1} couches en cause replanifiées sont faisables ; le travail entier n’a pas été essayé</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/program/beads.py"/>
-        <source>within a bead only an output can change the schedule: calls stop the machine, and that arc instructions do not was not confirmed; use output, or leave the schedules of start and end out</source>
-        <translation>un autre programme de soudage à l&apos;intérieur d&apos;un cordon n&apos;est transmis que par une sortie : les appels arrêtent la machine, et que les instructions d&apos;arc ne le fassent pas n&apos;a pas été confirmé ; prenez output, ou omettez les programmes de start et end</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
@@ -14368,7 +14338,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
-        <source>without a bead model or a ramp the travel speed does not vary, and the wire has nothing to follow; use constant, a process.bead_model, or process.start.ramp or process.end.ramp</source>
+        <source>without a bead model or a ramp the travel speed is constant, so the wire feed has nothing to follow; use constant, a process.bead_model, or process.start.ramp or process.end.ramp</source>
         <translation>sans modèle de cordon ni rampe, la vitesse d&apos;avance ne varie pas et le fil n&apos;a rien à suivre ; utilisez constant, un process.bead_model, ou process.start.ramp ou process.end.ramp</translation>
     </message>
     <message>
@@ -14378,8 +14348,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>work offset {0} is not there for the part; use 1 to {1} (G54 to G59.2; the ninth, {2}, is set to zero for moves of the axes)</source>
-        <translation>le décalage d&apos;origine {0} n&apos;existe pas pour la pièce ; utilisez 1 à {1} (G54 à G59.2 ; le neuvième, {2}, est mis à zéro pour les mouvements des axes)</translation>
+        <source>work offset {0} is not available for the part; use 1 to {1} (G54 to G59.2; the ninth, {2}, is set to zero for moves of the axes)</source>
+        <translation>le décalage d&apos;origine {0} n&apos;est pas disponible pour la pièce ; utilisez 1 à {1} (G54 à G59.2 ; le neuvième, {2}, est mis à zéro pour les mouvements des axes)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/interop/cam_path.py"/>
@@ -14418,12 +14388,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>{0} % of the joint speeds is none of 1 to 100</source>
-        <translation>{0} % des vitesses articulaires n&apos;est pas de 1 à 100</translation>
+        <source>{0} % of the joint speeds is not in 1 to 100</source>
+        <translation>{0} % des vitesses articulaires n&apos;est pas de 1 à 100</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/notes.py"/>
-        <source>{0} % of the length bends more than the table&apos;s beads, of {1} mm or more, and counts as bent like these; widths are only estimated there</source>
+        <source>{0} % of the length bends more tightly than the beads of the table, of {1} mm radius or more, and is treated like these; widths are only estimates there</source>
         <translation>{0} % de la longueur est plus courbée que les cordons du tableau, de {1} mm ou plus, et compte comme courbée pareillement ; les largeurs n&apos;y sont qu&apos;estimées</translation>
     </message>
     <message>
@@ -14462,6 +14432,11 @@
         <translation>{0} ont toutes une paroi ; nommez les faces de celle à déposer</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>{0} always fills everything, not {1} %; use 100 %, or fill: contours, lines, zigzag, grid, triangles, honeycomb or gyroid</source>
+        <translation>{0} remplit tout, non pas {1} % ; choisissez 100 %, ou fill : contours, lines, zigzag, grid, triangles, honeycomb ou gyroid</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/other_cells.py"/>
         <source>{0} and `cell.arm_clearance: {1} mm`</source>
         <translation>{0} et `cell.arm_clearance: {1} mm`</translation>
@@ -14480,6 +14455,11 @@
         <location filename="../../freecad_am/core/planning/other_cells.py"/>
         <source>{0} and `cell.platform_diameter: 0`</source>
         <translation>{0} et `cell.platform_diameter: 0`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/views/joint_path.py"/>
+        <source>{0} and the joint path have different axes; recompute the joint path</source>
+        <translation>{0} a d&apos;autres axes que la trajectoire articulaire ; recalculez la trajectoire articulaire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
@@ -14532,29 +14512,24 @@
         <translation>{0} est deux fois dans {1} ; retirez-en un</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>{0} applications, expected one with its parts</source>
+        <translation>il y a {0} applications, une seule attendue avec ses parties</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/macro/steps.py"/>
-        <source>{0} are names without an object that they are of; give it too</source>
+        <source>{0} are names without an object; pass the object too</source>
         <translation>{0} sont des noms sans l’objet auquel ils appartiennent ; donnez-le aussi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>{0} are not names of faces or edges; give a list of texts, such as [&quot;Face1&quot;]</source>
+        <source>{0} are not names of faces or edges; pass a list of texts, such as [&quot;Face1&quot;]</source>
         <translation>{0} ne sont pas des noms de faces ou d’arêtes ; donnez une liste de textes, telle que [&quot;Face1&quot;]</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>{0} are not values by key; give a mapping</source>
-        <translation>{0} ne sont pas des valeurs par clé ; donnez un dictionnaire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
         <source>{0} are not {1} numbers; {2}</source>
         <translation>{0} ne sont pas {1} nombres ; {2}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/external/rule.py"/>
-        <source>{0} are polynomials per bead, the method {1} has none; use method: {2}, or external_axes: {3}</source>
-        <translation>{0} : ce sont des polynômes par cordon, la méthode {1} n&apos;en a pas ; utiliser method : {2}, ou external_axes : {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/between_cuts.py"/>
@@ -14567,34 +14542,34 @@
         <translation>{0} axes portent la pièce ; donnez un ou deux axes tournants</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
-        <source>{0} bead(s) alone in regions narrower than a bead of {1} mm stand out of them, by up to {2} mm at {3}</source>
-        <translation>{0} cordon(s) seuls dans des régions plus étroites qu&apos;un cordon de {1} mm en dépassent, jusqu&apos;à {2} mm en {3}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>{0} bead(s) at the end shorter than half a layer height are left out</source>
+        <source>{0} bead(s) at the end shorter than half a layer height are omitted</source>
         <translation>{0} cordon(s) à la fin plus courts qu&apos;une demi-hauteur de couche sont laissés de côté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
-        <source>{0} bead(s) close gaps between fronts that meet, nearer to them than a layer height; the first in layer {1}</source>
+        <source>{0} bead(s) close gaps between merging fronts, closer to them than a layer height; the first in layer {1}</source>
         <translation>{0} cordon(s) comblent les jours entre des fronts qui se rencontrent, à moins d&apos;une hauteur de couche d&apos;eux ; le premier dans la couche {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
-        <source>{0} bead(s) of a radius of no more than the chord error ({1} mm) are left out</source>
-        <translation>{0} cordon(s) d&apos;un rayon ne dépassant pas l&apos;erreur de corde ({1} mm) sont laissés de côté</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
-        <source>{0} bead(s) where the wall closes are run at down to {1} mm/s: the axes turn no faster</source>
+        <source>{0} bead(s) where the wall closes are slowed down to {1} mm/s, the limit of the axes</source>
         <translation>{0} cordon(s) là où la paroi se ferme sont parcourus jusqu&apos;à {1} mm/s seulement : les axes ne tournent pas plus vite</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
+        <source>{0} bead(s) with a radius up to the chord error ({1} mm) are omitted</source>
+        <translation>{0} cordon(s) d&apos;un rayon ne dépassant pas l&apos;erreur de corde ({1} mm) sont laissés de côté</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
-        <source>{0} beads were split because an axis has not the stroke for a whole bead</source>
+        <source>{0} beads were split, as an axis lacks the stroke for the whole bead</source>
         <translation>{0} cordons ont été divisés parce qu&apos;un axe n&apos;a pas la course d&apos;un cordon entier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>{0} belongs to another document, {1}; pass an object of {2}, such as a copy</source>
+        <translation>{0} est un objet d’un autre document, {1} ; donnez-en un de {2}, par exemple une copie</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/stl_check.py"/>
@@ -14607,19 +14582,14 @@
         <translation>{0} s&apos;appelle lui-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/stage.py"/>
-        <source>{0} cannot be carried out: {1}</source>
-        <translation>{0} ne peut pas être exécuté : {1}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/external.py"/>
         <source>{0} cannot be carried; use {1} or {2}</source>
         <translation>{0} ne peut pas être porté ; utilisez {1} ou {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
-        <source>{0} cannot be computed: the add-on that made it is not there; install it, or leave the value out</source>
-        <translation>{0} ne peut pas être calculé : l&apos;extension qui l&apos;a créé manque ; installez-la ou retirez la valeur</translation>
+        <source>{0} cannot be computed: the add-on that created it is missing; install it, or remove the value</source>
+        <translation>{0} ne peut pas être calculé : l&apos;extension qui l&apos;a créé manque ; installez-la, ou retirez la valeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/arrangement.py"/>
@@ -14667,9 +14637,14 @@
         <translation>{0} ne change aucun écart : les points ne le disent pas</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>{0} clashes with a variable or signal of the program; choose another name</source>
+        <translation>{0} est aussi le nom de données ou d&apos;un signal dont le programme se sert ; donnez un autre nom</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/planned/in_sequence.py"/>
-        <source>{0} cm3 of it are within {1} and would be deposited twice; cut one from the other</source>
-        <translation>{0} cm3 de lui se trouvent dans {1} et seraient déposés deux fois ; découpez l&apos;un de l&apos;autre</translation>
+        <source>{0} cm3 overlap {1} and would be deposited twice; cut one from the other</source>
+        <translation>{0} cm3 recouvrent {1} et seraient déposés deux fois ; coupez l&apos;un de l&apos;autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -14683,7 +14658,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/scan.py"/>
-        <source>{0} compares with {1}; choose an inspection of the part that is deposited on</source>
+        <source>{0} compares with {1}; choose an inspection of the deposited part</source>
         <translation>{0} compare avec {1} ; choisissez un contrôle de la pièce sur laquelle on dépose</translation>
     </message>
     <message>
@@ -14722,18 +14697,33 @@
         <translation>{0} ne se joignent pas en une paroi ; nommez les faces de la paroi, ou déposez-les une à une</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
+        <source>{0} does not apply to curved layers, which grow along their normals; use local</source>
+        <translation>{0} n&apos;est pas pour les couches courbes, qui croissent suivant leurs normales ; utilisez local</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
+        <source>{0} does not apply to solids on a hub, which grow along its normals; use local</source>
+        <translation>{0} n&apos;est pas pour les solides sur moyeu, qui croissent le long de ses normales ; utilisez local</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>{0} does not belong to an arc in {1}; use {2} and {3}</source>
         <translation>{0} n&apos;est pas un mot d&apos;un arc en {1} ; donnez {2} et {3}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/shapes/nested.py"/>
+        <source>{0} does not exist in {1}; choose it in the 3D view, or on the original object</source>
+        <translation>{0} n&apos;existe pas dans {1} ; choisissez-le dans la vue 3D, ou sur l&apos;objet d&apos;origine</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/checks/on_substrate.py"/>
-        <source>{0} does not touch its substrate {1}: it is {2} mm away at ({3}, {4}, {5}), where it comes nearest; move it onto the substrate, or leave the substrate out</source>
+        <source>{0} does not touch its substrate {1}: the smallest gap is {2} mm, at ({3}, {4}, {5}); move it onto the substrate, or remove the substrate</source>
         <translation>{0} ne touche pas son substrat {1} : il en est à {2} mm en ({3}, {4}, {5}), au plus près ; posez-le sur le substrat ou retirez le substrat</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>{0} does not wait for the moves before it</source>
+        <source>{0} does not wait for the previous moves</source>
         <translation>{0} n&apos;attend pas les mouvements qui le précèdent</translation>
     </message>
     <message>
@@ -14743,7 +14733,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/solids/equidistant.py"/>
-        <source>{0} edges have not two faces, one at ({1}, {2}, {3}) mm from the hub&apos;s base; close the mesh</source>
+        <source>{0} edges do not have two faces, one at ({1}, {2}, {3}) mm from the hub base; close the mesh</source>
         <translation>{0} arêtes n&apos;ont pas deux faces, l&apos;une à ({1}, {2}, {3}) mm de la base du moyeu ; fermez le maillage</translation>
     </message>
     <message>
@@ -14755,6 +14745,21 @@
         <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
         <source>{0} exceeds the rounding of a display; give 0 to {1}</source>
         <translation>{0} est plus que ce que laisse l&apos;arrondi d&apos;un affichage ; donnez de 0 à {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>{0} excludes 100 %, the usual width; include it</source>
+        <translation>{0} ne contient pas 100 %, la largeur habituelle ; incluez-la</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/collisions.py"/>
+        <source>{0} extends into the platform, a plate {1} mm below the origin of the platform frame; set cell.platform to the real clamping position and cell.platform_diameter to the real size (0 for none)</source>
+        <translation>{0} entre dans le plateau, une plaque de {1} mm sous l&apos;origine du repère posé dessus ; fixez cell.platform là où la pièce est tenue et cell.platform_diameter selon ce qui existe (0 pour aucun)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
+        <source>{0} extends {1} mm below the platform, at {2}</source>
+        <translation>{0} descend à {1} mm au-dessous du plateau, en {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
@@ -14772,9 +14777,9 @@
         <translation>les fichiers {0} ne sont pas pris en charge ; utilisez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>{0} fills the whole, not {1} %; use 100 %, or fill: contours, lines, zigzag, grid, triangles, honeycomb or gyroid</source>
-        <translation>{0} remplit tout, non pas {1} % ; choisissez 100 %, ou fill : contours, lines, zigzag, grid, triangles, honeycomb ou gyroid</translation>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
+        <source>{0} files, expected one script</source>
+        <translation>il y a {0} fichiers, un seul script est attendu</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/issues.py"/>
@@ -14788,7 +14793,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/expressions.py"/>
-        <source>{0} follows the expression {1}, which gives nothing any more; give {2} a value or another one</source>
+        <source>{0} follows the expression {1}, which no longer gives a value; give {2} a value or another expression</source>
         <translation>{0} suit l&apos;expression {1}, qui ne donne plus rien ; donnez à {2} une valeur ou une autre expression</translation>
     </message>
     <message>
@@ -14828,7 +14833,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/rows.py"/>
-        <source>{0} has a comma; write decimals with a point, such as {1}</source>
+        <source>{0} has a comma; use a decimal point, as in {1}</source>
         <translation>{0} a une virgule ; écrivez les décimales avec un point, comme {1}</translation>
     </message>
     <message>
@@ -14837,14 +14842,19 @@
         <translation>{0} a une virgule décimale ; écrivez les nombres avec un point</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
-        <source>{0} has another dimension; give {1}</source>
-        <translation>{0} a une autre dimension ; donnez {1}</translation>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>{0} has already run, or is called while depositing</source>
+        <translation>{0} a déjà été exécuté, ou est appelé pendant le dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc/parts.py"/>
+        <source>{0} has another meaning on the controller; use another word</source>
+        <translation>{0} veut dire autre chose pour la commande ; utilisez un autre mot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} has edges and no faces, which are laid as beads</source>
-        <translation>{0} a des arêtes et pas de faces ; elles sont déposées comme cordons</translation>
+        <source>{0} has edges but no faces, to be deposited as beads</source>
+        <translation>{0} a des arêtes mais pas de faces, à déposer en cordons</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -14868,7 +14878,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
-        <source>{0} has no faces that a deposit could be held against; choose another object</source>
+        <source>{0} has no faces to compare a deposit with; choose another object</source>
         <translation>{0} n&apos;a pas de faces auxquelles comparer un dépôt ; choisissez un autre objet</translation>
     </message>
     <message>
@@ -14893,7 +14903,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>{0} has no spherical wrist, and what its controller calls the configurations of cartesian positions is not known; use joint</source>
+        <source>{0} has no spherical wrist, and the configuration names of its controller are unknown for Cartesian positions; use joint</source>
         <translation>{0} n&apos;a pas de poignet sphérique, et le nom que sa commande donne aux configurations des positions cartésiennes n&apos;est pas connu ; utilisez joint</translation>
     </message>
     <message>
@@ -14902,19 +14912,14 @@
         <translation>{0} n&apos;a pas de {1} ; utilisez l&apos;un de {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/views/joint_path.py"/>
-        <source>{0} has other axes than the joint path; recompute the joint path</source>
-        <translation>{0} a d&apos;autres axes que la trajectoire articulaire ; recalculez la trajectoire articulaire</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>{0} has sliding axes; use {1}, or choose another machine</source>
         <translation>{0} a des axes de translation ; utilisez {1}, ou choisissez une autre machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
-        <source>{0} has what is in a group of it twice, so that numbers of its faces are not certain; name an object in it, or take that out of the group</source>
-        <translation>{0} a deux fois ce qui est dans un de ses groupes, si bien que les numéros de ses faces ne sont pas sûrs ; nommez un objet qu’il contient, ou sortez-le du groupe</translation>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
+        <source>{0} has the wrong dimension; give {1}</source>
+        <translation>{0} a une autre dimension ; donnez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/external.py"/>
@@ -14933,7 +14938,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} holds {1} solids{2}; to deposit on one of them, name it as the substrate</source>
+        <source>{0} holds {1} solids{2}; to deposit on one, name it as the substrate</source>
         <translation>{0} contient {1} solides{2} ; pour déposer sur l&apos;un d&apos;eux, nommez-le comme substrat</translation>
     </message>
     <message>
@@ -14953,7 +14958,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/document_file.py"/>
-        <source>{0} in it has a document type, which no document of FreeCAD has, and is not read; save it again</source>
+        <source>{0} in it has a document type, which FreeCAD documents never have, and is not read; save it again</source>
         <translation>{0} y a un type de document, qu&apos;aucun document de FreeCAD n&apos;a, et n&apos;est pas lu ; enregistrez-le de nouveau</translation>
     </message>
     <message>
@@ -14967,14 +14972,19 @@
         <translation>{0} y a une valeur qui n&apos;est pas un nombre ({1})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>{0} in or about a loop that waits for an analogue input</source>
-        <translation>{0} dans une boucle qui attend une entrée analogique, ou près d&apos;elle</translation>
+        <location filename="../../freecad_am/objects/shapes/bodies.py"/>
+        <source>{0} in it has no shape; choose an object with a shape</source>
+        <translation>{0} qu&apos;il contient n&apos;a pas de forme ; choisissez un objet qui en a une</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
         <source>{0} inside-out solids were reversed</source>
         <translation>{0} solides étaient retournés et ont été remis à l&apos;endroit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>{0} interrupts the lines of another instruction</source>
+        <translation>{0} interrompt les lignes d&apos;une autre instruction</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
@@ -14983,13 +14993,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>{0} is a URDF, which does not say what the controller shows; plan without a program, or make a machine file of it with New Machine…</source>
-        <translation>{0} est un URDF, qui ne dit pas ce que la commande affiche ; planifiez sans programme, ou faites-en un fichier de machine par Nouvelle machine…</translation>
+        <source>{0} is a URDF, which does not define the display of the controller; plan without a program, or convert it with New Machine…</source>
+        <translation>{0} est un URDF, qui ne définit pas l&apos;affichage de la commande ; planifiez sans programme, ou convertissez-le avec Nouvelle machine…</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
         <source>{0} is a condition, a loop or a variable; write out the moves</source>
         <translation>{0} est une condition, une boucle ou une variable ; écrivez les déplacements</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <source>{0} is a flat rather than upright open mesh, {1} at less than 45 deg to the platform, so it is a face to cover</source>
+        <translation>{0} est un maillage ouvert couché plutôt que dressé, à {1} sous moins de 45 deg du plateau, donc une face à couvrir</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <source>{0} is a flat rather than upright open surface, {1} at less than 45 deg to the platform, so it is a face to cover</source>
+        <translation>{0} est une surface ouverte couchée plutôt que dressée, à {1} sous moins de 45 deg du plateau, donc une face à couvrir</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/fields.py"/>
@@ -14998,18 +15018,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
-        <source>{0} is a mesh, which has no edges or faces; choose a shape</source>
+        <source>{0} is a mesh without edges or faces; choose a shape</source>
         <translation>{0} est un maillage, qui n&apos;a ni arêtes ni faces ; choisissez une forme</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} is a mesh, which is filled</source>
+        <source>{0} is a mesh, to be filled</source>
         <translation>{0} est un maillage, qui est rempli</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>{0} is a module or a routine of this program and is not loaded</source>
-        <translation>{0} est un module ou une routine de ce programme et n&apos;est pas chargé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -15027,19 +15042,9 @@
         <translation>{0} est un pourcentage ; donnez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>{0} is a program of this very job; call another one, or rename the job</source>
-        <translation>{0} est un programme de ce travail même ; appelez-en un autre, ou renommez le travail</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>{0} is a robot; use {1}, or choose another machine</source>
         <translation>{0} est un robot ; utilisez {1}, ou choisissez une autre machine</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} is a skin that turns about one axis</source>
-        <translation>{0} est une peau qui tourne autour d&apos;un axe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
@@ -15048,8 +15053,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} is a solid; it turns about one axis, but a wall of one bead would leave out {1} of its {2} cm3</source>
-        <translation>{0} est un solide ; il tourne autour d&apos;un axe, mais une paroi d&apos;un cordon laisserait de côté {1} de ses {2} cm3</translation>
+        <source>{0} is a solid of revolution, and its wall is one bead of {1} mm</source>
+        <translation>{0} tourne autour d&apos;un axe, et sa paroi est un cordon de {1} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <source>{0} is a solid; it is a solid of revolution, but a wall of one bead would leave out {1} of its {2} cm3</source>
+        <translation>{0} est un solide ; c&apos;est un solide de révolution, mais une paroi d&apos;un cordon laisserait de côté {1} de ses {2} cm3</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <source>{0} is a surface of revolution</source>
+        <translation>{0} est une peau qui tourne autour d&apos;un axe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
@@ -15073,13 +15088,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>{0} is activated, and no move follows</source>
+        <source>{0} is activated, but no move follows</source>
         <translation>{0} est activé et aucun déplacement ne suit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>{0} is also the name of data or a signal that the program uses; call it otherwise</source>
-        <translation>{0} est aussi le nom de données ou d&apos;un signal dont le programme se sert ; donnez un autre nom</translation>
+        <source>{0} is also a program of the job; use another name, or rename the job</source>
+        <translation>{0} est aussi un programme du travail ; utilisez un autre nom, ou renommez le travail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
@@ -15087,19 +15102,14 @@
         <translation>{0} peut être un nombre avec exposant ou deux mots ; écrivez le nombre sans exposant ou une espace avant E</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>{0} is an object of another document, {1}; give one of {2}, such as a copy of it</source>
-        <translation>{0} est un objet d’un autre document, {1} ; donnez-en un de {2}, par exemple une copie</translation>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
+        <source>{0} is ambiguous; write decimals with a point and one kind of separator, as in 10.5 20.5</source>
+        <translation>{0} peut se lire de deux façons ; écrivez les décimales avec un point et une seule sorte de séparateur, comme dans 10.5 20.5</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} is an open mesh that cuts itself at {1} pairs of its triangles, as at {2}, so it is not a wall of one bead: it is filled, with its {3} holes of up to {4} mm closed</source>
+        <source>{0} is an open mesh that intersects itself at {1} pairs of triangles, as at {2}, so it is not a wall of one bead: it is filled, with its {3} holes of up to {4} mm closed</source>
         <translation>{0} est un maillage ouvert qui se coupe lui-même en {1} paires de ses triangles, par exemple en {2}, ce n&apos;est donc pas une paroi d&apos;un cordon : il est rempli, ses {3} trous jusqu&apos;à {4} mm étant fermés</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} is an open mesh that lies rather than stands, {1} of it at less than 45 deg to the platform, so it is a face that is covered</source>
-        <translation>{0} est un maillage ouvert qui est couché plutôt que debout, dont {1} à moins de 45 deg du plateau, c&apos;est donc une face qui est recouverte</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
@@ -15113,18 +15123,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} is an open skin and not of revolution, and nothing else serves it; it needs a substrate, or edges to start from, and what does not grow from there is left out</source>
-        <translation>{0} est une peau ouverte et non de révolution, et rien d&apos;autre ne lui convient ; il lui faut un substrat, ou des arêtes d&apos;où partir, et ce qui n&apos;en croît pas est laissé de côté</translation>
+        <source>{0} is an open surface without an axis of revolution, and no other strategy applies; it needs a substrate or start edges, and regions that do not grow from there are omitted</source>
+        <translation>{0} est une surface ouverte sans axe de révolution, et aucune autre stratégie ne convient ; il faut un substrat ou des arêtes de départ, et les régions qui n&apos;en partent pas sont omises</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} is an open skin and not of revolution, so it is a thin wall, which starts on the platform where nothing carries it</source>
+        <source>{0} is an open surface without an axis of revolution, so it is a thin wall, which starts on the platform if nothing else supports it</source>
         <translation>{0} est une peau ouverte qui n&apos;est pas de révolution, donc une paroi mince, qui part du plateau là où rien ne la porte</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} is an open skin that lies rather than stands, {1} of it at less than 45 deg to the platform, so it is a face that is covered</source>
-        <translation>{0} est une peau ouverte qui est couchée plutôt que debout, dont {1} à moins de 45 deg du plateau, c&apos;est donc une face qui est recouverte</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
@@ -15137,11 +15142,6 @@
         <translation>{0} est appelé avant d&apos;être chargé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/selected.py"/>
-        <source>{0} is called, which is not among the files: what it moves, switches or sets is not driven; give its file too, or look at it at the controller</source>
-        <translation>{0} est appelé et n&apos;est pas parmi les fichiers : ce qu&apos;il déplace, commute ou fixe n&apos;est pas simulé ; donnez aussi son fichier ou vérifiez-le sur la commande</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
         <source>{0} is carried by {1}, as the robot is; attach the positioner to the floor</source>
         <translation>{0} est porté par {1}, comme le robot ; fixez le positionneur au sol</translation>
@@ -15152,14 +15152,39 @@
         <translation>{0} est défini à nouveau, ou dans une partie</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
+        <source>{0} is defined twice; merge the two entries</source>
+        <translation>{0} y est deux fois ; écrivez le tout en un seul endroit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>{0} is duplicated</source>
+        <translation>{0} est en double</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>{0} is followed by the word {1}; put it on its own line</source>
         <translation>{0} est suivi du mot {1} ; donnez-lui sa propre ligne</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/table_part.py"/>
-        <source>{0} is for G-code, which {1} is not; leave it out</source>
+        <source>{0} is for G-code, but {1} is not G-code; remove it</source>
         <translation>{0} est pour le G-code, ce que {1} n&apos;est pas ; retirez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>{0} is in or around a loop that waits for an analogue input</source>
+        <translation>{0} dans une boucle qui attend une entrée analogique, ou près d&apos;elle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>{0} is infeasible: {1}</source>
+        <translation>{0} ne peut pas être exécuté : {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>{0} is listed twice; keep one entry per bead</source>
+        <translation>{0} y est deux fois ; donnez chaque cordon une fois</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
@@ -15168,8 +15193,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>{0} is loaded while depositing, is not there, or {1} is not a library</source>
-        <translation>{0} est chargé pendant le dépôt, n&apos;existe pas, ou {1} n&apos;est pas une bibliothèque</translation>
+        <source>{0} is loaded while depositing or is missing, or {1} is not a library</source>
+        <translation>{0} est chargé pendant le dépôt ou manque, ou {1} n&apos;est pas une bibliothèque</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/links.py"/>
@@ -15183,18 +15208,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/inputs.py"/>
-        <source>{0} is missing in this document. Make it first: button {0} in the toolbar.</source>
+        <source>{0} is missing in this document. Create it first: button {0} in the toolbar.</source>
         <translation>{0} manque dans ce document. Faites-le d&apos;abord : bouton {0} de la barre d&apos;outils.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>{0} is missing, has no routine {1}, has already run, or is loaded while depositing</source>
+        <translation>{0} manque, n&apos;a pas de routine {1}, s&apos;est déjà exécuté, ou est chargé pendant le dépôt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>{0} is missing; choose {1}</source>
         <translation>{0} manque ; choisissez {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
-        <source>{0} is neither a file nor a box, or both; give one of them</source>
-        <translation>{0} n&apos;est ni un fichier ni une boîte, ou les deux ; donnez l&apos;un d&apos;eux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
@@ -15203,23 +15228,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>{0} is neither a length nor six numbers; give one such as 300, or x y z RX RY RZ</source>
+        <source>{0} is neither a length nor six numbers; give a value such as 300, or x y z RX RY RZ</source>
         <translation>{0} n&apos;est ni une longueur ni six nombres ; donnez-en une comme 300, ou x y z RX RY RZ</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/fields.py"/>
-        <source>{0} is neither true nor false; give one of them</source>
-        <translation>{0} n&apos;est ni true ni false ; donnez l&apos;un des deux</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/checks/placed.py"/>
-        <source>{0} is none of the parameters that it takes; give {1}</source>
-        <translation>{0} n’est pas un des jeux de paramètres attendus ; donnez {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/feature_kinds.py"/>
-        <source>{0} is none of {1}; use one of these</source>
-        <translation>{0} n&apos;est aucun de {1} ; utilisez l&apos;un d&apos;eux</translation>
+        <source>{0} is neither true nor false; use true or false</source>
+        <translation>{0} n&apos;est ni true ni false ; utilisez true ou false</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
@@ -15228,12 +15243,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/sections/cell.py"/>
-        <source>{0} is not a URDF, and only a URDF has links; write machine: {{file: robot.urdf, base: base_link, tip: tool0}}, or the path of a machine file without braces</source>
+        <source>{0} is not a URDF, the only format with links; write machine: {{file: robot.urdf, base: base_link, tip: tool0}}, or the path of a machine file without braces</source>
         <translation>{0} n&apos;est pas un URDF, qui seul a des segments ; écrivez machine: {{file: robot.urdf, base: base_link, tip: tool0}}, ou le chemin d&apos;un fichier machine sans accolades</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/directions.py"/>
-        <source>{0} is not a bend of a torus, so its plane of symmetry is not known; give its normal as build_direction.plane, or use local, layer or fixed</source>
+        <source>{0} is not a bend of a torus, so it has no plane of symmetry; give the normal as build_direction.plane, or use local, layer or fixed</source>
         <translation>{0} n&apos;est pas le coude d&apos;un tore, son plan de symétrie n&apos;est donc pas connu ; donnez sa normale comme build_direction.plane, ou utilisez local, layer ou fixed</translation>
     </message>
     <message>
@@ -15278,7 +15293,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>{0} is not a document; give one, such as FreeCAD.ActiveDocument</source>
+        <source>{0} is not a document; pass one, such as FreeCAD.ActiveDocument</source>
         <translation>{0} n’est pas un document ; donnez-en un, tel que FreeCAD.ActiveDocument</translation>
     </message>
     <message>
@@ -15298,7 +15313,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/work/progress.py"/>
-        <source>{0} is not a function; give one</source>
+        <source>{0} is not a function; pass one</source>
         <translation>{0} n’est pas une fonction ; donnez-en une</translation>
     </message>
     <message>
@@ -15318,7 +15333,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>{0} is not a list of objects; give one, such as [doc.Clamp]</source>
+        <source>{0} is not a list of objects; pass one, such as [doc.Clamp]</source>
         <translation>{0} n’est pas une liste d’objets ; donnez-en une, telle que [doc.Clamp]</translation>
     </message>
     <message>
@@ -15338,7 +15353,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>{0} is not a list; give one, such as []</source>
+        <source>{0} is not a list; pass one, such as []</source>
         <translation>{0} n’est pas une liste ; donnez-en une, telle que []</translation>
     </message>
     <message>
@@ -15347,13 +15362,18 @@
         <translation>{0} n&apos;est pas une liste ; écrivez-en une entre crochets</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>{0} is not a mapping of keys to values; pass one</source>
+        <translation>{0} ne sont pas des valeurs par clé ; donnez un dictionnaire</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
         <source>{0} is not a name; use words without = and ;</source>
         <translation>{0} n&apos;est pas un nom ; utilisez des mots sans = ni ;</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/fields.py"/>
-        <source>{0} is not a number; give one such as 0.1</source>
+        <source>{0} is not a number; enter one such as 0.1</source>
         <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 0.1</translation>
     </message>
     <message>
@@ -15377,6 +15397,11 @@
         <translation>{0} n&apos;est pas un nombre ; donnez {1} comme nombre à point décimal</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>{0} is not a number; pass one such as 2</source>
+        <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 2</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
         <source>{0} is not a number; use the file as ur_calibration wrote it</source>
         <translation>{0} n&apos;est pas un nombre ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
@@ -15393,7 +15418,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>{0} is not a path; give one as a text, such as &quot;cup.step&quot;</source>
+        <source>{0} is not a path; pass one as a text, such as &quot;cup.step&quot;</source>
         <translation>{0} n’est pas un chemin ; donnez-en un sous forme de texte, tel que &quot;cup.step&quot;</translation>
     </message>
     <message>
@@ -15433,8 +15458,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/pendants.py"/>
-        <source>{0} is not a pose; write such as: {1} X Y Z {2}</source>
-        <translation>{0} n&apos;est pas une pose ; écrivez par exemple : {1} X Y Z {2}</translation>
+        <source>{0} is not a pose; use the form: {1} X Y Z {2}</source>
+        <translation>{0} n&apos;est pas une pose ; utilisez la forme : {1} X Y Z {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/external.py"/>
@@ -15442,13 +15467,8 @@
         <translation>{0} n&apos;est pas une pose ; {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>{0} is not a positioner of this controller; give {1}</source>
-        <translation>{0} n&apos;est pas un positionneur de cette commande ; indiquez {1}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>{0} is not a program of it, or calls itself</source>
+        <source>{0} is not a program of the application, or calls itself</source>
         <translation>{0} n&apos;est pas un de ses programmes, ou s&apos;appelle lui-même</translation>
     </message>
     <message>
@@ -15488,7 +15508,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/sections/fields.py"/>
-        <source>{0} is not a section; write keys below {1}:</source>
+        <source>{0} is not a section; write its keys below {1}:</source>
         <translation>{0} n&apos;est pas une section ; écrivez des clés sous {1} :</translation>
     </message>
     <message>
@@ -15503,7 +15523,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>{0} is not a speed of the module, or the speed is given otherwise than by \T or \V</source>
+        <source>{0} is not a speed of the module, or the speed is set by an argument other than \T or \V</source>
         <translation>{0} n&apos;est pas une vitesse du module, ou le mouvement est donné autrement que par \T ou \V</translation>
     </message>
     <message>
@@ -15518,12 +15538,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
-        <source>{0} is not a text; give one in quotes</source>
+        <source>{0} is not a text; put it in quotes</source>
         <translation>{0} n’est pas un texte ; donnez-en un entre guillemets</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/fields.py"/>
-        <source>{0} is not a text; give one, in quotes where it is a number</source>
+        <source>{0} is not a text; put numbers in quotes</source>
         <translation>{0} n&apos;est pas un texte ; donnez-en un, entre guillemets si c&apos;est un nombre</translation>
     </message>
     <message>
@@ -15557,6 +15577,21 @@
         <translation>{0} n&apos;est pas un vecteur unitaire ; donnez-en un de longueur 1</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>{0} is not a valid choice; use one of {1}</source>
+        <translation>{0} n&apos;est pas un choix valable ; utilisez l&apos;un de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/placed.py"/>
+        <source>{0} is not a valid parameter; use {1}</source>
+        <translation>{0} n’est pas un des jeux de paramètres attendus ; donnez {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>{0} is not a valid positioner for the controller; use {1}</source>
+        <translation>{0} n&apos;est pas un positionneur de cette commande ; indiquez {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
         <source>{0} is not a valid target of a warning; use {1}</source>
         <translation>{0} n&apos;est pas un objet possible d&apos;un avertissement ; utilisez {1}</translation>
@@ -15587,18 +15622,13 @@
         <translation>{0} n&apos;est pas : {1} ; choisissez-en un</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
-        <source>{0} is not above 0; give a larger one</source>
-        <translation>{0} n&apos;est pas supérieur à 0 ; donnez plus</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>{0} is not an axis; give a point and a direction such as [[0, 0, 0], [0, 0, 1]]</source>
         <translation>{0} n&apos;est pas un axe ; donnez un point et une direction comme [[0, 0, 0], [0, 0, 1]]</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
-        <source>{0} is not an edge of {1}; choose edges of it</source>
+        <source>{0} is not an edge of {1}; choose its edges</source>
         <translation>{0} n&apos;est pas une arête de {1} ; choisissez ses arêtes</translation>
     </message>
     <message>
@@ -15608,7 +15638,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>{0} is not an object of a document; give one, such as doc.Body</source>
+        <source>{0} is not an object of a document; pass one, such as doc.Body</source>
         <translation>{0} n’est pas un objet d’un document ; donnez-en un, tel que doc.Body</translation>
     </message>
     <message>
@@ -15632,16 +15662,6 @@
         <translation>{0} n&apos;est pas : {1} ; choisissez-en un</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
-        <source>{0} is not for curved layers, which grow along their normals; use local</source>
-        <translation>{0} n&apos;est pas pour les couches courbes, qui croissent suivant leurs normales ; utilisez local</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
-        <source>{0} is not for solids on a hub, which grow along its normals; use local</source>
-        <translation>{0} n&apos;est pas pour les solides sur moyeu, qui croissent le long de ses normales ; utilisez local</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/sections/fields.py"/>
         <source>{0} is not known; did you mean {1}? use one of {2}</source>
         <translation>{0} n&apos;est pas connu ; vouliez-vous dire {1} ? utilisez l&apos;une des valeurs {2}</translation>
@@ -15652,14 +15672,14 @@
         <translation>{0} n&apos;est pas connu ; donnez {1} ou {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <location filename="../../freecad_am/objects/checks/placed.py"/>
         <source>{0} is not known; use one of {1}</source>
         <translation>{0} n&apos;est pas connu ; utilisez l&apos;un de {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/catalogue.py"/>
-        <source>{0} is not known; use one of {1}, or none</source>
-        <translation>{0} n&apos;est pas connu ; utilisez l&apos;un de {1}, ou none</translation>
+        <location filename="../../freecad_am/objects/planned/feature_kinds.py"/>
+        <source>{0} is not one of {1}; choose one</source>
+        <translation>{0} n&apos;est pas l&apos;un de {1} ; choisissez-en un</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
@@ -15672,34 +15692,19 @@
         <translation>{0} n&apos;est pas la position {1} de {2}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/interop/export.py"/>
+        <source>{0} is not positive; give a larger value</source>
+        <translation>{0} n&apos;est pas supérieur à 0 ; donnez plus</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
         <source>{0} is not the length of an arm; give more than 0 mm</source>
         <translation>{0} n&apos;est pas la longueur d&apos;un bras ; donnez plus de 0 mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
-        <source>{0} is not there any more since the part changed; choose the edges again</source>
-        <translation>{0} n’existe plus depuis que la pièce a changé ; choisissez les arêtes à nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
-        <source>{0} is not there any more since the part changed; choose the faces again</source>
-        <translation>{0} n’existe plus depuis que la pièce a changé ; choisissez les faces à nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/shapes/nested.py"/>
-        <source>{0} is not there in {1}; choose it in the 3D view, or by the object that it belongs to</source>
-        <translation>{0} n’existe pas dans {1} ; choisissez-le dans la vue 3D, ou par l’objet auquel il appartient</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>{0} is not there, has no routine {1}, is run already, or loaded while depositing</source>
-        <translation>{0} manque, n&apos;a pas de routine {1}, a déjà été exécuté, ou est chargé pendant le dépôt</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
-        <source>{0} is not true or false; give one of them</source>
-        <translation>{0} n&apos;est ni vrai ni faux ; donnez l&apos;un des deux</translation>
+        <source>{0} is not true or false; use true or false</source>
+        <translation>{0} n&apos;est ni true ni false ; utilisez true ou false</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
@@ -15732,14 +15737,14 @@
         <translation>{0} n&apos;est pas compris ; donnez un objet JSON avec des clés parmi {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>{0} is not understood; give layer/bead:constant:slope with up to {1} coefficients in deg and deg per turn, such as 12/0:-35:360; * stands for every other bead</source>
-        <translation>{0} n&apos;est pas compris ; donnez couche/cordon:constante:pente avec jusqu&apos;à {1} coefficients en deg et deg par tour, comme 12/0:-35:360 ; * vaut pour tout autre cordon</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>{0} is not understood; give {1}</source>
         <translation>{0} n&apos;est pas compris ; donnez {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>{0} is not understood; use layer/bead:constant:slope with up to {1} coefficients in deg and deg per turn, such as 12/0:-35:360; * means every other bead</source>
+        <translation>{0} n&apos;est pas compris ; utilisez layer/bead:constant:slope avec jusqu&apos;à {1} coefficients en deg et deg par tour, comme 12/0:-35:360 ; * veut dire tous les autres cordons</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
@@ -15753,13 +15758,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>{0} is not {1} data of the project, or has not so many values</source>
+        <source>{0} is not {1} data of the project, or has too few values</source>
         <translation>{0} n&apos;est pas une donnée {1} du projet, ou n&apos;a pas autant de valeurs</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
         <source>{0} is not {1}; give more than 0, or null where not known</source>
         <translation>{0} n&apos;est pas {1} ; donnez plus de 0, ou null si elle n&apos;est pas connue</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <source>{0} is on a cylinder or cone of {1}</source>
+        <translation>{0} est sur un cylindre ou cône de {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/properties.py"/>
@@ -15772,19 +15782,19 @@
         <translation>{0} est hors de la plage ; donnez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>{0} is reached before the move before it ends</source>
-        <translation>{0} est atteint avant la fin du mouvement qui précède</translation>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
+        <source>{0} is outside its function</source>
+        <translation>{0} est en dehors de sa fonction</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>{0} is outside the sub {1}</source>
+        <translation>{0} est en dehors de la sous-routine {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>{0} is read ahead of the motion: no wait stands before it</source>
-        <translation>{0} est lu en avance sur le mouvement : aucune attente ne le précède</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>{0} is run already, or called while depositing</source>
-        <translation>{0} a déjà été exécuté, ou est appelé pendant le dépôt</translation>
+        <source>{0} is read ahead of the motion, as no wait precedes it</source>
+        <translation>{0} est lu en avance sur le mouvement, car aucune attente ne le précède</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/planes/stacking.py"/>
@@ -15802,28 +15812,13 @@
         <translation>{0} est la machine de la cellule et ne peut pas se porter elle-même ; nommez un rail ou un positionneur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>{0} is there twice; give each bead one</source>
-        <translation>{0} y est deux fois ; donnez chaque cordon une fois</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
-        <source>{0} is there twice; write all of it in one place</source>
-        <translation>{0} y est deux fois ; écrivez le tout en un seul endroit</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/sections/fields.py"/>
         <source>{0} is too large; give {1}</source>
         <translation>{0} est trop grand ; donnez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>{0} is without 100 %, the usual width; include it</source>
-        <translation>{0} ne contient pas 100 %, la largeur habituelle ; incluez-la</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/parts.py"/>
-        <source>{0} is woven and has {1} points with its approach, and whether a weave goes on in another program was not confirmed; allow more points in one, or a larger chord error</source>
+        <source>{0} is woven and has {1} points with its approach, but whether a weave continues in another program was not confirmed; allow more points per program, or a larger chord error</source>
         <translation>{0} est balayé et a {1} points avec son approche, et il n&apos;a pas été confirmé qu&apos;un balayage se poursuit dans un autre programme ; permettez plus de points dans un seul, ou une plus grande erreur de corde</translation>
     </message>
     <message>
@@ -15833,7 +15828,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>{0} jobs are called by none of the others, expected one</source>
+        <source>{0} jobs are called by no other job, expected one</source>
         <translation>{0} jobs ne sont appelés par aucun autre, un seul est attendu</translation>
     </message>
     <message>
@@ -15843,13 +15838,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/without_bead.py"/>
-        <source>{0} layer(s) of {1} have places too narrow for a bead, and none in them: {2}; the largest place, {3} mm^2 and {4} mm wide, is at {5}; all of them are {6} mm^2; use narrower beads, lower strategy.narrowest, or make the part thicker there</source>
-        <translation>{0} couche(s) de {1} ont des endroits trop étroits pour un cordon et n&apos;y ont aucun cordon : {2} ; le plus grand, {3} mm^2 et {4} mm de large, est en {5} ; tous ensemble font {6} mm^2 ; utilisez des cordons plus étroits, baissez strategy.narrowest ou épaississez la pièce à ces endroits</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/deposit/support.py"/>
-        <source>{0} layers more have beads over nothing, {1} mm of them</source>
-        <translation>{0} autres couches ont des cordons au-dessus du vide, sur {1} mm</translation>
+        <source>{0} layer(s) of {1} get no bead, as all regions are too narrow: {2}; the largest, {3} mm^2 and {4} mm wide, is at {5}; the total is {6} mm^2; use narrower beads, lower strategy.narrowest, or make the part thicker there</source>
+        <translation>{0} couche(s) de {1} ne reçoivent pas de cordon, car toutes leurs régions sont trop étroites : {2} ; la plus grande, de {3} mm^2 et {4} mm de large, est en {5} ; le total est de {6} mm^2 ; utilisez des cordons plus étroits, baissez strategy.narrowest, ou épaississez la pièce là</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/turn.py"/>
@@ -15868,33 +15858,33 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
-        <source>{0} links to nothing, what it showed is gone or was not loaded; choose another {1}</source>
-        <translation>{0} ne lie à rien, ce qu&apos;il montrait a disparu ou n&apos;a pas été chargé ; choisissez un autre {1}</translation>
+        <source>{0} links to nothing, as its target was deleted or is not loaded; choose another {1}</source>
+        <translation>{0} ne renvoie à rien, car sa cible a été supprimée ou n&apos;est pas chargée ; choisissez un autre {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
-        <source>{0} links to {1}, which is not there; put the file there and open the document again, or choose another {2}</source>
-        <translation>{0} est lié à {1}, qui manque ; remettez le fichier et ouvrez le document de nouveau, ou choisissez un autre {2}</translation>
+        <source>{0} links to {1}, which does not exist; restore the file and open the document again, or choose another {2}</source>
+        <translation>{0} renvoie à {1}, qui n&apos;existe pas ; remettez le fichier et ouvrez le document de nouveau, ou choisissez un autre {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/linked_files.py"/>
-        <source>{0} links to {1}, which is not there; put the file there, or change the link in FreeCAD</source>
-        <translation>{0} est lié à {1}, qui manque ; remettez le fichier ou changez le lien dans FreeCAD</translation>
+        <source>{0} links to {1}, which does not exist; restore the file, or change the link in FreeCAD</source>
+        <translation>{0} renvoie à {1}, qui n&apos;existe pas ; remettez le fichier, ou changez le lien dans FreeCAD</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
+        <source>{0} lists the contents of a group twice, so its face numbers are ambiguous; name an object in it, or remove the contents from the group</source>
+        <translation>{0} énumère deux fois le contenu d&apos;un groupe, si bien que les numéros de ses faces sont ambigus ; nommez un objet qu&apos;il contient, ou retirez le contenu du groupe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
+        <source>{0} main programs, expected one with its parts</source>
+        <translation>il y a {0} programmes principaux, un seul attendu avec ses parties</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
-        <source>{0} may be a program of this very job; call one of another name</source>
-        <translation>{0} peut être un programme de ce travail même ; appelez-en un d&apos;un autre nom</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
-        <source>{0} may be read in two ways; write decimals with a point and one kind of separator, as in 10.5 20.5</source>
-        <translation>{0} peut se lire de deux façons ; écrivez les décimales avec un point et une seule sorte de séparateur, comme dans 10.5 20.5</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/nc/parts.py"/>
-        <source>{0} means something else to the controller; use another word</source>
-        <translation>{0} veut dire autre chose pour la commande ; utilisez un autre mot</translation>
+        <source>{0} may be a program of the job; use another name</source>
+        <translation>{0} peut être un programme du travail ; utilisez un autre nom</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
@@ -15923,13 +15913,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/iso_height.py"/>
-        <source>{0} mm is more than the wall is high ({1} mm); give a smaller one, or layers along the wall (spacing: arc-length)</source>
+        <source>{0} mm exceeds the height of the wall ({1} mm); use a smaller layer height, or layers along the wall (spacing: arc-length)</source>
         <translation>{0} mm sont plus que la hauteur de la paroi ({1} mm) ; donnez moins, ou des couches le long de la paroi (spacing: arc-length)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/arc_length.py"/>
-        <source>{0} mm is more than the wall is long ({1} mm); give a smaller one</source>
+        <source>{0} mm exceeds the length of the wall ({1} mm); use a smaller layer height</source>
         <translation>{0} mm sont plus que la longueur de la paroi ({1} mm) ; donnez moins</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <source>{0} mm gives about {1} layers, above the limit of {2}; use at least {3} mm</source>
+        <translation>{0} mm font environ {1} couches, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez au moins {3} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <source>{0} mm gives about {1} points, above the limit of {2}; use at least {3} mm</source>
+        <translation>{0} mm font environ {1} points, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez au moins {3} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>
@@ -15952,43 +15952,33 @@
         <translation>{0} mm, c&apos;est trop pour {1}, long de {2} mm le long du guide : aucune couche n&apos;est coupée en son {3} ; donnez au plus {4} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/size.py"/>
-        <source>{0} mm makes about {1} layers, and more than {2} cannot be worked with; give at least {3} mm</source>
-        <translation>{0} mm font environ {1} couches, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez au moins {3} mm</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/size.py"/>
-        <source>{0} mm makes about {1} points, and more than {2} cannot be worked with; give at least {3} mm</source>
-        <translation>{0} mm font environ {1} points, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez au moins {3} mm</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/process/deposit/support.py"/>
-        <source>{0} mm of beads lie over nothing, {1} mm of them in a row from here: what is below is more than {2} mm away, or they overhang it by more than half of their width; deposit what carries them first, let the part grow from another side, or leave them out</source>
-        <translation>{0} mm de cordons sont au-dessus du vide, dont {1} mm à la suite à partir d&apos;ici : ce qui est dessous est à plus de {2} mm, ou ils le débordent de plus de la moitié de leur largeur ; déposez d&apos;abord ce qui les porte, faites croître la pièce d&apos;un autre côté, ou laissez-les de côté</translation>
+        <source>{0} mm of bead are unsupported, the longest run {1} mm from here: the surface below is more than {2} mm away, or beads overhang by more than half their width; deposit the support first, change the growth direction, or remove these beads</source>
+        <translation>{0} mm de cordon ne sont pas portés, {1} mm d&apos;affilée au plus à partir d&apos;ici : la surface dessous est à plus de {2} mm, ou les cordons dépassent de plus de la moitié de leur largeur ; déposez d&apos;abord le support, changez la direction de croissance, ou retirez ces cordons</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/support.py"/>
-        <source>{0} mm of the first layer lie over the edge of the platform, up to {1} mm beyond it; move the part, or set cell.platform_diameter to what there is (0 for none)</source>
-        <translation>{0} mm de la première couche dépassent du bord du plateau, jusqu’à {1} mm au-delà ; déplacez la pièce, ou donnez à cell.platform_diameter sa vraie valeur (0 pour aucun)</translation>
+        <source>{0} mm of the first layer are unsupported, up to {1} mm above the platform; put the part on it by cell.mount: feature, move it in its file, or set its substrate</source>
+        <translation>{0} mm de la première couche ne sont pas portés, jusqu&apos;à {1} mm au-dessus du plateau ; mettez la pièce dessus par cell.mount: feature, déplacez-la dans son fichier, ou fixez son substrat</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/support.py"/>
-        <source>{0} mm of the first layer lie over the edge of the platform, up to {1} mm beyond it; put the part on its middle by cell.mount: feature, move it, or set cell.platform_diameter to what there is (0 for none)</source>
-        <translation>{0} mm de la première couche dépassent du bord du plateau, jusqu’à {1} mm au-delà ; posez la pièce sur son milieu par cell.mount: feature, déplacez-la, ou donnez à cell.platform_diameter sa vraie valeur (0 pour aucun)</translation>
+        <source>{0} mm of the first layer overhang the platform edge, by up to {1} mm; centre the part by cell.mount: feature, move it, or correct cell.platform_diameter (0 for none)</source>
+        <translation>{0} mm de la première couche dépassent le bord du plateau, jusqu&apos;à {1} mm ; centrez la pièce par cell.mount: feature, déplacez-la, ou corrigez cell.platform_diameter (0 pour aucun)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/support.py"/>
-        <source>{0} mm of the first layer lie up to {1} mm above the platform, over nothing; put the part on it by cell.mount: feature, move it in its file, or name what it grows on as its substrate</source>
-        <translation>{0} mm de la première couche se trouvent jusqu&apos;à {1} mm au-dessus du plateau, au-dessus du vide ; posez la pièce dessus par cell.mount: feature, déplacez-la dans son fichier, ou donnez comme substrat ce sur quoi elle croît</translation>
+        <source>{0} mm of the first layer overhang the platform edge, by up to {1} mm; move the part, or correct cell.platform_diameter (0 for none)</source>
+        <translation>{0} mm de la première couche dépassent le bord du plateau, jusqu&apos;à {1} mm ; déplacez la pièce, ou corrigez cell.platform_diameter (0 pour aucun)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
-        <source>{0} mm of the height are left at the top, less than a layer</source>
+        <source>{0} mm of the height remain at the top, less than a layer</source>
         <translation>{0} mm de la hauteur restent en haut, moins qu&apos;une couche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
-        <source>{0} mm of the wall are left at the top, less than a layer</source>
+        <source>{0} mm of the wall remain at the top, less than a layer</source>
         <translation>{0} mm de la paroi restent en haut, moins qu&apos;une couche</translation>
     </message>
     <message>
@@ -16017,6 +16007,11 @@
         <translation>{0} mm/s est plus que le plus rapide, {1} mm/s ; donnez ici la vitesse la plus lente</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
+        <source>{0} mm/s would work, but the bead model needs {1} mm/s, and too much material would pile up: turn the torch more slowly (build_direction.max_turn), tilt it less, mount the part differently, or use a wider bead (process.bead_width), which is slower</source>
+        <translation>{0} mm/s conviendrait, mais le modèle de cordon demande {1} mm/s, et trop de matière s&apos;accumulerait : tournez la torche plus lentement (build_direction.max_turn), inclinez-la moins, montez la pièce autrement, ou prenez un cordon plus large (process.bead_width), qui est plus lent</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
         <source>{0} mm: {1} mm</source>
         <translation>{0} mm : {1} mm</translation>
@@ -16037,8 +16032,13 @@
         <translation>{0} de plus</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/deposit/support.py"/>
+        <source>{0} more layers have unsupported beads, {1} mm in total</source>
+        <translation>{0} couches de plus ont des cordons non portés, {1} mm en tout</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
-        <source>{0} moves take {1} s in all and cannot be shorter than 1 ms each; use a larger chord error or a lower speed</source>
+        <source>{0} moves take {1} s in total, but each needs at least 1 ms; use a larger chord error or a lower speed</source>
         <translation>{0} mouvements prennent {1} s en tout et ne peuvent pas durer moins de 1 ms chacun ; prenez une plus grande erreur de corde ou une vitesse plus basse</translation>
     </message>
     <message>
@@ -16047,14 +16047,29 @@
         <translation>{0} doivent être 1 ou -1 chacun ; donnez-en un par articulation</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <source>{0} must be either a file or a box; give exactly one</source>
+        <translation>{0} doit être soit un fichier soit une boîte ; donnez exactement l&apos;un des deux</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
         <source>{0} must be within +-180; give equivalent angles in that range</source>
         <translation>{0} doit être dans +-180 ; donnez des angles équivalents dans cette plage</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>{0} names a module or routine of the program that is not loaded</source>
+        <translation>{0} nomme un module ou une routine du programme qui n&apos;est pas chargé</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/shapes/nested.py"/>
-        <source>{0} names faces or edges of several objects ({1}, {2}); choose those of one</source>
+        <source>{0} names faces or edges of several objects ({1}, {2}); choose from one object</source>
         <translation>{0} désigne des faces ou des arêtes de plusieurs objets ({1}, {2}) ; choisissez celles d’un seul</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <source>{0} names its start edges</source>
+        <translation>{0} nomme les arêtes d&apos;où elle part</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/external.py"/>
@@ -16067,11 +16082,6 @@
         <translation>{0} ne nomme aucun rôle ; donnez part, all ou une liste</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} names the edges that it starts from</source>
-        <translation>{0} nomme les arêtes d&apos;où elle part</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>{0} names {1}, a volume of object {2}, with the role {3}, but the model lacks this volume; save the project in the slicer again, or export only the part</source>
         <translation>{0} donne à {1}, un morceau de l&apos;objet {2}, le rôle {3}, et le modèle n&apos;a pas ce morceau ; enregistrez à nouveau le projet dans le trancheur, ou exportez la pièce seule</translation>
@@ -16082,9 +16092,19 @@
         <translation>{0} est pour une machine qui est l&apos;URDF de toute la cellule, comme machine: bay.urdf ; ou donnez une liste de mécanismes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
-        <source>{0} objects are called {1}; give one of them another label</source>
-        <translation>{0} objets s&apos;appellent {1} ; donnez un autre nom à l&apos;un d&apos;eux</translation>
+        <location filename="../../freecad_am/core/planning/external/rule.py"/>
+        <source>{0} needs polynomials per bead, which the method {1} lacks; use method: {2}, or external_axes: {3}</source>
+        <translation>{0} : ce sont des polynômes par cordon, la méthode {1} n&apos;en a pas ; utiliser method : {2}, ou external_axes : {3}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>{0} no longer exists after a change of the part; choose the edges again</source>
+        <translation>{0} n&apos;existe plus après un changement de la pièce ; choisissez les arêtes de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>{0} no longer exists after a change of the part; choose the faces again</source>
+        <translation>{0} n&apos;existe plus après un changement de la pièce ; choisissez les faces de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
@@ -16092,9 +16112,14 @@
         <translation>{0} objets ont leur propre forme ({1}) ; nommez la pièce par part.object</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/bodies.py"/>
-        <source>{0} of it has no shape; choose an object with a shape</source>
-        <translation>{0} n&apos;y a pas de forme ; choisissez un objet avec une forme</translation>
+        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
+        <source>{0} objects have the label {1}; change one label</source>
+        <translation>{0} objets s&apos;appellent {1} ; donnez un autre nom à l&apos;un d&apos;eux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <source>{0} obstacles are called {1}; use unique names</source>
+        <translation>{0} obstacles s&apos;appellent {1} ; utilisez des noms uniques</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
@@ -16112,23 +16137,18 @@
         <translation>{0} de l&apos;extension {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
-        <source>{0} of them are called {1}; give each its own name</source>
-        <translation>{0} d&apos;entre eux s&apos;appellent {1} ; donnez à chacun son propre nom</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>{0} of {1} beads are deposited at {2} to {3} mm/s instead of {4} mm/s, for one wire feed to make them {5}; the speed follows that along them</source>
+        <source>{0} of {1} beads are deposited at {2} to {3} mm/s instead of {4} mm/s, so that one wire feed makes them {5}; the speed varies along them</source>
         <translation>{0} des {1} cordons sont déposés à {2} à {3} mm/s au lieu de {4} mm/s, pour qu’un même dévidage leur donne {5} ; la vitesse la suit le long d’eux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>{0} of {1} beads are deposited at {2} to {3} mm/s, for one wire feed to make them {4}; the speed follows that along them</source>
+        <source>{0} of {1} beads are deposited at {2} to {3} mm/s, so that one wire feed makes them {4}; the speed varies along them</source>
         <translation>{0} des {1} cordons sont déposés à {2} à {3} mm/s, pour qu’un même dévidage leur donne {4} ; la vitesse la suit le long d’eux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>
-        <source>{0} of {1} directions cannot be turned to the torch by this machine; tilt less, or mount the part otherwise</source>
+        <source>{0} of {1} directions are out of reach of the torch on this machine; tilt less, or mount the part differently</source>
         <translation>{0} de {1} directions ne peuvent pas être tournées vers la torche par cette machine ; inclinez moins, ou montez la pièce autrement</translation>
     </message>
     <message>
@@ -16137,43 +16157,53 @@
         <translation>{0} de {1} fronts ont des angles, d&apos;abord la couche {2} ; le plus vif tourne de {3} deg. Le robot y ralentit</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>{0} of {1} has changed its position since its selection and may be another edge, as FreeCAD renumbers edges when a part changes; choose the edges again, or confirm them: OK in the panel without other changes</source>
+        <translation>{0} de {1} a changé de position depuis son choix et peut être une autre arête, car FreeCAD renumérote les arêtes quand une pièce change ; choisissez les arêtes de nouveau, ou confirmez-les : OK dans le panneau sans autre changement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>{0} of {1} has changed its position since its selection and may be another face, as FreeCAD renumbers faces when a part changes; choose the faces again, or confirm them: OK in the panel without other changes</source>
+        <translation>{0} de {1} a changé de position depuis son choix et peut être une autre face, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces de nouveau, ou confirmez-les : OK dans le panneau sans autre changement</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>{0} of {1} is a step of {2} mm in the wall; it is kept</source>
         <translation>{0} de {1} est une marche de {2} mm dans la paroi ; elle est gardée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} of {1} is chosen, which most solids of it stand on</source>
-        <translation>{0} de {1} est choisi, car la plupart de ses solides reposent dessus</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} of {1} is chosen, which the rest of it stands on</source>
-        <translation>{0} de {1} est choisie, sur laquelle se dresse le reste</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/shapes/nested.py"/>
-        <source>{0} of {1} is not certain: FreeCAD has what is in a group of it twice, and numbers both; choose it of the object that it belongs to</source>
-        <translation>{0} de {1} n’est pas certain : FreeCAD a deux fois ce qui est dans un de ses groupes, et numérote les deux ; choisissez-le dans l’objet auquel il appartient</translation>
+        <source>{0} of {1} is ambiguous: FreeCAD lists the contents of its group twice and numbers both; choose it on the original object</source>
+        <translation>{0} de {1} est ambigu : FreeCAD énumère deux fois le contenu de son groupe et numérote les deux ; choisissez-le sur l&apos;objet d&apos;origine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
-        <source>{0} of {1} is not the edge that was chosen: that edge is {2} now, as FreeCAD renumbers edges when a part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered</source>
+        <source>{0} of {1} is not the selected edge: that edge is {2} now, as FreeCAD renumbers edges when a part changes; choose the edges again, or confirm them: OK in the panel without other changes</source>
         <translation>{0} de {1} n’est pas l’arête choisie : celle-ci est maintenant {2}, car FreeCAD renumérote les arêtes quand une pièce change ; choisissez les arêtes à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
-        <source>{0} of {1} is not the face that was chosen: that face is {2} now, as FreeCAD renumbers faces when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered</source>
+        <source>{0} of {1} is not the selected face: that face is {2} now, as FreeCAD renumbers faces when a part changes; choose the faces again, or confirm them: OK in the panel without other changes</source>
         <translation>{0} de {1} n’est pas la face choisie : celle-ci est maintenant {2}, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <source>{0} of {1} is selected, the base of most of its solids</source>
+        <translation>{0} de {1} est choisi, la base de la plupart de ses solides</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <source>{0} of {1} is selected, the base of the rest</source>
+        <translation>{0} de {1} est choisi, la base du reste</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/shapes/nested.py"/>
-        <source>{0} of {1} is {2} of {3}; choose it of that object</source>
+        <source>{0} of {1} is {2} of {3}; choose it on the latter</source>
         <translation>{0} de {1} est {2} de {3} ; choisissez-la sur cet objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
-        <source>{0} of {1} layers are more than 20 % off the layer height of {2} mm, first layer {3}; layer {4} is {5} mm from the one below; layers along the wall (spacing: arc-length) are even</source>
+        <source>{0} of {1} layers deviate by more than 20 % from the layer height of {2} mm, first layer {3}; layer {4} is {5} mm above the previous one; layers along the wall (spacing: arc-length) are even</source>
         <translation>{0} de {1} couches s&apos;écartent de plus de 20 % de la hauteur de couche de {2} mm, d&apos;abord la couche {3} ; la couche {4} est à {5} mm de celle du dessous ; des couches le long de la paroi (spacing: arc-length) sont égales</translation>
     </message>
     <message>
@@ -16182,29 +16212,19 @@
         <translation>{0} couches sur {1} ne sont pas partout de la hauteur demandée : la couche {2} a {3} à {4} mm, le plus loin des {5} mm en {6} ; strategy.band permet {7} %, et il faudrait {8} % : augmentez-le, ou choisissez un guide au milieu de la pièce ou moins courbé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
-        <source>{0} of {1} lies another way than when it was chosen, so it may be another edge, as FreeCAD renumbers edges when a part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered</source>
-        <translation>{0} de {1} est orientée autrement que lorsqu’elle a été choisie, c’est donc peut-être une autre arête, car FreeCAD renumérote les arêtes quand une pièce change ; choisissez les arêtes à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
+        <location filename="../../freecad_am/core/planning/findings.py"/>
+        <source>{0} of {1} points are out of reach in this configuration; move the deposition point, choose another branch or tilt less</source>
+        <translation>{0} de {1} points sont hors de portée dans cette configuration ; déplacez le point de dépôt, choisissez une autre branche ou inclinez moins</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
-        <source>{0} of {1} lies another way than when it was chosen, so it may be another face, as FreeCAD renumbers faces when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered</source>
-        <translation>{0} de {1} est orientée autrement que lorsqu’elle a été choisie, c’est donc peut-être une autre face, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
+        <location filename="../../freecad_am/core/planning/findings.py"/>
+        <source>{0} of {1} points are out of reach in this configuration; move the positioner, choose another branch or tilt less</source>
+        <translation>{0} de {1} points sont hors de portée dans cette configuration ; déplacez le positionneur, choisissez une autre branche ou inclinez moins</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/on_part.py"/>
-        <source>{0} of {1} places checked are off the part, this one at {2} by {3} mm, and {4} mm are allowed: this toolpath deposits something else; choose another strategy, or other faces, and report the part</source>
+        <source>{0} of {1} points checked are off the part, this one at {2} by {3} mm, with {4} mm allowed, so the toolpath is wrong; choose another strategy or other faces, and report the part</source>
         <translation>{0} des {1} endroits regardés sont hors de la pièce, celui-ci en {2} de {3} mm, et {4} mm sont permis : cette trajectoire dépose autre chose ; choisissez une autre stratégie, ou d&apos;autres faces, et signalez la pièce</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/findings.py"/>
-        <source>{0} of {1} points cannot be reached with this branch; move the deposition point, choose another branch or tilt less</source>
-        <translation>{0} de {1} points ne peuvent pas être atteints avec cette branche ; déplacez le point de dépôt, choisissez une autre branche ou inclinez moins</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/findings.py"/>
-        <source>{0} of {1} points cannot be reached with this branch; move the positioner, choose another branch or tilt less</source>
-        <translation>{0} de {1} points ne peuvent pas être atteints avec cette branche ; déplacez le positionneur, choisissez une autre branche ou inclinez moins</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
@@ -16213,12 +16233,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
-        <source>{0} of {1} was {2} when it was chosen and is {3} now, so it may be another edge, as FreeCAD renumbers edges when a part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered</source>
+        <source>{0} of {1} was {2} when selected and is {3} now, so it may be another edge, as FreeCAD renumbers edges when a part changes; choose the edges again, or confirm them: OK in the panel without other changes</source>
         <translation>{0} de {1} était {2} quand elle a été choisie et est maintenant {3}, c’est donc peut-être une autre arête, car FreeCAD renumérote les arêtes quand une pièce change ; choisissez les arêtes à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
-        <source>{0} of {1} was {2} when it was chosen and is {3} now, so it may be another face, as FreeCAD renumbers faces when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered</source>
+        <source>{0} of {1} was {2} when selected and is {3} now, so it may be another face, as FreeCAD renumbers faces when a part changes; choose the faces again, or confirm them: OK in the panel without other changes</source>
         <translation>{0} de {1} était {2} quand elle a été choisie et est maintenant {3}, c’est donc peut-être une autre face, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>
     <message>
@@ -16253,8 +16273,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
-        <source>{0} place(s) too narrow for a bead get none, {1} mm^2 in all; the largest, {2} mm^2 and {3} mm wide, is at {4}; use narrower beads, lower strategy.narrowest, or make the part thicker there</source>
+        <source>{0} place(s) are too narrow for a bead, {1} mm^2 in total; the largest, {2} mm^2 and {3} mm wide, is at {4}; use narrower beads, lower strategy.narrowest, or make the part thicker there</source>
         <translation>{0} endroit(s) trop étroits pour un cordon n&apos;en reçoivent pas, {1} mm^2 en tout ; le plus grand, {2} mm^2 et {3} mm de large, est en {4} ; utilisez des cordons plus étroits, baissez strategy.narrowest ou épaississez la pièce à cet endroit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/moves.py"/>
+        <source>{0} placed in the world</source>
+        <translation>{0} qui est dans le monde</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/moves.py"/>
+        <source>{0} placed on the flange</source>
+        <translation>{0} qui est sur la bride</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
@@ -16293,23 +16323,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>{0} programs are called by none of the others, expected one</source>
+        <source>{0} programs are called by no other program, expected one</source>
         <translation>{0} programmes ne sont appelés par aucun autre, un seul attendu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>{0} programs are not subs, expected one</source>
+        <translation>il y a {0} programmes qui ne sont pas des sous-programmes, un seul attendu</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/promise.py"/>
         <source>{0} rapids</source>
         <translation>{0} rapides</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/checks/collisions.py"/>
-        <source>{0} reaches into the platform, a plate of {1} mm below the origin of the frame that sits on it; set cell.platform to where the part is held and cell.platform_diameter to what there is (0 for none)</source>
-        <translation>{0} entre dans le plateau, une plaque de {1} mm sous l&apos;origine du repère posé dessus ; fixez cell.platform là où la pièce est tenue et cell.platform_diameter selon ce qui existe (0 pour aucun)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
-        <source>{0} reaches {1} mm below the platform, at {2}</source>
-        <translation>{0} descend à {1} mm au-dessous du plateau, en {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -16332,6 +16357,11 @@
         <translation>{0} ligne {1} (ligne {2} du fichier)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>{0} runs before the previous move ends</source>
+        <translation>{0} est atteint avant la fin du mouvement qui précède</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/shapes/places.py"/>
         <source>{0} scales or mirrors it; choose {1} itself</source>
         <translation>{0} le met à l&apos;échelle ou le retourne ; choisissez {1} lui-même</translation>
@@ -16340,6 +16370,11 @@
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>{0} sets unknown offsets; remove it</source>
         <translation>{0} fixe des décalages, qui sont inconnus ; retirez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
+        <source>{0} single bead(s) exceed regions narrower than a bead of {1} mm, by up to {2} mm at {3}</source>
+        <translation>{0} cordon(s) isolé(s) débordent de régions plus étroites qu&apos;un cordon de {1} mm, de {2} mm au plus en {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
@@ -16353,38 +16388,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/between_cuts.py"/>
-        <source>{0} solid(s) lie between the cuts of two layers, {1} mm apart, and get no bead, {2} cm3 in all: {3}{4}; set strategy.layer_height to at most their height, or fuse them with the solid beside them</source>
+        <source>{0} solid(s) fit between the cuts of two layers, {1} mm apart, and get no bead, {2} cm3 in total: {3}{4}; set strategy.layer_height to at most their height, or fuse them with the adjacent solid</source>
         <translation>{0} solide(s) se trouvent entre les coupes de deux couches, distantes de {1} mm, et ne reçoivent aucun cordon, {2} cm3 en tout : {3}{4} ; réglez strategy.layer_height à leur hauteur au plus, ou fusionnez-les avec le solide voisin</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/features/hub.py"/>
         <source>{0} solids on {1} ({2})</source>
         <translation>{0} solides sur {1} ({2})</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>{0} stands among the lines of another instruction</source>
-        <translation>{0} se trouve parmi les lignes d&apos;une autre instruction</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} stands on a cylinder or cone of {1}</source>
-        <translation>{0} se dresse sur un cylindre ou un cône de {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>{0} stands outside of its function</source>
-        <translation>{0} est en dehors de sa fonction</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>{0} stands outside of the sub {1}</source>
-        <translation>{0} est hors du sous-programme {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>{0} stands there twice</source>
-        <translation>{0} y est deux fois</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
@@ -16407,29 +16417,19 @@
         <translation>{0} commute une deuxième sortie, après {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/moves.py"/>
-        <source>{0} that stands in the world</source>
-        <translation>{0} qui est dans le monde</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/moves.py"/>
-        <source>{0} that stands on the flange</source>
-        <translation>{0} qui est sur la bride</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>{0} to {1}</source>
         <translation>{0} à {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>{0} touched points put the part at [{1}] mm and deg in the robot base; residuals at the points: {2} mm, {3} mm root mean square</source>
+        <translation>d&apos;après {0} points palpés, le repère de la pièce est en [{1}] mm et deg dans la base du robot ; écarts aux points : {2} mm, {3} mm en moyenne quadratique</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
         <source>{0} triangles were flipped to match their neighbours</source>
         <translation>{0} triangles ont été retournés pour s&apos;accorder avec leurs voisins</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} turns about one axis, and its wall is one bead of {1} mm</source>
-        <translation>{0} tourne autour d&apos;un axe, et sa paroi est un cordon de {1} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -16443,12 +16443,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/current.py"/>
-        <source>{0} was changed and is not recomputed yet; recompute the document first</source>
+        <source>{0} was changed but not yet recomputed; recompute the document first</source>
         <translation>{0} a été modifié et n&apos;est pas encore recalculé ; recalculez d&apos;abord le document</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
-        <source>{0} was computed anew for {1}: a document that it links to changed after this one was saved</source>
+        <source>{0} was recomputed for {1}: a linked document changed after this one was saved</source>
         <translation>{0} a été recalculé pour {1} : un document lié a changé après l&apos;enregistrement de celui-ci</translation>
     </message>
     <message>
@@ -16473,22 +16473,22 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
-        <source>{0} would be at {1} {2} on the retract before or after the bead, its limit is {3} {4}, and no other height, direction or rotation keeps within limits; lower process.between_layers.lift or move the part in the cell</source>
+        <source>{0} would be at {1} {2} on the retract before or after the bead, beyond its limit of {3} {4}, and no other height, direction or rotation is within limits; lower process.between_layers.lift or move the part in the cell</source>
         <translation>{0} serait à {1} {2} au retrait avant ou après le cordon, sa limite est {3} {4}, et aucune autre hauteur, direction ou rotation ne reste dans les limites ; diminuez process.between_layers.lift ou déplacez la pièce dans la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>
-        <source>{0} would be at {1} {2}, its limit is {3} {4}</source>
+        <source>{0} would be at {1} {2}, beyond its limit of {3} {4}</source>
         <translation>{0} serait à {1} {2}, sa limite est {3} {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>
-        <source>{0} would be at {1} {2}, its limit is {3} {4}; move the part on the table</source>
+        <source>{0} would be at {1} {2}, beyond its limit of {3} {4}; move the part on the table</source>
         <translation>{0} serait à {1} {2}, sa limite est {3} {4} ; déplacez la pièce sur la table</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_table.py"/>
-        <source>{0} {1} is not a number; mend the row, or leave it out</source>
+        <source>{0} {1} is not a number; correct or remove the row</source>
         <translation>{0} {1} n&apos;est pas un nombre ; corrigez la ligne, ou retirez-la</translation>
     </message>
     <message>
@@ -16498,17 +16498,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
-        <source>{0} {1} is selected, moves before are in {2}: only one of them is known here, and all moves are driven in that; give a program of one alone</source>
-        <translation>{0} {1} est sélectionné, les déplacements précédents sont dans {2} : un seul est connu ici, et tous les déplacements y sont simulés ; donnez un programme qui n&apos;en a qu&apos;un</translation>
+        <source>{0} {1} is selected after moves in {2}: only one is known here, and all moves are simulated in it; use a program with a single one</source>
+        <translation>{0} {1} est choisi après des mouvements dans {2} : un seul est connu ici, et tous les mouvements y sont parcourus ; utilisez un programme avec un seul</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
-        <source>{0} {1} is selected, the job has {2}: moves are driven in that of the cell; compare the two, and correct the program&apos;s number or that of the job</source>
-        <translation>{0} {1} est sélectionné, le travail a {2} : les déplacements sont simulés dans celui de la cellule ; comparez les deux et corrigez le numéro du programme ou celui du travail</translation>
+        <source>{0} {1} is selected, but the job has {2}: moves are simulated with the cell&apos;s own; compare the two, and correct the program or the job</source>
+        <translation>{0} {1} est choisi, mais le travail a {2} : les mouvements sont parcourus avec celui de la cellule ; comparez les deux, et corrigez le programme ou le travail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>
-        <source>{0} {1} {2} is not a positive number; mend the row, or leave it out</source>
+        <source>{0} {1} {2} is not a positive number; correct or remove the row</source>
         <translation>{0} {1} {2} n&apos;est pas un nombre positif ; corrigez la ligne, ou retirez-la</translation>
     </message>
     <message>
@@ -16518,18 +16518,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and layers have the bend of {1} where it stands</source>
-        <translation>{0}, et les couches ont la courbure de {1} là où elle repose</translation>
+        <source>{0}, and layers follow the bend of {1} at its base</source>
+        <translation>{0}, et les couches suivent la courbure de {1} à sa base</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and less than 1% of its surface hangs over by more than 45 deg</source>
-        <translation>{0}, et moins de 1 % de sa surface surplombe de plus de 45 deg</translation>
+        <source>{0}, and less than 1% of its surface overhangs by more than 45 deg</source>
+        <translation>{0}, et moins de 1 % de sa surface surplombe de plus de 45 deg</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and less than 1% of its surface hangs over by more than 45 deg, stacked along {1}</source>
-        <translation>{0}, et moins de 1 % de sa surface surplombe de plus de 45 deg, empilé suivant {1}</translation>
+        <source>{0}, and less than 1% of its surface overhangs by more than 45 deg, stacked along {1}</source>
+        <translation>{0}, et moins de 1 % de sa surface surplombe de plus de 45 deg, empilé suivant {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>
@@ -16538,73 +16538,73 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hangs over by more than 45 deg</source>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}</source>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}, which layers along the way through it carry</source>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}, which layers along the path through it support</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}, que portent des couches le long du chemin à travers elle</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}, which layers along the way through it carry; stacked along {3} it would be {4}</source>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}, which layers along the path through it support; stacked along {3} it would be {4}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}, que portent des couches le long du chemin à travers elle ; empilé suivant {3}, ce serait {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}; a machine that tilts could lay layers: {3}, which need no support</source>
-        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; une machine qui incline pourrait déposer des couches : {3}, qui se passent de support</translation>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}; a machine that tilts can use layers: {3}, which need no support</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; une machine qui incline peut utiliser layers: {3}, qui se passe de support</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}; a machine that tilts could lay layers: {3}, which need no support; stacked along {4} it would be {5}</source>
-        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; une machine qui incline pourrait déposer des couches : {3}, qui se passent de support ; empilé suivant {4}, ce serait {5}</translation>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}; a machine that tilts can use layers: {3}, which need no support; stacked along {4} it would be {5}</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; une machine qui incline peut utiliser layers: {3}, qui se passe de support ; empilé suivant {4}, ce serait {5}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}; curved layers need a flat face that it stands on, which it has not</source>
-        <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg, empilée suivant {2} ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas</translation>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}; curved layers need a flat base face, which it lacks</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; des couches courbes demandent une face de base plane, qui manque</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}; curved layers need a flat face that it stands on, which it has not; stacked along {3} it would be {4}</source>
-        <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg, empilée suivant {2} ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas ; empilée suivant {3} ce serait {4}</translation>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}; curved layers need a flat base face, which it lacks; stacked along {3} it would be {4}</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; des couches courbes demandent une face de base plane, qui manque ; empilé suivant {3}, ce serait {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hangs over by more than 45 deg, which layers along the way through it carry</source>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg, which layers along the path through it support</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, que portent des couches le long du chemin à travers elle</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hangs over by more than 45 deg, which layers along the way through it carry; stacked along {2} it would be {3}</source>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg, which layers along the path through it support; stacked along {2} it would be {3}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, que portent des couches le long du chemin à travers elle ; empilé suivant {2}, ce serait {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hangs over by more than 45 deg; a machine that tilts could lay layers: {2}, which need no support</source>
-        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; une machine qui incline pourrait déposer des couches : {2}, qui se passent de support</translation>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg; a machine that tilts can use layers: {2}, which need no support</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; une machine qui incline peut utiliser layers: {2}, qui se passe de support</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hangs over by more than 45 deg; a machine that tilts could lay layers: {2}, which need no support; stacked along {3} it would be {4}</source>
-        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; une machine qui incline pourrait déposer des couches : {2}, qui se passent de support ; empilé suivant {3}, ce serait {4}</translation>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg; a machine that tilts can use layers: {2}, which need no support; stacked along {3} it would be {4}</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; une machine qui incline peut utiliser layers: {2}, qui se passe de support ; empilé suivant {3}, ce serait {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hangs over by more than 45 deg; curved layers need a flat face that it stands on, which it has not</source>
-        <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas</translation>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg; curved layers need a flat base face, which it lacks</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; des couches courbes demandent une face de base plane, qui manque</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hangs over by more than 45 deg; curved layers need a flat face that it stands on, which it has not; stacked along {2} it would be {3}</source>
-        <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas ; empilée suivant {2} ce serait {3}</translation>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg; curved layers need a flat base face, which it lacks; stacked along {2} it would be {3}</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; des couches courbes demandent une face de base plane, qui manque ; empilé suivant {2}, ce serait {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
@@ -16622,29 +16622,24 @@
         <translation>{0}/{1}.pgx ligne {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
-        <source>{0}: a wall of one bead, {1} mm wide, is planned</source>
-        <translation>{0} : une paroi d’un seul cordon, de {1} mm de large, est prévue</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
         <source>{0}: all {1} {2} are mapped to that of the cell</source>
         <translation>{0} : {1} {2} sont pris pour celui de la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/current.py"/>
-        <source>{0}: an input changed since it was computed</source>
+        <source>{0}: an input changed after the computation</source>
         <translation>{0} : une entrée a changé depuis le calcul</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
-        <source>{0}: beads of {1} mm do not reach into what is narrower, layers not above the last cut, and nothing is laid within a hub; use narrower beads, or lower layers</source>
-        <translation>{0} : les cordons de {1} mm n&apos;entrent pas dans ce qui est plus étroit, les couches ne montent pas au-dessus de la dernière coupe, et rien n&apos;est déposé dans un moyeu ; prenez des cordons plus étroits, ou des couches plus basses</translation>
+        <source>{0}: beads of {1} mm do not fit into narrower regions, layers end at the last cut, and the inside of a hub is not filled; use narrower beads, or lower layers</source>
+        <translation>{0} : des cordons de {1} mm n&apos;entrent pas dans les régions plus étroites, les couches s&apos;arrêtent à la dernière coupe, et l&apos;intérieur d&apos;un moyeu n&apos;est pas rempli ; utilisez des cordons plus étroits, ou des couches plus basses</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>{0}: checked for the nozzle while planning, for links and part only once the path is planned; give cell.arm_clearance so that planning keeps these clear of it</source>
-        <translation>{0} : vérifié pour la buse pendant la planification, pour les corps et la pièce seulement une fois la trajectoire planifiée ; donnez cell.arm_clearance pour que la planification les en tienne éloignés</translation>
+        <source>{0}: checked against the nozzle during planning, against links and part only after planning; set cell.arm_clearance to check these during planning too</source>
+        <translation>{0} : contrôlé par rapport à la buse pendant la planification, par rapport aux corps et à la pièce seulement après ; fixez cell.arm_clearance pour les contrôler aussi pendant la planification</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/draft.py"/>
@@ -16717,14 +16712,14 @@
         <translation>{0} : la couche {1} part de la numérisation, qui s&apos;écarte de {2} à {3} mm du plan, et la suit à {4} mm près ; {5} couches ramènent au plan. {6} points ont servi, {7} de normale opposée sont ignorés ; les cordons montent jusqu&apos;à {8} deg par rapport au plan{9}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/plan.py"/>
+        <source>{0}: no effect on a five-axis machine, which has no tool redundancy; remove the settings for robots</source>
+        <translation>{0} : sans effet sur une machine à cinq axes, qui n&apos;a pas de redondance d&apos;outil ; retirez les réglages pour robots</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
         <source>{0}: not read: {1}</source>
         <translation>{0} : non lu : {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/plan.py"/>
-        <source>{0}: of no effect on a machine with two rotary axes, which leaves no rotation about the tool to choose; leave out what is meant for robots</source>
-        <translation>{0} : sans effet sur une machine à deux axes rotatifs, qui ne laisse pas de rotation autour de l&apos;outil à choisir ; retirez ce qui est fait pour les robots</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/scan.py"/>
@@ -16750,6 +16745,11 @@
         <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
         <source>{0}: the unknown types {1} are deposited as the part; list roles in strategy.roles to exclude them</source>
         <translation>{0} : les types {1} sont inconnus et déposés comme la pièce ; nommez des rôles dans strategy.roles pour les omettre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
+        <source>{0}: the wall is planned as one bead, {1} mm wide</source>
+        <translation>{0} : la paroi est prévue comme un seul cordon, de {1} mm de large</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
@@ -16818,7 +16818,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
-        <source>{0}: {1} mm is not a box; give three lengths of more than 0 mm, at most {2} mm</source>
+        <source>{0}: {1} mm is not a box; give three positive lengths of at most {2} mm</source>
         <translation>{0} : {1} mm n&apos;est pas une boîte ; donnez trois longueurs de plus de 0 mm, au plus {2} mm</translation>
     </message>
     <message>
@@ -16828,7 +16828,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>{0}: {1} mm off; name the faces of the wall if it is not part of it</source>
+        <source>{0}: {1} mm off; select the wall faces if this face does not belong to the wall</source>
         <translation>{0} : écart de {1} mm ; nommez les faces de la paroi si elle n&apos;en fait pas partie</translation>
     </message>
     <message>
@@ -16843,17 +16843,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>{0}: {1}; use another way, or another controller</source>
+        <source>{0}: {1}; use another method, or another controller</source>
         <translation>{0} : {1} ; prenez une autre manière, ou un autre contrôleur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/interop/export.py"/>
-        <source>{0}; choose a file you can write</source>
+        <source>{0}; choose a writable file</source>
         <translation>{0} ; choisissez un fichier que vous pouvez écrire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/export.py"/>
-        <source>{0}; choose a folder you can write to</source>
+        <source>{0}; choose a writable folder</source>
         <translation>{0} ; choisissez un dossier où vous pouvez écrire</translation>
     </message>
     <message>
@@ -16863,13 +16863,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>{0}; for one speed give {1}</source>
+        <source>{0}; for a constant speed set {1}</source>
         <translation>{0} ; pour une seule vitesse, donnez {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>{0}; leave it out, or use another controller</source>
-        <translation>{0} ; omettez-le, ou utilisez une autre commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>
@@ -16888,12 +16883,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>{0}; remove it, or use another controller</source>
+        <translation>{0} ; omettez-le, ou utilisez une autre commande</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
         <source>{0}; set program.motion to cartesian with the tool on the robot (fanuc, yaskawa; abb with program.schedule.by: arc too), or process.weave, also in process.classes, to 0</source>
         <translation>{0} ; mettez program.motion à cartesian avec l&apos;outil sur le robot (fanuc, yaskawa ; abb aussi avec program.schedule.by: arc), ou process.weave, aussi dans process.classes, à 0</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/nodes/machine_links.py"/>
-        <source>{0}; the link has its plain solid for now</source>
+        <source>{0}; the link is shown as a plain solid for now</source>
         <translation>{0} ; le corps garde pour l&apos;instant son solide simple</translation>
     </message>
     <message>
@@ -17018,7 +17018,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
-        <source>{time} where speeds are not kept</source>
+        <source>{time} at reduced speed</source>
         <translation>{time} là où les vitesses ne sont pas tenues</translation>
     </message>
     <message>
@@ -17068,7 +17068,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/at_rest.py"/>
-        <source>{} at rest, its turning axes at 0</source>
+        <source>{} at rest, revolute axes at 0</source>
         <translation>{} au repos, ses axes rotatifs à 0</translation>
     </message>
     <message>
@@ -17082,13 +17082,8 @@
         <translation>{} appartient à un travail ; sélectionnez la pièce elle-même.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/needs.py"/>
-        <source>{} cannot be carried out: {}</source>
-        <translation>{} ne peut pas être exécuté : {}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
-        <source>{} cannot be taken for this.</source>
+        <source>{} cannot be used here.</source>
         <translation>{} ne convient pas ici.</translation>
     </message>
     <message>
@@ -17110,6 +17105,11 @@
         <location filename="../../freecad_am/gui/panels/at_rest.py"/>
         <source>{} does not reach the part with the nozzle upright: all its axes are drawn at 0</source>
         <translation>{} n&apos;atteint pas la pièce avec la buse droite : tous ses axes sont dessinés à 0</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
+        <source>{} exceed a limit only because an axis runs out of turns along its bead</source>
+        <translation>{0} dépassent une limite seulement parce qu&apos;un axe n&apos;a plus de tours le long de son cordon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
@@ -17163,17 +17163,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
-        <source>{} is a mesh, which has no exact faces; select a part such as of a STEP file.</source>
+        <source>{} is a mesh without exact faces; select a part such as from a STEP file.</source>
         <translation>{} est un maillage, qui n&apos;a pas de faces exactes ; sélectionnez une pièce, par exemple d&apos;un fichier STEP.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/features/hub.py"/>
-        <source>{} is another object; faces of a hub are of one object. Clear it first to start again.</source>
+        <source>{} is another object; the hub faces must belong to one object. Clear it first to start again.</source>
         <translation>{} est un autre objet ; les faces d&apos;un moyeu sont d&apos;un seul objet. Effacez d&apos;abord pour recommencer.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/features/wall.py"/>
-        <source>{} is another object; faces of a wall are of one object. Clear it first to start again.</source>
+        <source>{} is another object; the wall faces must belong to one object. Clear it first to start again.</source>
         <translation>{} est un autre objet ; les faces d&apos;une paroi sont d&apos;un seul objet. Effacez d&apos;abord pour recommencer.</translation>
     </message>
     <message>
@@ -17207,11 +17207,6 @@
         <translation>{} manque : sélectionnez-le et appuyez sur son Choisir.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>{} is moved by {} mm and turned by {} deg</source>
-        <translation>{} est déplacé de {} mm et tourné de {} deg</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/machine_wizard/figure_table.py"/>
         <source>{} is not a number; enter one such as 12.5</source>
         <translation>{} n&apos;est pas un nombre ; saisissez-en un comme 12.5</translation>
@@ -17222,14 +17217,19 @@
         <translation>{} n&apos;est pas inférieur à {} ; saisissez d&apos;abord la plus petite extrémité</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>{} is offset by {} mm and rotated by {} deg</source>
+        <translation>{} est déplacé de {} mm et tourné de {} deg</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/saving.py"/>
         <source>{} is out of date; recompute the document, then save.</source>
         <translation>{} est périmé ; recalculez le document, puis enregistrez.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/preview.py"/>
-        <source>{} is out of date; this is of what it was.</source>
-        <translation>{} n&apos;est pas à jour ; ceci est de ce qu&apos;il était.</translation>
+        <source>{} is out of date; the preview shows its earlier state.</source>
+        <translation>{0} est périmé ; l&apos;aperçu montre son état précédent.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/after.py"/>
@@ -17237,14 +17237,9 @@
         <translation>{} est périmé.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/saving.py"/>
-        <source>{} is written.</source>
-        <translation>{} est écrit.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/picking/picking.py"/>
-        <source>{} links to nothing: what it showed is gone or was not loaded.</source>
-        <translation>{} ne lie à rien : ce qu&apos;il montrait a disparu ou n&apos;a pas été chargé.</translation>
+        <source>{} links to nothing: its target was deleted or is not loaded.</source>
+        <translation>{0} ne renvoie à rien : sa cible a été supprimée ou n&apos;est pas chargée.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
@@ -17268,17 +17263,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
-        <source>{} of the points tried do not serve: they are red</source>
+        <source>{} of the tested points fail: they are red</source>
         <translation>{} des points regardés ne conviennent pas : ils sont rouges</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
-        <source>{} of them past a limit only because an axis runs out of turns along its bead</source>
-        <translation>dont {} au-delà d&apos;une limite seulement parce qu&apos;un axe n&apos;a plus de tours le long de son cordon</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/placement/figures.py"/>
-        <source>{} of {} poses are feasible, as far as {} of {} points show.</source>
+        <source>{} of {} poses are feasible at {} of {} points.</source>
         <translation>{} poses sur {} sont réalisables, d&apos;après {} points sur {}.</translation>
     </message>
     <message>
@@ -17298,13 +17288,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/proposal.py"/>
-        <source>{} solids are selected, which are filled</source>
+        <source>{} solids are selected, to be filled</source>
         <translation>{} solides sont sélectionnés, qui sont remplis</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/features/solid.py"/>
         <source>{} solids, {:.4g} mm high</source>
         <translation>{} solides, {:.4g} mm de haut</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/saving.py"/>
+        <source>{} was saved.</source>
+        <translation>{} est écrit.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
@@ -17343,12 +17338,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/program/located.py"/>
-        <source>{}: on the way there</source>
+        <source>{}: on the approach</source>
         <translation>{} : en chemin vers lui</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/after.py"/>
-        <source>{}: proposed for this job: {}; enter what yours really has.</source>
+        <source>{}: proposed for this job: {}; enter the values of your cell.</source>
         <translation>{} : proposé pour ce travail : {} ; saisissez ce que la vôtre a réellement.</translation>
     </message>
     <message>
@@ -17396,7 +17391,7 @@
     <name>RoboticAM_Cell</name>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Adds a cell: machine, set-up, platform and nozzle</source>
+        <source>Adds a cell: machine, setup, platform and nozzle</source>
         <translation>Ajoute une cellule : machine, installation, plateau et buse</translation>
     </message>
     <message>
@@ -17414,7 +17409,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Takes the selected faces to be covered with layers of beads</source>
+        <source>Covers the selected faces with layers of beads</source>
         <translation>Prend les faces sélectionnées pour les recouvrir de couches de cordons</translation>
     </message>
 </context>
@@ -17427,8 +17422,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Takes the selected edges, wires, sketches or tables to be laid as beads</source>
-        <translation>Prend les arêtes, fils, esquisses ou tableaux sélectionnés pour les déposer en cordons</translation>
+        <source>Deposits the selected edges, wires, sketches or tables as beads</source>
+        <translation>Dépose les arêtes, fils, esquisses ou tableaux choisis en cordons</translation>
     </message>
 </context>
 <context>
@@ -17440,29 +17435,29 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Writes a path as STEP or DXF wires, a table or a report, or makes a CAM path or Robot trajectory of it</source>
-        <translation>Écrit une trajectoire en fils STEP ou DXF, en tableau ou en rapport, ou en fait une trajectoire CAM ou Robot</translation>
+        <source>Writes a path as STEP or DXF wires, a table or a report, or converts it to a CAM path or Robot trajectory</source>
+        <translation>Écrit une trajectoire en fils STEP ou DXF, un tableau ou un rapport, ou la convertit en trajectoire CAM ou trajectoire Robot</translation>
     </message>
 </context>
 <context>
     <name>RoboticAM_Feature</name>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Feature…</source>
-        <translation>Élément…</translation>
+        <source>Deposits the selected shape of revolution</source>
+        <translation>Prend la forme de révolution sélectionnée pour la déposer</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Takes the selected shape of revolution to be deposited</source>
-        <translation>Prend la forme de révolution sélectionnée pour la déposer</translation>
+        <source>Feature…</source>
+        <translation>Élément…</translation>
     </message>
 </context>
 <context>
     <name>RoboticAM_Inspect</name>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Compares measured points with what was planned</source>
-        <translation>Compare des points mesurés à ce qui était prévu</translation>
+        <source>Compares measured points with the plan</source>
+        <translation>Compare des points mesurés avec le plan</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
@@ -17487,7 +17482,7 @@
     <name>RoboticAM_NewJob</name>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Makes all stages for the selected shape, from cell to program</source>
+        <source>Creates all stages for the selected shape, from cell to program</source>
         <translation>Fait toutes les étapes pour la forme sélectionnée, de la cellule au programme</translation>
     </message>
     <message>
@@ -17500,7 +17495,7 @@
     <name>RoboticAM_NewMachine</name>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Makes a machine file from a URDF, a Denavit-Hartenberg table or OPW figures, checked against poses</source>
+        <source>Creates a machine file from a URDF, a Denavit-Hartenberg table or OPW dimensions, checked against poses</source>
         <translation>Fait un fichier machine d&apos;un URDF, d&apos;un tableau de Denavit-Hartenberg ou de cotes OPW, vérifié par des poses</translation>
     </message>
     <message>
@@ -17518,7 +17513,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Opens a part or mesh from a file, which may be damaged: it is read in a process of its own</source>
+        <source>Opens a part or mesh from a file in a separate process, even if it is damaged</source>
         <translation>Ouvre une pièce ou un maillage d&apos;un fichier, qui peut être abîmé : il est lu dans un processus à part</translation>
     </message>
 </context>
@@ -17544,8 +17539,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Tries where the part, its positioner or the deposition point can stand, and shows the robot&apos;s reach</source>
-        <translation>Essaie où la pièce, son positionneur ou le point de dépôt peut se trouver, et montre la portée du robot</translation>
+        <source>Searches for positions of the part, its positioner or the deposition point, and shows the workspace of the robot</source>
+        <translation>Cherche des positions de la pièce, de son positionneur ou du point de dépôt, et montre l&apos;espace de travail du robot</translation>
     </message>
 </context>
 <context>
@@ -17570,7 +17565,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Writes the controller&apos;s program of a joint path</source>
+        <source>Writes the controller program for a joint path</source>
         <translation>Écrit le programme de la commande pour une trajectoire articulaire</translation>
     </message>
 </context>
@@ -17591,26 +17586,26 @@
     <name>RoboticAM_Solid</name>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Solid…</source>
-        <translation>Solide…</translation>
+        <source>Deposits the selected solids in planar layers</source>
+        <translation>Prend les solides sélectionnés à déposer en couches planes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Takes the selected solids to be deposited in plane layers</source>
-        <translation>Prend les solides sélectionnés à déposer en couches planes</translation>
+        <source>Solid…</source>
+        <translation>Solide…</translation>
     </message>
 </context>
 <context>
     <name>RoboticAM_SolidsOnHub</name>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Solids on Hub…</source>
-        <translation>Solides sur moyeu…</translation>
+        <source>Deposits the selected solids on the cylinder or cone that is selected last</source>
+        <translation>Prend les solides sélectionnés pour les déposer sur le cylindre ou le cône sélectionné en dernier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Takes the selected solids to be deposited on the cylinder or cone that is selected last</source>
-        <translation>Prend les solides sélectionnés pour les déposer sur le cylindre ou le cône sélectionné en dernier</translation>
+        <source>Solids on Hub…</source>
+        <translation>Solides sur moyeu…</translation>
     </message>
 </context>
 <context>
@@ -17622,7 +17617,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Shows the path against the rotation about the tool; the curve can be drawn by hand</source>
+        <source>Shows the path and the tool rotation as a map; the curve can be edited by hand</source>
         <translation>Montre la trajectoire en fonction de la rotation autour de l&apos;outil ; la courbe peut être tracée à la main</translation>
     </message>
 </context>
@@ -17643,7 +17638,7 @@
     <name>RoboticAM_WallOnPart</name>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Takes the selected faces as a wall to be deposited on the other object that is selected</source>
+        <source>Deposits the selected faces as a wall on the other selected object</source>
         <translation>Prend les faces sélectionnées comme paroi à déposer sur l&apos;autre objet sélectionné</translation>
     </message>
     <message>

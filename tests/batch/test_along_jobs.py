@@ -98,7 +98,7 @@ def test_beads_of_layers_along_a_guide_have_one_speed_in_planes(workshop, planne
     (told,) = [issue["message"] for issue in report["issues"] if issue["code"] == "SPEED_VARIES"]
     assert "as high as their layer" in told
     assert told.endswith(
-        "; for one speed give strategy.layers: planes and strategy.narrowest: 100 %"
+        "; for a constant speed set strategy.layers: planes and strategy.narrowest: 100 %"
     )
     assert len(set(column(rows, "speed_mm_s").ravel())) > 1
     text = workshop.job.read_text(encoding="utf-8")
@@ -226,7 +226,7 @@ TIGHT = Part.Wire(
         (BESIDE, "GUIDE_OUTSIDE", "(30, 0, "),
         (BACK, "GUIDE_DOUBLES_BACK", "(0, 0, 40)"),
         (CORNER, "GUIDE_CORNER", "18.4 deg"),
-        (APART, "GUIDE_OPEN", "10 mm off"),
+        (APART, "GUIDE_OPEN", "gap is 10 mm"),
         (RING, "GUIDE_CLOSED", "remove one edge"),
         (TIGHT, "GUIDE_TIGHT", "larger radius"),
     ],

@@ -42,7 +42,7 @@ def of(shape, substrate=None, *, faces=(), edges=False, width=8.0, tilts=True, *
             lambda: Part.makeSphere(45, Vector(), UP, 0, 90, 360).Faces[0],
             "revolution",
             "",
-            "skin that turns about one axis",
+            "is a surface of revolution",
         ),
         (lambda: tube(40, 32, 50), "revolution", "", "its wall is one bead of 8 mm"),
         (lambda: Part.makeCylinder(30, 20), "solid", "planes", "would leave out"),
@@ -50,9 +50,9 @@ def of(shape, substrate=None, *, faces=(), edges=False, width=8.0, tilts=True, *
             lambda: Part.makeBox(60, 40, 10).fuse(Part.makeBox(10, 40, 40)),
             "solid",
             "planes",
-            "a solid, and less than 1% of its surface hangs",
+            "a solid, and less than 1% of its surface overhangs",
         ),
-        (tee, "solid", "geodesic", "hangs over by more than 45 deg"),
+        (tee, "solid", "geodesic", "overhangs by more than 45 deg"),
         (
             lambda: Part.makeCompound(
                 [Part.makeBox(9, 9, 9), Part.makeBox(9, 9, 9, Vector(20, 0, 0))]
@@ -112,7 +112,7 @@ def test_what_stands_on_something_bent_gets_layers_of_its_shape():
         assert (found.kind, found.layers) == (
             "solid",
             "geodesic",
-        ) and "the bend of ground where it stands" in found.reason
+        ) and "the bend of ground at its base" in found.reason
         assert of(part, ground, width=4.0, tilts=False).layers == "planes"
     assert of(Part.makeCylinder(12, 20, Vector(0, 0, 60)), hub).layers == "planes"
     blades = [blade.rotated(Vector(), UP, angle) for angle in (0, 120, 240)]
@@ -120,12 +120,12 @@ def test_what_stands_on_something_bent_gets_layers_of_its_shape():
     together = of(Part.makeCompound([blades[0], hub, *blades[1:]]), width=4.0)
     assert (
         together.layers == "planes"
-        and "others stand on the bend of Solid2: as the substrate" in together.reason
+        and "others are on the bend of Solid2: as the substrate" in together.reason
     )
     apart = of(
         Part.makeCompound([hub, *(one.translated(Vector(0, 0, 200)) for one in blades)]), width=4.0
     )
-    assert "others stand" not in apart.reason
+    assert "others are" not in apart.reason
     assert of(Part.makeBox(20, 20, 20, Vector(30, -10, 20)), hub).layers == "planes"
 
 
@@ -152,7 +152,7 @@ def test_what_nothing_serves_gets_the_nearest():
         FreeCAD.Matrix(1, 0.3, 0, 0, 0, 0.7, 0.2, 0, 0, 0, 1, 0, 0, 0, 0, 1)
     )
     found = of(bent.rotated(Vector(), Vector(1, 0, 0), 20.0))  # else it stands on its lower edge
-    assert found.kind == "surface" and "needs a substrate, or edges to start from" in found.reason
+    assert found.kind == "surface" and "needs a substrate or start edges" in found.reason
 
 
 def test_overhang_counts_along_the_stacking_direction():
@@ -166,7 +166,7 @@ def test_overhang_counts_along_the_stacking_direction():
         assert (lying.kind, lying.layers) == (
             "solid",
             "planes",
-        ) and "less than 1% of its surface hangs over" in lying.reason
+        ) and "less than 1% of its surface overhangs" in lying.reason
     assert (
         of(tee().rotated(Vector(), Vector(1, 0, 0), 90.0), direction=(0, -1, 0)).layers
         == "geodesic"
@@ -200,7 +200,7 @@ def test_what_stands_on_no_face_gets_planes():
     ball = Part.makeSphere(20)
     found = of(ball, direction=None)
     assert (found.kind, found.layers) == ("solid", "planes")
-    assert "a flat face that it stands on, which it has not" in found.text()
+    assert "a flat base face, which it lacks" in found.text()
     cut = of(ball.cut(Part.makeBox(40, 40, 0.5, Vector(-20, -20, -20))))
     assert cut.layers == "geodesic", cut
 
@@ -470,7 +470,7 @@ def test_where_curved_layers_cannot_be_carried_out_there_are_planes(workshop):
     (told,) = [issue["message"] for issue in report["issues"] if issue["code"] == "PROPOSED"]
     assert (
         told.startswith("kind: solid, layers: planes: ")
-        and "these end with SINGULAR, so planes are laid" in told
+        and "these end with SINGULAR, so planar layers are used" in told
     )
     assert (
         not [issue for issue in report["issues"] if issue["level"] == "error"]

@@ -57,7 +57,7 @@ CASES = {  # triangles, keys of the strategy, exit status, and what is told
         0,
         ("MESH_REPAIRED", "REGION_MENDED"),
     ),
-    "0.1 mm": (box((0.1, 0.1, 0.1)), "", 2, ("TOO_LOW", "give at most 0.198 mm")),
+    "0.1 mm": (box((0.1, 0.1, 0.1)), "", 2, ("TOO_LOW", "use at most 0.198 mm")),
     "0.1 mm, fine layers": (
         box((0.1, 0.1, 0.1)),
         ", layer_height: 0.02 mm",

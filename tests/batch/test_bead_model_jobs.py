@@ -80,7 +80,7 @@ def test_wire_in_proportion_from_the_job_to_the_program(fin):
         len(texts) == 1 + report["counts"]["beads"]
     )  # every bead is longer than max_points: a part of its own
     heights = [issue["message"] for issue in report["issues"] if issue["code"] == "BEAD_HEIGHT"]
-    assert "in proportion to the speed, at" in heights[0]
+    assert "wire feed follows the speed, at" in heights[0]
 
 
 def test_layers_far_higher_than_beads_are_planned_and_told(fin):
@@ -92,7 +92,7 @@ def test_layers_far_higher_than_beads_are_planned_and_told(fin):
         and len(texts) > 2
     )
     (told,) = [issue for issue in report["issues"] if issue["code"] == "BEAD_HEIGHT"]
-    assert told["level"] == "warning" and "at layers of 20 mm" in told["message"]
+    assert told["level"] == "warning" and "for layers of 20 mm" in told["message"]
 
 
 @pytest.mark.parametrize(
@@ -202,7 +202,7 @@ def test_heights_where_axes_cannot_follow_are_those_of_the_speed_as_run(fin):
     assert speed < 4.0 and high > 1.05 * (
         m * (60.0 * 5.0) ** (-1.0 / 3.0) + t
     )  # slower than the table knows
-    assert told.startswith("run as fast as the axes can follow, ")
+    assert told.startswith("limited to the speed of the axes, ")
 
 
 def _fitted(column):
@@ -229,7 +229,7 @@ def test_what_cannot_follow_the_wire(fin):
         and not re.search(r"M6[78]", "".join(texts.values()))
     )
     heights = [issue["message"] for issue in report["issues"] if issue["code"] == "BEAD_HEIGHT"]
-    assert "process.wire.feed_mode: proportional would keep the section" in heights[0]
+    assert "process.wire.feed_mode: proportional would keep the cross-section" in heights[0]
     robot = (
         "machine: table-xyzac, setup: rotary-table",
         "machine: fanuc-arcmate120ic, setup: tool-on-robot",
@@ -252,7 +252,7 @@ def test_messages_name_the_keys_of_the_job(fin):
         ),
         (
             (("hub.step}", "ball.step}"),),
-            "error[NO_BASE] ball: the hub has no cylinder and no cone",
+            "error[NO_BASE] ball: the hub has no outer cylinder or cone",
         ),
         (
             (("substrate: {file: hub.step}\n", ""),),
@@ -276,7 +276,7 @@ def test_notes_of_single_layers_and_of_what_a_table_does_not_use(fin):
     }
     assert notes["SINGLE_LAYER"].startswith("1 of 1 solids") and "500 mm" in notes["SINGLE_LAYER"]
     assert notes["NOT_USED"].startswith(
-        "joints.method, joints.compare, cell.arm_clearance: of no effect"
+        "joints.method, joints.compare, cell.arm_clearance: no effect"
     )
     _, report, *_ = fin("10 mm")
     assert not {"SINGLE_LAYER", "NOT_USED"} & {issue["code"] for issue in report["issues"]}
@@ -306,12 +306,10 @@ def test_widths_outside_of_the_table_are_told_with_their_number_and_the_worst(fi
     # the table's speeds, what is as wide at them, and what to do
     least, most = (
         float(text)
-        for text in re.search(
-            r"are (\S+) to (\S+) mm wide: ask for a process.bead_width", told
-        ).groups()
+        for text in re.search(r"are (\S+) to (\S+) mm wide: set process.bead_width", told).groups()
     )
     slow, fast = (
-        float(text) for text in re.search(r"the table's (\S+) to (\S+) mm/min", told).groups()
+        float(text) for text in re.search(r"outside the (\S+) to (\S+) mm/min", told).groups()
     )
     assert (slow, "or measure beads at other speeds" in told) == (
         300.0,

@@ -60,7 +60,7 @@ def told_line(workshop, done, code):
 
 def only_calls(errors):
     """Whether nothing but the program of the controller that is called is reported."""
-    return re.fullmatch(r"warning\[OTHER_PROGRAM\] [^\n]*CLEAN is called[^\n]*\n", errors)
+    return re.fullmatch(r"warning\[OTHER_PROGRAM\] [^\n]*calls CLEAN,[^\n]*\n", errors)
 
 
 def run(workshop, *words, cell="cell.yaml"):
@@ -136,9 +136,9 @@ def test_what_was_broken_is_told_with_its_place(workshop, sound, pattern, by, co
 @pytest.mark.parametrize(
     ("pattern", "by", "code", "words"),
     [
-        (r" *\d+:  DO\[1\]=OFF ;", "   1:  ;", "DEPOSIT_SWITCH", "is on already"),
-        (r"(?s)(.*)DO\[1\]=OFF ;", r"\1 ;", "DEPOSIT_SWITCH", "still on where the program ends"),
-        (r"(?s)(FINE {4};.*?)FINE {4};", r"\1FINE TB  29.00sec,DO[1]=OFF    ;", "TRIGGER_LEAD", "less than the 29 s that"),
+        (r" *\d+:  DO\[1\]=OFF ;", "   1:  ;", "DEPOSIT_SWITCH", "already on"),
+        (r"(?s)(.*)DO\[1\]=OFF ;", r"\1 ;", "DEPOSIT_SWITCH", "still on at the end of the program"),
+        (r"(?s)(FINE {4};.*?)FINE {4};", r"\1FINE TB  29.00sec,DO[1]=OFF    ;", "TRIGGER_LEAD", "less than the lead of 29 s"),
     ],
 )  # fmt: skip
 def test_a_deposit_that_is_switched_as_no_program_does_is_told(

@@ -453,15 +453,15 @@ def test_speed_and_feed_of_a_ramp_are_in_the_text(workshop):
     [
         (
             "  end: {length: 8 mm, travel_speed: 3 mm/s, ramp: 21 mm}\n",
-            ["error[PHASE_LENGTH]", "29 mm with their ramps", "is 20 mm long", "make them shorter"],
+            ["error[PHASE_LENGTH]", "29 mm with their ramps", "is 20 mm long", "shorten them"],
         ),
         (
             "  start: {length: 5 mm, ramp: 5 mm}\n",
-            ["error[BAD_VALUE]", "process.start.ramp", "there is none; give it"],
+            ["error[BAD_VALUE]", "process.start.ramp", "is not set; set travel_speed"],
         ),
         (
             "  classes: {fill: {end: {ramp: 5 mm}}}\n",
-            ["error[BAD_VALUE]", "process.classes.fill.end.ramp", "give it"],
+            ["error[BAD_VALUE]", "process.classes.fill.end.ramp", "set travel_speed"],
         ),
         (RAMPED, ["error[NO_WIRE_OUTPUT]"]),
     ],

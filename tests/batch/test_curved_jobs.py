@@ -380,7 +380,7 @@ def test_layers_on_a_plate_that_is_not_flat_are_as_far_from_it_as_they_are_many(
             2.0,
             "",
             "NOT_CONNECTED",
-            " % of it",
+            " % of the solid",
         ),
         (lambda: Part.makeBox(400, 400, 400), 1.0, "", "TOO_FINE", "use at least"),
         (tee, 2.0, ", mode: fixed", "NOT_FOR_FAMILY", "use local"),

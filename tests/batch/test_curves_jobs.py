@@ -92,7 +92,7 @@ def test_forms_of_a_table(planned, text):
         ("0,0,0\n\n1,0,0\n", "line 2", "it is empty"),
         ("0,0,0\n1,nan,0\n", "line 2", "y is nan"),
         ("0,0,0\n1,inf,0\n", "line 2", "y is inf"),
-        ("0,0,0\n1,0,0\n1,0,0\n", "line 3", "leave it out"),
+        ("0,0,0\n1,0,0\n1,0,0\n", "line 3", "remove it"),
         ("0,0,0\n", "line 1", "one point"),
         ("0,0,0,1\n1,0,0,1\n2,0,0,2\n", "line 3", "one point"),
         ("0,0,0\n1,0,zero\n", "line 2", "'zero' is not a number"),
@@ -125,7 +125,7 @@ def test_curves_that_lie_on_one_another_are_told(planned):
     assert report["deposit"]["twice_cm3"] == pytest.approx(30.0 * 3.0 * 2.0 / 1000.0, rel=0.03)
     assert report["deposit"]["left_out_cm3"] is None and report["on_part"] is None
     (told,) = [issue for issue in report["issues"] if issue["code"] == "DEPOSITED_TWICE"]
-    assert told["level"] == "warning" and "32 % of those of beads" in told["message"]
+    assert told["level"] == "warning" and "32 % of the beads of beads" in told["message"]
     promises = {one["promise"]: one for one in report["preflight"]}
     assert (
         promises["Little is deposited twice"]["ok"] is False
@@ -376,5 +376,5 @@ def test_the_size_of_a_program_is_told_before_joints_are_planned():
     (issue,) = told(20_000, "kuka")
     assert issue.level == "note" and "3 MB" in issue.message
     (issue,) = told(20_000, "linuxcnc")
-    assert issue.level == "note" and "not known here" in issue.message
+    assert issue.level == "note" and "controller is unknown" in issue.message
     assert told(2_000, "kuka") == [] and told(30_050, "none") == []

@@ -120,7 +120,7 @@ def columns(workshop, first):
     ("mechanism", "untold"),
     [
         ("motoman-motopos-d500", ""),
-        ("kuka-kp2-hv500", "no file says what KUKA KP2-HV500 is made of"),
+        ("kuka-kp2-hv500", "the shape of KUKA KP2-HV500 is unknown"),
     ],
 )
 def test_a_positioner_that_no_file_tells_the_shape_of_is_told_to_be_passed_over(
@@ -146,7 +146,7 @@ def test_a_positioner_that_no_file_tells_the_shape_of_is_told_to_be_passed_over(
         for one in report["preflight"]
         if one["promise"].startswith("Positioner and track")
     ]
-    assert ("not checked: no file says" in line) == bool(untold)
+    assert ("not checked: no file describes" in line) == bool(untold)
 
 
 def test_one_urdf_of_a_whole_cell_moves_as_its_mechanisms_named_one_by_one(workshop, written):
@@ -194,7 +194,7 @@ def test_a_part_too_heavy_for_its_table_gets_no_program(workshop, written):
     (workshop.folder / "light.json").write_text(json.dumps(told), encoding="utf-8")
     written(lambda job: job["cell"]["external"][0].update(machine="light.json"))
     done = workshop.run("plan", "dome.yaml", "--no-page", "-o", "out")
-    assert done.status == 3 and "error[PAYLOAD]" in done.err and "carries no more" in done.err
+    assert done.status == 3 and "error[PAYLOAD]" in done.err and "above the payload of" in done.err
     report = json.loads(workshop.files("out")["report.json"])
     assert report["status"] == "infeasible" and report["programs"] == []
     assert report["totals"]["mass_g"] > 500.0

@@ -90,7 +90,7 @@ def test_a_bracket_is_refused_as_a_part_of_revolution_and_told_of_as_solids_on_i
     under = 2.0 * 50.0 * quad(lambda y: math.sqrt(15.0**2 - y * y), 10.0, 15.0)[0] / 1000.0
     assert bend + under < found["left_out_cm3"] < bend + under + 0.03 * 30.0
     assert f"about {found['left_out_cm3'] - bend:.3g} of the 30 cm3" in within["message"]
-    assert "nothing is laid within a hub" in within["message"]
+    assert "the inside of a hub is not filled" in within["message"]
     assert "solid 2" in issue["message"] and "34.9" in issue["message"]
     # beads of 8 mm in plates of 5 mm lie over one another: what is laid is far more than what is covered
     (twice,) = of_code(report, "DEPOSITED_TWICE")
@@ -114,7 +114,7 @@ def test_how_much_of_a_first_layer_lies_beside_the_platform(workshop):
     report = json.loads((workshop.folder / "out" / "report.json").read_text())
     (issue,) = [one for one in report["issues"] if one["code"] == "OVER_PLATFORM"]
     told = re.match(
-        r"([\d.]+) mm of the first layer lie over the edge of the platform, up to ([\d.]+) mm beyond",
+        r"([\d.]+) mm of the first layer overhang the platform edge, by up to ([\d.]+) mm",
         issue["message"],
     )
     with open(workshop.folder / "out" / "waypoints.csv", newline="") as stream:
@@ -136,7 +136,7 @@ def test_how_much_of_a_first_layer_lies_beside_the_platform(workshop):
         "OVER_PLATFORM" in done.err and "cell.mount" not in issue["message"]
     )  # it would be over the edge there, too
     (promise,) = [
-        one for one in report["preflight"] if one["promise"].startswith("Every bead is carried")
+        one for one in report["preflight"] if one["promise"].startswith("Every bead is supported")
     ]
     assert promise["ok"] is False and promise["place"]["layer"] == 0
 
@@ -156,6 +156,6 @@ def test_a_part_beside_the_middle_of_the_platform_is_put_there_by_the_remedy_tha
         report = json.loads((workshop.folder / "out" / "report.json").read_text())
         found = [one["message"] for one in report["issues"] if one["code"] == "OVER_PLATFORM"]
         assert bool(found) != mended and all(
-            "put the part on its middle by cell.mount: feature" in one for one in found
+            "centre the part by cell.mount: feature" in one for one in found
         )
         assert done.status == 0, done.err

@@ -346,4 +346,4 @@ def test_export_of_a_document_that_links_to_another(documents):
         wires()
     assert caught.value.code == "NO_LINKED_FILE" and "store.FCStd" in caught.value.message
     doc = App.openDocument(str(documents / "hall.FCStd"))
-    assert "store.FCStd, which is not there" in doc.Feature.Message
+    assert "store.FCStd, which does not exist" in doc.Feature.Message

@@ -75,7 +75,7 @@ def test_the_list_is_of_those_asked_for(workshop, words, listed):
         (["--payload", "heavy"], "'heavy' is not a mass"),
         (["--reach", "3 s"], "--reach"),
         (["--post", "krl"], "use one of fanuc"),
-        (["kuka-kr16-2", "--urdf", "--reach", "1 m"], "leave 'kuka-kr16-2' out"),
+        (["kuka-kr16-2", "--urdf", "--reach", "1 m"], "remove 'kuka-kr16-2'"),
         (["kuka-kr16-2"], "the output format for 'kuka-kr16-2' is missing"),
         (["--urdf"], "--urdf needs the name of a machine"),
         (["kuka-kr16", "--dh"], "did you mean kuka-kr16-2"),

@@ -21,7 +21,7 @@ strategy: {{kind: solid, layer_height: 5 mm}}
             ", object: Middle",
             "no object with a shape is called 'Middle'; name one of Left",
         ),
-        (["Left", "Left"], ", object: Left", "2 objects are called 'Left'; give one of them"),
+        (["Left", "Left"], ", object: Left", "2 objects have the label 'Left'; change one"),
         (["Left"], ", object: Left, set: {Right: {Length: 4}}", "no object is called 'Right'"),
         (
             ["Left", "Left"],

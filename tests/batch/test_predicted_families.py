@@ -105,7 +105,7 @@ def test_a_clad_face_is_covered_as_high_as_it_was_fed(workshop, layers):
     assert z == pytest.approx(10.0) and (
         max(aside) < 1.0 if layers == 2 else abs(aside[0] - aside[1]) < 0.5
     )
-    assert "Lay one more layer" in issues["ALLOWANCE"]["message"] and found["short"] > 0.5
+    assert "Add one layer" in issues["ALLOWANCE"]["message"] and found["short"] > 0.5
     again = planned(workshop, CLAD % (layers, 0.5))[1]
     assert again["short"] < 0.25 / layers  # one layer leaves valleys between its beads
 

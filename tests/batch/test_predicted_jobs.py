@@ -66,7 +66,7 @@ def test_a_block_against_its_predicted_deposit(block):
     assert abs(found["worst"]["place"][2] - 14.0) < 1e-6 and "ALLOWANCE" in done.err
     assert 0.8 < found["beyond_mm"]["mean"] < 2.5
     rows = {row["promise"]: row for row in report["preflight"]}
-    inside = rows["The part lies inside the predicted deposit, by its machining allowance"]
+    inside = rows["The predicted deposit covers the part and its machining allowance"]
     assert (
         inside["ok"] is False
         and inside["worst"] == found["beyond_mm"]["min"]
@@ -91,7 +91,7 @@ def test_without_a_margin_more_of_the_block_sticks_out(block):
     assert min(x, 50.0 - x) < 2.0 or min(y, 30.0 - y) < 2.0 or z > 12.0
     assert report["predicted_shape"]["beyond_mm"]["min"] < 0.0 and report["status"] == "ok"
     broken = [row for row in report["preflight"] if row["ok"] is False]
-    assert any("inside the predicted deposit" in row["promise"] for row in broken)
+    assert any("predicted deposit covers" in row["promise"] for row in broken)
 
 
 def test_jobs_without_the_key_are_as_they_were(block):

@@ -49,8 +49,8 @@ def test_the_figures_are_those_of_the_waypoints(workshop, root):
     )
     whole = 2.0 / 3.0 * np.pi * 4.0**3
     assert 0.4 * whole < promises["All of the part is deposited"]["worst"] < 0.6 * whole
-    assert promises["What is deposited lies on the part"]["ok"] is True
-    assert promises["Every bead is carried by what lies below it"]["worst"] == 0.0
+    assert promises["The deposit is on the part"]["ok"] is True
+    assert promises["Every bead is supported from below"]["worst"] == 0.0
     rapids = promises["The nozzle stays clear on the rapids"]
     assert (
         rapids["ok"] is True

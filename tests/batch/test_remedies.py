@@ -72,7 +72,9 @@ def test_a_remedy_that_was_told_makes_the_job_feasible(name, workshop):
     done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 3, done.err
     first = done.err.splitlines()[0]
-    assert first.startswith("note[REMEDY] job: with `") and first.endswith("; tested, not applied")
+    assert first.startswith("note[REMEDY] job: the job is feasible with `") and first.endswith(
+        "; tested, not applied"
+    )
     told = re.findall(r"`(\w+)\.(\w+): ([^`]+)`", first)
     assert told and EXPECTED[name] in first
     report = json.loads(workshop.files()["report.json"])
@@ -102,7 +104,7 @@ def test_what_was_tried_in_vain_is_told(workshop):
     )
     done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 3
-    told = "note[NO_REMEDY] job: none of these makes the job feasible, each was tried: `"
+    told = "note[NO_REMEDY] job: no tested change makes the job feasible: `"
     assert done.err.startswith((told, "note[REMEDY]"))
 
 
@@ -114,8 +116,7 @@ def test_a_positioner_out_of_reach_is_called_so_and_told_where_it_could_stand(wo
     done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 3
     found = re.search(
-        r"error\[UNREACHABLE\] job: the positioner is out of the robot's reach: the nearest point of the "
-        r"part is (\d+) mm from the shoulder, arm and tool stretch (\d+) mm at most",
+        r"error\[UNREACHABLE\] job: the positioner is out of reach of the robot: the nearest point of the part is (\d+) mm from the shoulder, and arm and tool reach (\d+) mm",
         done.err,
     )
     assert found, done.err
@@ -125,7 +126,7 @@ def test_a_positioner_out_of_reach_is_called_so_and_told_where_it_could_stand(wo
     ) < float(found[1])
     assert "move the positioner, choose another branch" in done.err
     (pose,) = re.findall(
-        r"with `cell\.external\[0\]\.pose: (\[[^`]+\])` this job is feasible", done.err
+        r"the job is feasible with `cell\.external\[0\]\.pose: (\[[^`]+\])`", done.err
     )
     assert pose.endswith(", -40, 0, 0, 20]")  # on the same floor, turned as it was
     sections["cell"]["external"] = "[{" + told.format(pose) + "}]"

@@ -114,9 +114,9 @@ def test_what_does_not_fit_its_inputs_is_refused(doc, tmp_path):
     part.Radius, part.Angle1, part.Angle2 = 45.0, 0, 90
     doc.recompute()
     toolpath = api.make_toolpath(doc, api.make_feature(doc, part, layer_height=15))
-    with pytest.raises(InputError, match="end the name with it"):
+    with pytest.raises(InputError, match="use the extension"):
         api.export_report(toolpath, str(tmp_path / "page.txt"))
-    with pytest.raises(InputError, match=re.escape(f"there is no folder {tmp_path}/none")):
+    with pytest.raises(InputError, match=re.escape(f"the folder {tmp_path}/none does not exist")):
         api.export_report(toolpath, str(tmp_path / "none" / "page.html"))
     with pytest.raises(InputError, match="it has no path"):
         api.export_report(toolpath.Feature, str(tmp_path / "page.html"))

@@ -63,7 +63,7 @@ def test_what_is_written_stands_where_it_was_touched(shop):
         issue["code"]: issue["message"]
         for issue in json.loads((out / "report.json").read_text())["issues"]
     }
-    assert issues["WORK_OFFSET"].startswith("by 4 touched points the part's coordinates are at [9")
+    assert issues["WORK_OFFSET"].startswith("4 touched points put the part at [9")
     with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
     known = machine.load("fanuc-arcmate120ic")

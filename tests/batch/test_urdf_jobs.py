@@ -94,7 +94,7 @@ def test_a_program_is_refused_for_a_controller_that_a_urdf_does_not_tell_of(plan
     done = planned("arm.urdf", "fanuc")
     assert (
         done.status == 2
-        and "does not say what the controller shows; plan without a program" in done.err
+        and "does not define the display of the controller; plan without a program" in done.err
     )
 
 

@@ -35,7 +35,7 @@ def test_faces_of_an_iges_file_that_are_not_joined_are_to_be_sewn(tmp_path):
     shape = read_shape(path)
     assert len(shape.Faces) == 6 and not shape.Solids
     message = refused(shape)
-    assert "6 face(s)" in message and "Shell from faces, then Solid from shell" in message
+    assert "6 open face(s)" in message and "Shell from faces, then Solid from shell" in message
     sewn = Part.Solid(Part.Shell(shape.Faces))  # what the message says
     (body,) = bodies_of(sewn, "Box", 0.05, 0.0).bodies
     assert len(body.triangles) == 12
@@ -44,7 +44,7 @@ def test_faces_of_an_iges_file_that_are_not_joined_are_to_be_sewn(tmp_path):
 def test_a_shell_with_a_hole_is_told_with_the_place_of_an_open_edge():
     box = Part.makeBox(4, 6, 8)
     message = refused(Part.Shell(box.Faces[:5]))  # without the face on top
-    assert "5 face(s)" in message and ", 8) of Face" in message
+    assert "5 open face(s)" in message and ", 8) of Face" in message
 
 
 def test_a_closed_shell_is_to_be_converted():

@@ -217,4 +217,4 @@ def test_the_thickness_of_a_wall_is_that_of_its_shape_not_of_its_triangles(thick
         found = balance(shape)
         assert abs(found.thick - thick) < 0.01
         (told,) = [issue for issue in deposit_balance.issues(found) if "mm thick" in issue.message]
-        assert f"which is {thick:.2g} mm thick there" in told.message
+        assert f"which is {thick:.2g} mm thick" in told.message

@@ -772,7 +772,7 @@ def test_a_negative_volume_that_cuts_nothing_is_named(tmp_path):
     config = prusa((0, 11, {"volume_type": "NegativeVolume", "name": "tool"}), number=2)
     volume, notes = volume_and_notes(written(tmp_path, text, more={PRUSA: config}))
     assert volume == pytest.approx(27000.0)
-    assert len(notes) == 1 and "left out" in notes[0] and "'tool': negative volume" in notes[0]
+    assert len(notes) == 1 and "ignored" in notes[0] and "'tool': negative volume" in notes[0]
 
 
 def test_objects_on_several_plates_are_noted(tmp_path):

@@ -104,7 +104,7 @@ def test_the_machine_moves_as_the_deposition_point_is_typed_and_cancel_puts_the_
     hand.enter(panel, f"{POINT}X", "5 m")
     told(person, panel, "does not reach the part")
     hand.enter(panel, "PlatformDiameter", "1 km")
-    told(person, panel, "see the field marked")
+    told(person, panel, "see the marked field")
     assert (
         "out of range" in person.field(panel, "PlatformDiameterNote").text()
         and len(previewed(person)) == 0
@@ -212,7 +212,7 @@ def test_another_machine_proposes_its_deposition_point_and_branch(person, hand, 
     hand.enter(panel, "Machine", "motoman-ar1440")
     other = cell_of("motoman-ar1440")
     person.until(
-        lambda: note.isVisible() and note.text().startswith("Left as it was entered"),
+        lambda: note.isVisible() and note.text().startswith("Kept as entered"),
         "what is kept",
         10,
     )
@@ -307,7 +307,7 @@ def test_what_the_job_at_hand_would_need_is_entered_whole_or_told(
     choose_torch(person, hand, panel)
     external = person.field(panel, "External")
     notes = [person.field(panel, f"{name}Note") for name in ("External", "Branch")]
-    left = f"Left as it was entered; the job of {label} can be done with "
+    left = f"Kept as entered; the job of {label} is feasible with "
     words = left if branch else f"Proposed for the job of {label}; "
     person.until(
         lambda: all(note.isVisible() and note.text().startswith(words) for note in notes),
@@ -375,7 +375,7 @@ def test_another_set_up_proposes_where_the_platform_stands(person, hand, hemisph
     hand.enter(panel, f"{POINT}Z", "900 mm")
     person.choose(panel, "Setup", "tool-on-robot")
     person.until(
-        lambda: note.isVisible() and note.text().startswith("Left as it was entered"),
+        lambda: note.isVisible() and note.text().startswith("Kept as entered"),
         "what is kept",
         10,
     )
@@ -430,7 +430,7 @@ def test_an_expression_in_a_coordinate_is_left_and_told(person, hand, hemisphere
     hand.enter(panel, f"{POINT}X", "=500 mm")
     hand.enter(panel, "Machine", "kuka-kr16-2")
     note = person.field(panel, f"{POINT}Note")
-    person.until(lambda: note.text().startswith("Left as it was entered"), "what is kept", 30)
+    person.until(lambda: note.text().startswith("Kept as entered"), "what is kept", 30)
     hand.enter(panel, f"{POINT}X", "=600 mm")
     person.until(lambda: not note.isVisible(), "the note to go with what it was about", 5)
     person.press("Cancel")
@@ -470,7 +470,7 @@ def test_a_proposal_that_is_cancelled_or_fails_is_told(person, hemisphere, monke
         person.until(lambda: not note.isVisible(), "the error to go", 10)
     else:
         person.press("Ok")
-        assert person.panel_error(panel) == "Cancelled: the document is as it was."
+        assert person.panel_error(panel) == "Cancelled: the document is unchanged."
         assert document.getObject("Cell") is None
     person.press("Cancel")
     person.panel_closed()

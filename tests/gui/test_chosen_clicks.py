@@ -61,7 +61,7 @@ def test_what_is_numbered_anew_is_confirmed_by_ok(person, made, panel, what):
     person.double_click(feature)
     shown = person.panel(f"RoboticAM_{panel}")
     person.until(
-        lambda: f"is not the {what} that was chosen" in person.field(shown, "findings").text(),
+        lambda: f"is not the selected {what}" in person.field(shown, "findings").text(),
         "the warning",
     )
     person.screenshot(f"{panel}_changed")

@@ -139,7 +139,7 @@ def test_a_tool_without_its_input_is_greyed_and_says_what_to_make_first(person, 
         ("LayerHeight", "-1 mm", "more than 0 mm"),
         ("LayerHeight", "rubbish", "'rubbish' is not understood"),
         ("LayerHeight", "3 deg", "not understood"),
-        ("LayerHeight", "500 mm", "500 mm is more than the wall is long"),
+        ("LayerHeight", "500 mm", "500 mm exceeds the length of the wall"),
     ],
 )
 def test_what_is_wrong_is_told_in_the_panel_and_nothing_is_made(
@@ -312,7 +312,7 @@ def test_the_program_is_exported_from_its_window(person, hemisphere, coarse, tmp
         person.widgets.QFileDialog, "getExistingDirectory", lambda *_: str(tmp_path / "file")
     )
     person.field(window, "export").click()
-    assert "choose a folder" in person.field(window, "state").text()
+    assert "choose a writable folder" in person.field(window, "state").text()
     App.closeDocument(doc.Name)
     person.field(window, "export").click()
     assert "document is closed" in person.field(window, "state").text()
@@ -335,7 +335,7 @@ def test_a_program_that_failed_asks_for_no_folder(person, hemisphere, coarse, mo
     person.until(lambda: not button.isEnabled(), "the button to be grey", 5)
     assert (
         "no program fits its inputs" in button.toolTip()
-        and "more than the wall is long" in button.toolTip()
+        and "exceeds the length of the wall" in button.toolTip()
     )
     before = len(person.console())
     assert "no program fits its inputs" in program_window.export(program)  # of the context menu
@@ -421,5 +421,5 @@ def test_what_a_change_makes_impossible_is_told_in_the_report_view(
     assert (
         len(lines) == 1
         and "Joint path is infeasible: layer 0" in lines[0]
-        and "cannot be reached" in lines[0]
+        and "out of reach" in lines[0]
     )

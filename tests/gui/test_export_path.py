@@ -62,7 +62,7 @@ def test_wires_are_written_where_the_panel_says(person, job, tmp_path):
     note = person.field(panel, "FileNote")
     assert (
         note.isVisible()
-        and note.text() == f"there is no folder {folder}; make it, or choose another"
+        and note.text() == f"the folder {folder} does not exist; create it, or choose another"
     )
     assert not folder.exists()
     folder.mkdir()
@@ -133,7 +133,7 @@ def test_the_report_of_a_joint_path_is_a_page(person, job, tmp_path):
     note = person.field(panel, "FileNote")
     assert (
         note.isVisible()
-        and note.text() == f"there is no folder {file.parent}; make it, or choose another"
+        and note.text() == f"the folder {file.parent} does not exist; create it, or choose another"
     )
     file.parent.mkdir()
     person.screenshot("export_report")
@@ -190,12 +190,12 @@ def test_what_cannot_be_written_is_told_in_the_panel(person, job, tmp_path):
     person.type(panel, "File", str(tmp_path / "file" / "a.step"))
     refused(person)
     note = person.field(panel, "FileNote")
-    assert note.isVisible() and "there is no folder" in note.text()
+    assert note.isVisible() and "does not exist" in note.text()
     assert not person.field(panel, "error").isVisible()
     person.type(panel, "File", str(tmp_path / "a.txt"))
     assert not note.isVisible()  # what it was about is no more
     refused(person)
-    assert note.isVisible() and "end the name" in note.text()
+    assert note.isVisible() and "use one of these extensions" in note.text()
     person.choose(panel, "Kind", "CAM path in this document")
     assert not note.isVisible()
     person.press("Cancel")

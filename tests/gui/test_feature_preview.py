@@ -52,11 +52,11 @@ def test_layers_are_seen_before_they_are_made_and_go_with_the_panel(person, hand
     hand.enter(panel, "LayerHeight", "100 mm")
     note = person.field(panel, "LayerHeightNote")
     person.until(
-        lambda: note.isVisible() and "more than the wall is long" in note.text(),
+        lambda: note.isVisible() and "exceeds the length of the wall" in note.text(),
         "what is wrong",
         10,
     )
-    told(person, panel, "see the field marked")
+    told(person, panel, "see the marked field")
     assert person.screen_pixels(ORANGE) <= bare + 20
     person.choose(panel, "Path", "spiral")
     hand.enter(panel, "LayerHeight", "5 mm")
@@ -95,7 +95,7 @@ def test_without_a_shape_the_panel_says_so_and_waits(person, hand, hemisphere):
     assert not person.field(panel, "error").isVisible()
     person.select(block)
     hand.click(person.field(panel, "UseSource"))
-    told(person, panel, "see the field marked")
+    told(person, panel, "see the marked field")
     assert "Block" in person.panel_error(panel) or "revolution" in person.panel_error(panel), (
         person.panel_error(panel)
     )

@@ -233,7 +233,7 @@ def test_what_is_not_of_revolution_asks_for_what_it_grows_on(person):
     panel = person.panel("RoboticAM_NewJob")
     reason = person.field(panel, "reason")
     person.until(
-        lambda: "not of revolution" in reason.text() and "grows on" in reason.text(),
+        lambda: "without an axis of revolution" in reason.text() and "grows on" in reason.text(),
         "the question",
         30,
     )
@@ -260,7 +260,7 @@ def test_a_wrong_selection_is_named_and_the_panel_waits(person, hemisphere, coar
     person.gui.Selection.clearSelection()
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
-    assert "Click what is to be deposited" in person.field(panel, "reason").text()
+    assert "Click the object to deposit" in person.field(panel, "reason").text()
     for obj, words in (
         (cell, "Cell belongs to a job"),
         (sheet, "Table has no shape"),
@@ -287,7 +287,7 @@ def test_what_is_wrong_in_a_new_job_is_told_under_its_field(person, hemisphere, 
     machine, name = (person.field(panel, f"{field}Note") for field in ("Machine", "ProgramName"))
     person.as_revolution(panel)
     for field, note, wrong, words in (
-        ("Machine", machine, "kuka-kr17", "is not known"),
+        ("Machine", machine, "kuka-kr17", "unknown name"),
         ("ProgramName", name, "my part!", "only the letters"),
     ):
         right = person.field(panel, field)

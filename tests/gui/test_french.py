@@ -197,7 +197,7 @@ def test_the_numbers_of_a_pose_and_a_list_have_the_comma_of_the_language(french,
         ("heights", "1\u202f234 20"),
     ):
         lines[key].widget.setText(text)
-        with pytest.raises(api.InputError, match=r"may be read in two ways.*10\.5 20\.5"):
+        with pytest.raises(api.InputError, match=r"is ambiguous.*10\.5 20\.5"):
             lines[key].row.inner(lines[key].value, key)
 
 

@@ -229,7 +229,7 @@ def test_without_a_selection_solids_and_hub_are_waited_for(person, hand, blades)
     person.until(lambda: wrong.isVisible() and "more than 0 mm" in wrong.text(), "the note", 5)
     person.until(lambda: person.screen_pixels(ORANGE) == 0, "that nothing is previewed", 5)
     for entry, why in (
-        ("0.000001 mm", "20,000 cannot be worked with"),
+        ("0.000001 mm", "above the limit of 20,000"),
         ("4 mm", ""),
     ):  # of solids that are known by now
         noted_for(
@@ -242,7 +242,7 @@ def test_without_a_selection_solids_and_hub_are_waited_for(person, hand, blades)
     person.type(panel, "BeadSpacing", "0.00001 mm")
     wrong = person.field(panel, "BeadSpacingNote")
     person.until(
-        lambda: "points, and more than 50,000,000 cannot be worked with" in wrong.text(),
+        lambda: "points, above the limit of 50,000,000" in wrong.text(),
         "the note",
         30,
     )

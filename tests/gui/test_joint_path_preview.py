@@ -69,8 +69,8 @@ def test_the_figures_of_a_whole_preview_are_those_of_the_plan(person, stages, mo
     person.click("RoboticAM_JointPath")
     panel = person.panel(PANEL)
     text = told(person, panel, "Preview of all points")
-    assert text.startswith("All deposit points can be carried out.\nLeast joint margin: ")
-    assert text.endswith("Preview of all points; OK looks at the rapid moves too.")
+    assert text.startswith("All deposit points are feasible.\nSmallest joint margin: ")
+    assert text.endswith("Preview of all points; OK also checks the rapids.")
     figures = [float(number) for number in re.findall(r": (-?[\d.]+)", text)]
     assert len(drawn(person)) >= api.result(toolpath).point_count
     assert (
@@ -106,22 +106,22 @@ def test_a_change_is_planned_anew_and_tells_where_it_cannot_be_carried_out(
     person.double_click(made)
     panel = person.panel(PANEL)
     assert made.ViewObject.Proxy.switch.whichChild.getValue() == -1
-    first = told(person, panel, "Nothing stands against it so far.")
-    left = r"Preview of one point in \d+(?: of one bead in \d+)?; OK looks at those between and at the rapid moves too\."
-    assert re.search(left, first) and "can be carried out" not in first
+    first = told(person, panel, "No problem found so far.")
+    left = r"Preview of one point in \d+(?: of one bead in \d+)?; OK checks the points (?:and beads )?between and the rapids too\."
+    assert re.search(left, first) and "are feasible" not in first
     assert 100 < len(drawn(person)) < api.result(toolpath).point_count
     person.choose(panel, "Method", "constant")
-    worse = told(person, panel, "Cannot be carried out:")
+    worse = told(person, panel, "Infeasible:")
     assert re.search(r"layer \d+: ", worse) and "bead" not in worse.partition("Preview")[0]
     person.look()
     person.screenshot("joint_path_infeasible")
     person.choose(panel, "Method", "layer-by-layer")
     hand.enter(panel, "MinCondition", "2")
-    told(person, panel, "see the field marked")
+    told(person, panel, "see the marked field")
     assert "out of range" in person.field(panel, "MinConditionNote").text()
     assert len(drawn(person)) == 0
     hand.enter(panel, "MinCondition", "auto")
-    told(person, panel, "Nothing stands against it so far.")
+    told(person, panel, "No problem found so far.")
     person.press("Cancel")
     person.panel_closed()
     assert drawn(person) is None and made.ViewObject.Proxy.switch.whichChild.getValue() == which
@@ -145,7 +145,7 @@ def test_a_panel_that_is_closed_while_it_computes_leaves_nothing(person, stages,
     person.click("RoboticAM_JointPath")
     panel = person.panel(PANEL)
     person.until(begun.is_set, "the preview to begin", 10)
-    told(person, panel, "being computed")
+    told(person, panel, "Computing the preview")
     person.press("Cancel")
     person.panel_closed()
     person.until(ended.is_set, "its end", 20)
@@ -161,8 +161,8 @@ def test_what_is_missing_is_told_and_a_stale_toolpath_too(person, stages):
     person.select(toolpath)
     person.click("RoboticAM_JointPath")
     panel = person.panel(PANEL)
-    text = told(person, panel, "All deposit points can be carried out.")
-    assert "Toolpath is out of date; this is of what it was." in text
+    text = told(person, panel, "All deposit points are feasible.")
+    assert "Toolpath is out of date; the preview shows its earlier state." in text
     toolpath.Document.recompute()
     state = person.field(panel, "preview")
     person.until(
@@ -171,7 +171,7 @@ def test_what_is_missing_is_told_and_a_stale_toolpath_too(person, stages):
         30,
     )
     toolpath.Document.removeObject(toolpath.Name)
-    text = told(person, panel, "No preview: see the field marked.")
+    text = told(person, panel, "No preview: see the marked field.")
     note = person.field(panel, "InputToolpathNote")
     assert (
         note.isVisible()
@@ -217,7 +217,7 @@ def test_inputs_deleted_while_the_preview_is_computed_are_told_as_missing(
     )
     assert not [text for text in seen if "Error" in text]
     monkeypatch.undo()
-    told(person, panel, "No preview: see the field marked.")
+    told(person, panel, "No preview: see the marked field.")
     person.press("Cancel")
     person.panel_closed()
     threads_end(person)
@@ -234,7 +234,7 @@ def test_apply_renews_the_preview_and_the_toolpath_stays_back(person, stages, mo
     )
     person.double_click(made)
     panel = person.panel(PANEL)
-    first = told(person, panel, "Nothing stands against it so far.")
+    first = told(person, panel, "No problem found so far.")
     person.type(panel, "Degree", "0")
     person.until(lambda: begun[-1:] == [0], "the preview of what is typed to begin", 10)
     person.press("Apply")  # ends it
@@ -245,11 +245,9 @@ def test_apply_renews_the_preview_and_the_toolpath_stays_back(person, stages, mo
     person.until(
         lambda: len(begun) > count or begun.count(0) > 1, "the preview of what was made", 10
     )
-    person.until(
-        lambda: state.text() not in (first, "The preview is being computed."), "its figures", 30
-    )
+    person.until(lambda: state.text() not in (first, "Computing the preview."), "its figures", 30)
     assert (
-        "Cannot be carried out:" in state.text()
+        "Infeasible:" in state.text()
         and "Preview of one point" in state.text()
         and len(drawn(person)) > 100
     )
@@ -270,7 +268,7 @@ def test_a_table_has_no_condition_and_is_told_of_all_the_same(person, stages):
     panel = person.panel(PANEL)
     text = told(person, panel, "Preview of all points")
     assert (
-        "Least joint margin: " in text
+        "Smallest joint margin: " in text
         and "Largest joint speed: " in text
         and "condition" not in text
     )

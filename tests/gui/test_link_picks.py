@@ -112,4 +112,4 @@ def test_one_face_for_a_wall_says_what_is_taken(person, assembly):
     labels = panel.findChildren(person.widgets.QLabel)
     text = "\n".join(label.text() for label in labels if label.isVisible())
     person.press("Cancel")
-    assert "The whole of Box is taken; Pick takes single faces" in text
+    assert "The whole of Box is used; Pick selects single faces" in text

@@ -49,4 +49,4 @@ def test_planes_are_laid_where_curved_layers_that_were_proposed_cannot_be(
     else:
         assert (feature.Layers, path.Status) == ("planes", "up to date"), said
         assert "layers: planes, for geodesic ones end with " in said
-        assert status.startswith("In plane layers, for curved ones could not be carried out. ")
+        assert status.startswith("In planar layers, as curved ones were infeasible. ")

@@ -125,9 +125,9 @@ def test_a_fanuc_from_its_urdf_checked_by_its_pendant(person, hand, wizard, tmp_
         fill(poses, figures[row : row + 1], row=row)
     verdict = person.field(wizard, "verdict")
     person.until(lambda: "It would if" in verdict.text(), "the verdict")
-    assert "does not give them" in refused(person, hand, wizard)
+    assert "does not reproduce them" in refused(person, hand, wizard)
     offer = person.field(wizard, "suspect0")
-    assert offer.text() == "Axis 3 is shown against the horizontal"
+    assert offer.text() == "Axis 3 is shown relative to the horizontal"
     person.screenshot("machine_4_poses_wrong")
     hand.click(offer)
     person.until(lambda: "gives all 4 poses" in verdict.text(), "the machine to give its poses")
@@ -137,7 +137,7 @@ def test_a_fanuc_from_its_urdf_checked_by_its_pendant(person, hand, wizard, tmp_
     assert refused(person, hand, wizard, "FinishButton").startswith("Maker and model: it is empty")
     hand.enter(wizard, "machineTitle", "FANUC of hall 3")
     assert person.field(wizard, "machineName").text() == "fanuc-of-hall-3"
-    assert "worth no more than its check poses" in refused(person, hand, wizard, "FinishButton")
+    assert "only as reliable as its check poses" in refused(person, hand, wizard, "FinishButton")
     hand.enter(wizard, "poseSource", "pendant")
     hand.click(person.field(wizard, "post_fanuc"))
     person.screenshot("machine_6_name")
@@ -192,7 +192,7 @@ def test_a_copy_keeps_its_poses_and_a_name_that_is_taken_is_refused(person, hand
     box.setCurrentIndex(box.findData("kuka-kr16-2"))
     for expected in ("LimitsPage", "FramesPage", "PosesPage"):
         go_on(person, hand, wizard, expected)
-    assert "gives all" in person.field(wizard, "verdict").text()
+    assert "reproduces all" in person.field(wizard, "verdict").text()
     go_on(person, hand, wizard, "NamePage")
     hand.enter(wizard, "machineName", "kuka-kr16-2")
     assert "there is a machine 'kuka-kr16-2' already" in refused(
@@ -216,7 +216,7 @@ def test_a_copy_keeps_its_poses_and_a_name_that_is_taken_is_refused(person, hand
 
 def test_figures_with_a_wrong_sign_are_found_out(person, hand, wizard):
     arm = machine.load("staubli-tx60")
-    person.choose(wizard, "source", "Figures of an arm with a spherical wrist (OPW)")
+    person.choose(wizard, "source", "Dimensions of an arm with a spherical wrist (OPW)")
     lengths = [getattr(arm.opw, name) for name in ("a1", "a2", "b", "c1", "c2", "c3", "c4")]
     type_row(person, hand, person.field(wizard, "opwLengths"), 0, lengths)
     signs = np.array(arm.opw.signs) * [1, 1, 1, 1, -1, 1]
@@ -308,7 +308,7 @@ def test_a_machine_tool_from_its_table(person, hand, wizard):
     go_on(person, hand, wizard, "LimitsPage")
     limits = person.field(wizard, "limits")
     assert limits.rowCount() == 5 and limits.verticalHeaderItem(0).text() == "joint_1 (mm)"
-    assert "an axis that slides has two ends" in refused(person, hand, wizard)
+    assert "a prismatic axis has two ends" in refused(person, hand, wizard)
     fill(
         limits,
         [

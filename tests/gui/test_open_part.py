@@ -121,7 +121,7 @@ def test_a_table_of_points_is_opened_and_laid_as_beads(person, chosen, tmp_path)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     person.until(
-        lambda: "laid as beads" in person.field(panel, "reason").text(), "the proposal", 20
+        lambda: "deposited as beads" in person.field(panel, "reason").text(), "the proposal", 20
     )
     assert person.field(panel, "Kind").currentText() == "Curves as beads"
     assert person.field(panel, "Source").text() == "beads"

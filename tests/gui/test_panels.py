@@ -208,7 +208,7 @@ def test_apply_tells_in_the_panel_which_of_the_stages_that_follow_failed_and_why
         following.text()
     )
     assert (
-        "more than the wall is long" in following.text() and "\n" not in following.text()
+        "exceeds the length of the wall" in following.text() and "\n" not in following.text()
     )  # the joint path waits for it
     assert findings.text() == "Status: up to date"  # the feature is
     hand.enter(panel, "LayerHeight", "15 mm")
@@ -351,7 +351,9 @@ def test_a_newer_entry_ends_the_preview_of_an_older_one_and_the_window_goes_on(
     person.until(lambda: state.text().startswith("First layer"), "the preview", 60)
     person.type(panel, "LayerHeight", "2 mm")
     person.until(
-        lambda: "being computed" in state.text() and 2.0 in begun, "the preview that goes on", 10
+        lambda: "Computing the preview" in state.text() and 2.0 in begun,
+        "the preview that goes on",
+        10,
     )
     person.type(panel, "LayerHeight", "3 mm")
     person.until(lambda: state.text().startswith("First layer"), "the newer preview", 60)

@@ -98,7 +98,7 @@ def test_cancelled_refused_and_stale(person, hand, no_remedies, path):
     entered(person, panel, Step="1 mm")
     hand.click(person.field(panel, "compute"))
     person.idle()
-    assert not one.work.runs and "give a larger step" in told.text()
+    assert not one.work.runs and "use a larger step" in told.text()
     entered(person, panel, X="0 mm", Y="0 mm", Z="0 mm", Step="100 mm")
     hand.click(person.field(panel, "compute"))
     person.until(lambda: one.found is not None, "the pose", LONG)

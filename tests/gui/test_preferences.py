@@ -264,7 +264,9 @@ def test_what_cannot_be_is_told_and_not_kept(person, page):
     page.saveSettings()
     assert preferences.machine_folder() == "" and preferences.process() == {}
     assert preferences.machine() == preferences.builtin_machine()
-    person.until(lambda: "there is no folder /nowhere/at all" in person.console(), "the warning")
+    person.until(
+        lambda: "the folder /nowhere/at all does not exist" in person.console(), "the warning"
+    )
     assert "Travel speed: -3 mm/s is out of range" in person.console()
     assert "Machine: 'kuka-kr99' is not known; did you mean kuka-kr16-2" in person.console()
 

@@ -100,7 +100,7 @@ def test_what_the_controller_refuses_is_told_beside_its_field_as_it_is_typed(
         person.until(
             lambda note=note, words=words: note.isVisible() and words in note.text(), words, 10
         )
-        told(person, panel, "see the field marked")
+        told(person, panel, "see the marked field")
         assert (
             lines(person, panel) == [] and person.field(panel, "FirstLines").isVisible()
         )  # no field moves away
@@ -134,7 +134,7 @@ def test_a_dry_run_deposits_nothing_and_a_later_start_is_shorter(person, joint_p
     person.type(panel, "StartAtLayer", "5")
     person.until(lambda: told(person, panel, "mass: ") != whole, "less", 10)
     person.field(panel, "DryRun").setChecked(True)
-    told(person, panel, "dry run, nothing is deposited")
+    told(person, panel, "dry run without deposit")
     person.press("Cancel")
     person.panel_closed()
 
@@ -147,7 +147,7 @@ def test_what_is_made_anew_beside_the_panel_is_seen_and_what_is_deleted_is_told(
     before = told(person, panel, "Begins with")
     state = person.field(panel, "preview")
     document.Feature.LayerHeight = "15 mm"
-    told(person, panel, "Joint path is out of date; this is of what it was.")
+    told(person, panel, "Joint path is out of date; the preview shows its earlier state.")
     document.recompute()
     person.until(
         lambda: "Begins with" in state.text() and "out of date" not in state.text(),
@@ -156,7 +156,7 @@ def test_what_is_made_anew_beside_the_panel_is_seen_and_what_is_deleted_is_told(
     )
     assert state.text() != before
     document.removeObject(joint_path.Name)
-    told(person, panel, "No preview: see the field marked.")
+    told(person, panel, "No preview: see the marked field.")
     note = person.field(panel, "InputJointPathNote")
     assert (
         note.isVisible()

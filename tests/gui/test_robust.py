@@ -196,7 +196,7 @@ def test_files_and_folders_that_cannot_be_written(person, job, tmp_path, monkeyp
         person.double_click(doc.Program)
         panel = person.panel("RoboticAM_ProgramText")
         person.field(panel, "export").click()
-        assert "choose a folder you can write to" in person.field(panel, "state").text()
+        assert "choose a writable folder" in person.field(panel, "state").text()
         person.field(panel, "close").click()
     finally:
         tmp_path.chmod(0o755)

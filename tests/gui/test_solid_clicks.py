@@ -93,11 +93,13 @@ def test_faces_that_the_first_layer_lies_on_are_picked_and_taken_back(person):
     chosen = person.field(panel, "StartFaces")
     person.until(lambda: "Face1" in chosen.text(), "the face", 10)
     person.until(
-        lambda: "have no start faces" in all_text(person, panel), "that planes have none", 10
+        lambda: "do not use start faces" in all_text(person, panel), "that planes have none", 10
     )
     person.choose(panel, "Layers", "geodesic")
     person.until(
-        lambda: "have no start faces" not in all_text(person, panel), "that curved layers have", 30
+        lambda: "do not use start faces" not in all_text(person, panel),
+        "that curved layers have",
+        30,
     )
     person.screenshot("solid_panel_start")
     person.press("Ok")
@@ -154,7 +156,7 @@ def test_a_mesh_is_proposed_to_be_filled(person):
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     person.until(
-        lambda: "is a mesh, which is filled" in person.field(panel, "reason").text(),
+        lambda: "is a mesh, to be filled" in person.field(panel, "reason").text(),
         "the proposal",
         20,
     )

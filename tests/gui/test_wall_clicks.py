@@ -182,7 +182,7 @@ def test_an_error_goes_with_its_entry_however_soon_the_next_is_typed(person, ben
     person.idle(2.0)
     person.type(panel, "LayerHeight", "0.000001 mm")
     person.until(
-        lambda: note.isVisible() and "cannot be worked with; give at least" in note.text(),
+        lambda: note.isVisible() and "use at least" in note.text(),
         "the note",
         10,
     )
@@ -206,7 +206,7 @@ def test_errors_stand_under_the_field_they_belong_to(person, bend):
     person.screenshot("panel_wall_error")
     person.type(panel, "LayerHeight", "0.000001 mm")
     person.until(
-        lambda: note.isVisible() and "cannot be worked with; give at least" in note.text(),
+        lambda: note.isVisible() and "use at least" in note.text(),
         "the note",
         10,
     )
@@ -306,7 +306,7 @@ def test_a_preview_that_lacks_memory_says_what_to_do(person, bend, monkeypatch):
     panel = person.panel(PANEL)
     note = person.field(panel, "preview")
     person.until(
-        lambda: "not enough memory to compute it; give larger steps" in note.text(),
+        lambda: "use larger steps" in note.text(),
         "the advice",
         10,
     )

@@ -276,7 +276,7 @@ def test_only_paths_are_exported(job, tmp_path):
     ):
         with pytest.raises(InputError, match="no path"):
             call()
-    with pytest.raises(InputError, match="not above 0"):
+    with pytest.raises(InputError, match="not positive"):
         api.make_trajectory(job, tolerance=0.0)
 
 

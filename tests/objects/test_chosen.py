@@ -163,7 +163,7 @@ def test_a_fillet_that_numbers_faces_anew(doc, face):
             others += 1
             assert (
                 feature.Status == "failed"
-                and f"Face{face} is not there any more" in feature.Message
+                and f"Face{face} no longer exists" in feature.Message
             )
             put_quietly(part, box.Shape)
             api.change(feature, source=part, faces=[f"Face{face}"])

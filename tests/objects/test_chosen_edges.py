@@ -151,12 +151,12 @@ def test_what_other_links_name_is_told_until_it_is_confirmed(doc, made, tmp_path
         getattr(feature, link)[1] != [name] or feature.Status == "failed"
     ):  # FreeCAD 1.0 may have followed or lost it
         assert warnings(feature) == [] and App.Version()[0] != "0"
-        assert getattr(feature, link)[1] == [new] or "is not there any more" in feature.Message
+        assert getattr(feature, link)[1] == [new] or "no longer exists" in feature.Message
         return
     ((code, said),) = warnings(feature)
     kind = kind.lower()
     assert code == f"{kind.upper()}S_CHANGED"
-    assert f"{name} of Block is not the {kind} that was chosen: that {kind} is {new} now" in said
+    assert f"{name} of Block is not the selected {kind}: that {kind} is {new} now" in said
     doc.saveAs(str(tmp_path / "block.FCStd"))
     App.closeDocument(doc.Name)
     opened = App.openDocument(str(tmp_path / "block.FCStd"))
@@ -212,7 +212,7 @@ def test_a_straight_edge_that_became_a_circle_and_one_that_turned_are_told(doc):
     ((code, said),) = warnings(feature)
     assert (
         code == "EDGES_CHANGED"
-        and "Edge1 of Block was a straight line when it was chosen and is a circle now" in said
+        and "Edge1 of Block was a straight line when selected and is a circle now" in said
     )
     put(part, Part.makePolygon(ends[::-1]))
     assert warnings(feature) == []  # it has no sense
@@ -222,7 +222,7 @@ def test_a_straight_edge_that_became_a_circle_and_one_that_turned_are_told(doc):
     ((code, said),) = warnings(feature)
     assert (
         code == "EDGES_CHANGED"
-        and "Edge1 of Block lies another way than when it was chosen" in said
+        and "Edge1 of Block has changed its position since its selection" in said
     )
 
 
@@ -352,7 +352,7 @@ def test_an_edge_that_freecad_knows_to_be_lost_is_told(doc):
     feature.Axis = (part, [f"?{name}"])
     with pytest.raises(
         InputError,
-        match=f"{name} is not there any more since the part changed; choose the edges again",
+        match=f"{name} no longer exists after a change of the part; choose the edges again",
     ):
         api.recompute(doc)
     assert feature.Status == "failed"

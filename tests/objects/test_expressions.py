@@ -46,7 +46,7 @@ def test_a_parameter_follows_an_expression_until_it_is_given_a_value(doc, part, 
         ("=", "not understood"),
         ("=Sheet.heigth", "not understood"),
         ("=Sheet.height + 1 deg", "not understood"),
-        ("=90 deg", "another dimension"),
+        ("=90 deg", "wrong dimension"),
         ("=0 mm * Sheet.height / 1 mm", "more than 0 mm"),
         ("=Sheet.Label", "not a number"),
     ],
@@ -78,9 +78,9 @@ def test_an_expression_that_lost_what_it_follows_is_told_until_it_is_mended(doc,
     doc.recompute()
     assert feature.Status == "failed" and toolpath.Status != "up to date"
     assert feature.Message.startswith(
-        "LayerHeight follows the expression Sheet.height / 2, which gives nothing any more"
+        "LayerHeight follows the expression Sheet.height / 2, which no longer gives a value"
     )
-    with pytest.raises(InputError, match="gives nothing any more"):
+    with pytest.raises(InputError, match="no longer gives a value"):
         api.recompute(feature)
     api.change(feature, layer_height=7)
     doc.recompute()

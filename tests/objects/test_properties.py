@@ -240,7 +240,7 @@ def test_times_may_be_in_milliseconds(text, seconds):
     lead = next(row for row in rows.rows(ProgramParameters) if row.key == "trigger_lead")
     assert lead.inner(text, "program.trigger_lead") == pytest.approx(seconds, rel=1e-15)
     stand_off = next(row for row in rows.rows(ProcessParameters) if row.key == "stand_off")
-    with pytest.raises(InputError, match="another dimension"):
+    with pytest.raises(InputError, match="wrong dimension"):
         stand_off.inner("50 ms", "process.stand_off")
 
 
@@ -250,7 +250,7 @@ def test_times_may_be_in_milliseconds(text, seconds):
 )
 def test_a_decimal_comma_is_told_how_to_be_written(text, says):
     lead = next(row for row in rows.rows(ProgramParameters) if row.key == "trigger_lead")
-    with pytest.raises(InputError, match=f"has a comma; write decimals with a point, {says}$"):
+    with pytest.raises(InputError, match=f"has a comma; use a decimal point, {says}$"):
         lead.inner(text, "program.trigger_lead")
 
 
@@ -274,7 +274,7 @@ def test_a_list_that_may_be_read_in_two_ways_is_refused(text):
     heights = next(row for row in rows.rows(InspectionParameters) if row.key == "heights")
     with pytest.raises(
         InputError,
-        match=r"may be read in two ways; write decimals with a point .* as in 10\.5 20\.5",
+        match=r"is ambiguous; write decimals with a point .* as in 10\.5 20\.5",
     ):
         heights.inner(text, "inspection.heights")
 

@@ -68,7 +68,7 @@ def test_the_order_is_that_of_the_list(doc, features):
     assert toolpath.Sequence == "feature" and middles(toolpath) == PLATE + HIGH + LOW
     api.change(toolpath, further=[])
     assert middles(toolpath) == PLATE and api.result(toolpath).features == ()
-    with pytest.raises(InputError, match="nothing carries it"):
+    with pytest.raises(InputError, match="the feature has no support"):
         api.change(toolpath, feature=features[1], further=[features[0]])
     assert toolpath.Feature == features[0]
 

@@ -315,7 +315,7 @@ def test_what_beads_leave_of_a_solid_and_lay_beside_it_is_told(doc):
     (whole, _, beside), told = balanced(doc, Part.makeBox(60, 3.2, 8))
     assert beside > 0.8 * whole
     assert (
-        f"about {beside / 1000.0:.3g} cm3 of beads lie outside the 1.54" in told["DEPOSITED_BESIDE"]
+        f"about {beside / 1000.0:.3g} cm3 of beads are outside the 1.54" in told["DEPOSITED_BESIDE"]
     )
 
 
@@ -351,5 +351,5 @@ def test_plane_layers_are_tried_where_curved_ones_have_no_room(doc, monkeypatch,
     assert told == [
         "the nozzle is not clear with `strategy.layers: planes` either, which was tried"
         if lid is not None
-        else "with `strategy.layers: planes` the nozzle is clear; the toolpath was planned so, joints were not"
+        else "with `strategy.layers: planes` the nozzle is clear; the toolpath was planned with it, the joint path was not"
     ]

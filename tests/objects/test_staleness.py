@@ -140,7 +140,7 @@ def test_too_little_memory_is_told_and_the_last_result_stays(job, monkeypatch):
     key = job.toolpath.Key
     monkeypatch.setattr(job.toolpath.Proxy, "prepare", too_much)
     job.feature.LayerHeight = 9
-    with pytest.raises(InputError, match="Toolpath: there is not enough memory") as caught:
+    with pytest.raises(InputError, match="Toolpath: the computation needs more memory") as caught:
         api.recompute(job.doc)
     assert caught.value.code == "NO_MEMORY" and job.toolpath.Status == FAILED
     assert job.toolpath.Key == key

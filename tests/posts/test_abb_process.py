@@ -446,7 +446,7 @@ def test_golden_modules_to_the_byte(root, name):
             {"by": "arc"},
             "abb part-on-robot",
             "WEAVE",
-            "swings the part",
+            "below a fixed torch",
         ),
         (
             {"wire": FED, "schedule": 3},

@@ -52,12 +52,12 @@ def test_called_programs_are_judged_by_the_same_rules():
     where = "process.between_layers.call"
     of = program(moves("rapid", np.zeros(6)), Call("nozzle clean"))
     assert "'NOZZLE_CLEAN'" in refusal(of, code="PROGRAM_NAME", where=where)
-    assert "this very job" in refusal(
+    assert "program of the job" in refusal(
         program(moves("rapid", np.zeros(6)), Call("Part")), code="PROGRAM_NAME", where=where
     )
     split = beads(3, 20, max_points=25)
     own = dataclasses.replace(split, blocks=(*split.blocks, Call("PART02")))
-    assert "this very job" in refusal(own, code="PROGRAM_NAME", where=where)
+    assert "program of the job" in refusal(own, code="PROGRAM_NAME", where=where)
 
 
 # further refusals

@@ -715,17 +715,16 @@ def test_a_module_by_hand():
 
 
 @pytest.mark.parametrize(("old", "new", "why"), [
-    ("DEF hand()", "DEF other()", "its routine is DEF other(), which is not the file's name"),
-    ("DEF hand()", "GLOBAL DEF hand( )  ; by hand", "one routine of the file's name, that begins with &ACCESS RVP, &REL 1 "
-     "and DEF and ends with END: it has GLOBAL DEF hand( );"), ("DEF hand()", "", "END: it has no DEF;"),
+    ("DEF hand()", "DEF other()", "its routine DEF other() and the file have different names"),
+    ("DEF hand()", "GLOBAL DEF hand( )  ; by hand", "one routine named like the file, that begins with &ACCESS RVP, &REL 1 and DEF and ends with END: it has GLOBAL DEF hand( );"), ("DEF hand()", "", "END: it has no DEF;"),
     ("\nEND\n", "\nEND\nDEF more()\nEND\n", "END: it has DEF hand(), DEF more();"),
     ("\nEND\n", "\n", "one routine"), ("BAS(#BASE,3)\n", "", "counts on"),
     ("$IPO_MODE=#BASE", "$IPO_MODE=#TCP", "not understood"), ("BAS(#VEL_PTP,25)\n", "", "counts on"),
     ("VEL_PTP,25", "VEL_PTP,125", "1 to 100"), ("$APO.CDIS=0.5\n", "", "counts on"), ("$VEL.CP=0.0305\n", "", "counts on"),
     ("WAIT FOR $IN[4]==TRUE\n", "", "ahead of the motion"), ("WAIT SEC 0.5\n", "", "ahead of the motion"),
     ("C 179.5}", "C 179.5} C_DIS", "approximated"), ("$OUT[7]=FALSE", "$OUT[8]=FALSE", "second output"),
-    ("gripper_open()", "hand()", "called by none"), ("gripper_open()", "GOTO x", "not understood"),
-    ("WAIT FOR", "TRIGGER WHEN DISTANCE=1 DELAY=-50 DO $OUT[7]=FALSE\nWAIT FOR", "among the lines"),
+    ("gripper_open()", "hand()", "called by no other"), ("gripper_open()", "GOTO x", "not understood"),
+    ("WAIT FOR", "TRIGGER WHEN DISTANCE=1 DELAY=-50 DO $OUT[7]=FALSE\nWAIT FOR", "interrupts the lines"),
     ("LIN {X 10.0", "TRIGGER WHEN DISTANCE=1 DELAY=-50 DO $OUT[7]=FALSE\nLIN {X 10.0", "no end"),
     ("LIN {X 20.5", "TRIGGER WHEN DISTANCE=1 DELAY=-50 DO $OUT[8]=FALSE\nLIN {X 20.5", "second output"),
     ("LIN {X 20.5", "TRIGGER WHEN DISTANCE=1 DELAY=50 DO $OUT[7]=FALSE\nLIN {X 20.5", "ahead of the motion"),

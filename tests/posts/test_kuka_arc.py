@@ -166,7 +166,7 @@ def test_the_way_onto_a_bead_stays_by_the_one_that_was_looked_at():
     assert looked == added
     with pytest.raises(InputError) as error:
         build(whole, cell, LIT, ARC, "job")
-    assert error.value.code == "SCHEDULE" and "would leave the checked way" in error.value.message
+    assert error.value.code == "SCHEDULE" and "would leave the checked path" in error.value.message
 
 
 def test_a_way_that_was_not_looked_at_is_found_by_reading_back(monkeypatch):
@@ -213,7 +213,7 @@ def test_what_arctech_has_in_its_own_data_or_was_not_confirmed_is_refused():
         assert error.value.code == code and words in error.value.message, error.value.message
 
     refusal(dataclasses.replace(LIT, lead_off=0.2), "SCHEDULE", "crater time of WDATOFF7")
-    refusal(dataclasses.replace(LIT, schedule=None), "NO_SCHEDULE", "arc instructions name")
+    refusal(dataclasses.replace(LIT, schedule=None), "NO_SCHEDULE", "arc instructions need")
     refusal(dataclasses.replace(LIT, schedule=256), "SCHEDULE", "up to 255, not 256")
     refusal(
         dataclasses.replace(LIT, start=BeadStart(4.0, 5.0, 4)),

@@ -45,7 +45,7 @@ REFUSED = (
     {
         ("fanuc", "cartesian", "part-on-robot"): (
             "REMOTE_TCP",
-            "what the position records of such moves",
+            "whose position records (RX RY RZ RW RP RR) are not documented",
         ),
         ("ur", "cartesian", "part-on-robot"): ("REMOTE_TCP", "no documented instruction"),
         ("yaskawa", "cartesian", "part-on-robot"): ("REMOTE_TCP", "external reference point"),

@@ -407,7 +407,9 @@ def test_what_no_script_says_is_refused():
         code="PROGRAM_NAME",
         where="process.between_layers.call",
     )
-    assert "this very job" in refusal(tool_on(program(still, Call("part"))), code="PROGRAM_NAME")
+    assert "program of the job" in refusal(
+        tool_on(program(still, Call("part"))), code="PROGRAM_NAME"
+    )
     short = tool_on(program(still, moves("deposit", np.zeros((3, 6)), 0.001, 4, 2)))
     assert "1 ms, less than the 2 ms" in refusal(short, code="MOVE_TIME", where="layer 4 bead 2")
     run = dataclasses.replace(TABLE.blocks[2], speed=np.array([6.0, 1000.1]))
@@ -450,7 +452,7 @@ def by_hand(pattern="", replacement=""):
     (r"  movep[^\n]*\n", "  while get_standard_digital_in(1) == False:\n  end\n", "TABLE.script line 6", "a loop that"),
     (r"  movep[^\n]*\n", "  set_tcp(p[0.0, 0.0, 0.0, 0.0, 0.0, 0.0])\n", "TABLE.script line 6", "set again"),
     (r"  movep[^\n]*\n", "  set_standard_digital_out(1, True)\n", "TABLE.script line 6", "a second output"),
-    (r"  movep", "movep", "TABLE.script line 6", "outside of its function"),
+    (r"  movep", "movep", "TABLE.script line 6", "outside its function"),
     (r"movej\(get_inverse_kin\([^\n]*\), (\[[^\]]*\])\)", r"movej(\1", "TABLE.script line 4", "positions are given"),
 ])  # fmt: skip
 def test_what_is_not_understood_is_refused(pattern, replacement, where, why):

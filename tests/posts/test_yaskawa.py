@@ -459,7 +459,7 @@ def test_what_no_job_says_is_refused():
     )
     refusal(known(program(still, WaitBelow(1, 1.0, 0, 0))), code="NO_ANALOGUE_INPUT")
     refusal(known(program(still, name="1part")), code="PROGRAM_NAME", where="name")
-    assert "this very job" in refusal(known(program(still, Call("part"))), code="PROGRAM_NAME")
+    assert "program of the job" in refusal(known(program(still, Call("part"))), code="PROGRAM_NAME")
     slow = moves("deposit", np.full((1, 6), 0.01), 10.0, layer=4, bead=2)
     assert "steps of 0.01 %" in refusal(
         known(program(still, slow)), code="JOINT_SPEED", where="layer 4 bead 2"
@@ -514,8 +514,8 @@ def test_pulses_are_those_of_a_machine_file(tmp_path):
     ("NOP", "NOP\r\nSPEED V=1.0", "is not understood"), ("DOUT OT#(7) OFF", "DOUT OT#(8) OFF", "a second output"),
     ("//NAME LINEAR", "//NAME OTHER", "its job is called OTHER"), ("CALL JOB:CLEAN", "CALL JOB:LINEAR", "0 jobs are called"),
     ("///NPOS 6", "///NPOS 7", "is not position 6"), ("SC,RW", "SC,RO", "do not begin"), ("/JOB\r", "JOB\r", "not a job"),
-    ("NOP", "NOP\r\n'pulses/deg S 1.0", "how many pulses"), ("'V in mm/s", "'V in m/s", "what unit V has"),
-    ("'V in mm/s", "'V in mm/s\r\n'V in cm/min", "two units"), ("S 1435.3", "S 0.0", "or are none"),
+    ("NOP", "NOP\r\n'pulses/deg S 1.0", "the pulses per degree"), ("'V in mm/s", "'V in m/s", "what unit V has"),
+    ("'V in mm/s", "'V in mm/s\r\n'V in cm/min", "two units"), ("S 1435.3", "S 0.0", "or are missing"),
 ])  # fmt: skip
 def test_what_is_not_understood_is_refused(pattern, replacement, why):
     text = yaskawa.write(GOLDENS["linear"])["LINEAR.JBI"].decode()

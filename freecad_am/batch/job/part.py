@@ -121,7 +121,7 @@ def _set(document: Any, name: str, key: str, text: str, section: str) -> Any:
         names = ", ".join(obj.Label for obj in matches or document.Objects) or "none"
         message = "no object is called {!r}; the document has {}"
         if matches:
-            message = "{!r} is the label of several objects ({}); use the name of one of them"
+            message = "{!r} is the label of several objects ({}); use the name of one"
             names = ", ".join(obj.Name for obj in matches)
         raise InputError("NO_OBJECT", where, message, name, names)
     obj = matches[0]
@@ -155,7 +155,7 @@ def _set_constraint(sketch: Any, name: str, text: str, where: str) -> None:
     constraints = [item for item in getattr(sketch, "Constraints", ()) if item.Name]
     if name not in [item.Name for item in constraints]:
         names = ", ".join(item.Name for item in constraints) or "none"
-        message = "{} has no constraint of this name (it has {}); name it in the sketch"
+        message = "{} has no constraint with this name (it has {}); name it in the sketch"
         raise InputError("BAD_VALUE", where, message, sketch.Label, names)
     now = sketch.getDatum(name)
     sketch.setExpression(f"Constraints.{name}", None)

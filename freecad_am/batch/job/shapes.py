@@ -23,7 +23,7 @@ from .part_source import PartSource
 from .scan_source import ScanSource
 
 TOUCHING = 0.01  # mm
-INSTEAD = "; but these end with {}, so planes are laid instead"
+INSTEAD = "; but these end with {}, so planar layers are used instead"
 FIXED = "; but with directions that follow it this ends with {}, so they are one (build_direction.mode: fixed)"
 
 

@@ -150,7 +150,7 @@ def _from_faces(
         hint = (
             "choose other faces"
             if selected
-            else "name the faces of the wall if it is not part of it"
+            else "select the wall faces if this face does not belong to the wall"
         )
         raise InputError(
             "NOT_REVOLUTION",
@@ -239,7 +239,7 @@ def _assembled(
     if gap > contour.JOIN_MM:
         issues.append(
             Issue(
-                NOTE, "GAP", Text("a gap of {:.3g} mm between faces of {} was bridged", gap, label)
+                NOTE, "GAP", Text("a gap of {:.3g} mm between faces of {} is bridged", gap, label)
             )
         )
     if closed:

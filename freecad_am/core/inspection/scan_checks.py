@@ -39,7 +39,7 @@ def refuse_size(points: Array, label: str, body: Body) -> None:
     remedy = (
         Text("in {} the size would match; set it as substrate.scan_unit", unit)
         if unit
-        else ("check its unit, substrate.scan_unit, and what was scanned")
+        else ("check its unit, substrate.scan_unit, and the scanned object")
     )
     raise InputError(
         "SCAN_UNIT",

@@ -35,14 +35,14 @@ START, END = "start", "end"
 class PhaseParameters:
     """What differs at an end of every bead, over a length of it."""
 
-    length: float = f.parameter(0.0, f.LENGTH, "How much of the bead it is.", low=0.0)
+    length: float = f.parameter(0.0, f.LENGTH, "Length of the bead that it covers.", low=0.0)
     travel_speed: float | None = f.parameter(
-        None, f.SPEED, "Speed of the torch there.", low=0.0, open_low=True, optional=True
+        None, f.SPEED, "Travel speed there.", low=0.0, open_low=True, optional=True
     )
     schedule: int | None = f.parameter(
         None,
         f.COUNT,
-        "Schedule that is sent there, without a stop.",
+        "Schedule to send there, without a stop.",
         low=1,
         high=LARGEST_SCHEDULE,
         optional=True,
@@ -50,7 +50,7 @@ class PhaseParameters:
     ramp: float = f.parameter(
         0.0,
         f.LENGTH,
-        "Length beside it along which the speed changes step by step to that of the bead.",
+        "Length next to it over which the speed changes in steps to the speed of the bead.",
         low=0.0,
         advanced=True,
     )
@@ -95,7 +95,7 @@ class BeadClass:
     travel_speed: float | None = f.parameter(
         None,
         f.SPEED,
-        "Speed of the torch along beads of the class.",
+        "Travel speed along beads of the class.",
         low=0.0,
         open_low=True,
         optional=True,
@@ -103,7 +103,7 @@ class BeadClass:
     schedule: int | None = f.parameter(
         None,
         f.COUNT,
-        "Number that tells the welder or extruder how to lay beads of the class.",
+        "Schedule number with which the welder or extruder deposits beads of the class.",
         low=1,
         high=LARGEST_SCHEDULE,
         optional=True,
@@ -111,7 +111,7 @@ class BeadClass:
     lead: float | None = f.parameter(
         None,
         f.ANGLE,
-        "Tool axis turned forward, along the bead.",
+        "Tool axis tilted forward, along the bead.",
         low=-0.5 * math.pi,
         high=0.5 * math.pi,
         optional=True,
@@ -119,7 +119,7 @@ class BeadClass:
     tilt: float | None = f.parameter(
         None,
         f.ANGLE,
-        "Tool axis turned sideways.",
+        "Tool axis tilted sideways.",
         low=-0.5 * math.pi,
         high=0.5 * math.pi,
         optional=True,
@@ -127,21 +127,21 @@ class BeadClass:
     lead_on: float | None = f.parameter(
         None,
         f.TIME,
-        "Deposit switched on this long before a bead of the class starts.",
+        "Time by which the deposit is switched on before a bead of the class starts.",
         low=0.0,
         optional=True,
     )
     lead_off: float | None = f.parameter(
         None,
         f.TIME,
-        "Deposit switched off this long after a bead of the class ends.",
+        "Time by which the deposit is switched off after a bead of the class ends.",
         low=0.0,
         optional=True,
     )
     weave: int | None = f.parameter(
         None,
         f.COUNT,
-        "Number of the controller's own weave that beads of the class are laid with; 0: straight.",
+        "Weave number of the controller for beads of the class; 0: straight.",
         low=0,
         high=LARGEST_WEAVE,
         optional=True,
@@ -208,9 +208,7 @@ def _parsed(text: str) -> tuple[tuple[str, BeadClass], ...]:
                 "BAD_VALUE", WHERE, "{!r} is not a class of beads; {}", part.strip(), _FORM
             )
         if name in found:
-            raise InputError(
-                "BAD_VALUE", WHERE, "{} is there twice; write all of it in one place", name
-            )
+            raise InputError("BAD_VALUE", WHERE, "{} is defined twice; merge the two entries", name)
         found[name] = made(name, _values(name, rest))
     return tuple(found.items())
 

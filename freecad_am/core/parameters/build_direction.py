@@ -28,14 +28,14 @@ class BuildDirectionParameters:
     lead: float = f.parameter(
         0.0,
         f.ANGLE,
-        "Tool axis turned forward along the bead, from the build direction.",
+        "Tool axis tilted forward along the bead, from the build direction.",
         low=-math.pi / 2,
         high=math.pi / 2,
     )
     tilt: float = f.parameter(
         0.0,
         f.ANGLE,
-        "Tool axis turned sideways, towards the outside of the wall, from the build direction.",
+        "Tool axis tilted sideways, towards the outside of the wall, from the build direction.",
         low=-math.pi / 2,
         high=math.pi / 2,
     )
@@ -49,9 +49,9 @@ class BuildDirectionParameters:
     max_turn: float | str = f.parameter(
         "auto",
         f.TURN_RATE,
-        "Largest turn of build direction and tool axis along a bead, on walls on an existing part, "
-        "on hubs and in curved layers; where they would turn faster, at corners, they are spread out, and the deviation is "
-        "reported.",
+        "Largest turn of build direction and tool axis along a bead, on walls on an existing "
+        "part, on hubs and in curved layers; faster turns, as at corners, are spread out, and "
+        "the deviation is reported.",
         low=0.0,
         open_low=True,
         words=("auto", "inf"),
@@ -66,14 +66,15 @@ class BuildDirectionParameters:
     clearance: str = f.parameter(
         "nozzle",
         f.CHOICE,
-        "nozzle: tilt no more than needed to keep the nozzle clear of deposit and platform.",
+        "nozzle: tilt only as far as clearance to deposit and platform requires.",
         choices=("none", "nozzle"),
     )
     max_from_vertical: float = f.parameter(
         math.pi,
         f.ANGLE,
-        "Robots with a positioner: largest angle between the tool axis and the vertical of the cell while "
-        "depositing; the positioner turns the part so far. 180 deg: it stands still.",
+        "Robots with a positioner: largest angle between the tool axis and the vertical of the "
+        "cell while depositing; the positioner turns the part to keep it. 180 deg: it does not "
+        "move.",
         low=0.0,
         high=math.pi,
         advanced=True,

@@ -46,8 +46,8 @@ class NozzleParameters:
     shape: str = f.parameter(
         NO_SHAPE,
         f.TEXT,
-        "Robots: file of the torch as closed solids, mm, its tip at the origin, Z out of the nozzle; what "
-        "lies beyond the length of the nozzle keeps the arm's clearance as links do.",
+        "Robots: file of the torch as closed solids, mm, with the tip at the origin and Z out of "
+        "the nozzle; parts above the length of the nozzle keep the arm clearance, like links.",
         advanced=True,
     )
 
@@ -60,22 +60,20 @@ class CellParameters:
     """Machine, set-up and tooling. Angles of poses in rad: X Y Z RX RY RZ, Bryant (Chalvin 2020, eq. 9)."""
 
     machine: str = f.parameter(
-        "fanuc-arcmate120ic", f.TEXT, "A machine of the list, or the path of a machine file."
+        "fanuc-arcmate120ic", f.TEXT, "A machine from the list, or the path of a machine file."
     )
-    limits: str = f.parameter(
-        "maker", f.TEXT, "Which set of joint limits of the machine file holds."
-    )
+    limits: str = f.parameter("maker", f.TEXT, "Set of joint limits of the machine file to use.")
     setup: str = f.parameter(
         "part-on-robot",
         f.CHOICE,
-        "Which of part and tool the robot carries, or a machine with rotary axes.",
+        "Whether the robot carries the tool or the part, or a machine with rotary axes.",
         choices=("part-on-robot", "tool-on-robot", "rotary-table", "tool-on-robot+positioner"),
     )
     deposition_point: Pose = f.parameter(
         (1045.747, -630.155, 653.167, 0.0, 0.0, 0.0),
         f.POSE,
-        "Robots: where the deposit comes out, its Z pointing to the tool; with the tool on the robot, the fixed platform. "
-        "In the maker's base frame.",
+        "Robots: deposition point, with its Z towards the tool; with the tool on the robot, the "
+        "fixed platform. In the manufacturer's base frame.",
     )
     platform: float | Pose = f.parameter(
         5.0,
@@ -88,7 +86,7 @@ class CellParameters:
     mount: str = f.parameter(
         "auto",
         f.CHOICE,
-        "Which frame sits on the platform: the feature's own, or that of the part file.",
+        "Frame to place on the platform: that of the feature, or that of the part file.",
         choices=("auto", "feature", "part"),
     )
     branch: str | tuple[str, str, str] = f.parameter(
@@ -100,23 +98,23 @@ class CellParameters:
     external: str = f.parameter(
         NO_AXES,
         f.TEXT,
-        "Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 at "
-        "1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot's base frame; "
-        "more than one with ; between.",
+        "Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 "
+        "at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, the "
+        "base frame of the robot; separate several with ;.",
         advanced=True,
         poses=True,
     )
     world_up: str = f.parameter(
         "0 0 1",
         f.TEXT,
-        "Against gravity, as x y z in the world.",
+        "Direction against gravity, as x y z in the world.",
         advanced=True,
     )
     arm_clearance: float | None = f.parameter(
         None,
         f.LENGTH,
-        "Robots: how far the links stay from part, deposit, platform, fixtures and nozzle, rapids included; "
-        "left out, planning does not look at them.",
+        "Robots: smallest distance between the links and part, deposit, platform, fixtures and "
+        "nozzle, rapids included; without it, planning ignores the links.",
         low=0.0,
         high=1000.0,
         optional=True,
@@ -124,24 +122,26 @@ class CellParameters:
     obstacles: str = f.parameter(
         NO_OBSTACLES,
         f.TEXT,
-        "Robots: what stands in the cell, which nozzle, part and links are kept clear of, such as: "
-        "table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg of the "
-        "file's origin, or of the middle of the box, in the maker's base frame.",
+        "Robots: obstacles in the cell that nozzle, part and links must clear, such as: table = "
+        "table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY "
+        "RZ deg of the origin of the file, or of the centre of the box, in the manufacturer's "
+        "base frame.",
         advanced=True,
     )
 
     touched: str = f.parameter(
         NOT_TOUCHED,
         f.TEXT,
-        "Tool on robot only: points of the part and where the tip has touched them, three or more, "
-        "which take the place of the deposition point, such as: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 "
-        "= 901 82 -99.5. In the part file and in the maker's base frame, mm.",
+        "Tool on robot only: points of the part and the positions where the tip touched them, at "
+        "least three, which replace the deposition point, such as: 0 0 0 = 900.4 2.1 -99.7; 100 "
+        "0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5. In the part file and in the "
+        "manufacturer's base frame, mm.",
         advanced=True,
     )
     touched_tolerance: float = f.parameter(
         1.0,
         f.LENGTH,
-        "How far a touched point may be from where the others say that it is.",
+        "Maximum residual of a touched point against the best fit.",
         low=0.0,
         high=100.0,
         open_low=True,
@@ -164,8 +164,8 @@ class CellParameters:
                 raise InputError(
                     "BAD_VALUE",
                     "cell.platform",
-                    "{!r} is neither a length nor six numbers; give one such as "
-                    "300, or x y z RX RY RZ",
+                    "{!r} is neither a length nor six numbers; give a value such as 300, or x y "
+                    "z RX RY RZ",
                     self.platform,
                 )
             object.__setattr__(self, "platform", tuple(self.platform))

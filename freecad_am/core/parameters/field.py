@@ -119,7 +119,7 @@ def check(owner: Any, prefix: str, skip: frozenset[str] = frozenset()) -> None:
 def unknown_choice(key: str, value: Any, choices: tuple[str, ...]) -> InputError:
     """The error for a word that is not one of `choices`."""
     return InputError(
-        "BAD_VALUE", key, "{!r} is not known; use one of {}", value, ", ".join(choices)
+        "BAD_VALUE", key, "{!r} is not a valid choice; use one of {}", value, ", ".join(choices)
     )
 
 
@@ -136,10 +136,12 @@ def check_value(spec: Spec, value: Any, key: str) -> None:
             raise unknown_choice(key, value, spec.choices)
     elif spec.kind == FLAG:
         if not isinstance(value, bool):
-            raise InputError("BAD_VALUE", key, "{!r} is not true or false; give one of them", value)
+            raise InputError(
+                "BAD_VALUE", key, "{!r} is not true or false; use true or false", value
+            )
     elif spec.kind == TEXT:
         if not isinstance(value, str):
-            raise InputError("BAD_VALUE", key, "{!r} is not a text; give one in quotes", value)
+            raise InputError("BAD_VALUE", key, "{!r} is not a text; put it in quotes", value)
     elif spec.kind == POSE:
         if (
             isinstance(value, str)

@@ -22,7 +22,7 @@ class BaseParameters:
     radius: float | str = f.parameter(
         "auto",
         f.LENGTH,
-        "Radius of the base circle; auto: the face chosen, or the one that the solids stand on.",
+        "Radius of the base circle; auto: from the chosen face, or the face below the solids.",
         low=0.0,
         open_low=True,
         words=("auto",),
@@ -51,8 +51,8 @@ class BaseParameters:
             raise InputError(
                 "BAD_VALUE",
                 "strategy.base.radius",
-                "a height alone is not a cone; give the radius of its base circle too, "
-                "or base: auto",
+                "a height without a radius does not define a cone; give the radius of the base "
+                "circle too, or base: auto",
             )
 
     def line(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -82,7 +82,7 @@ class FilledParameters(LayerParameters):
     bead_overlap: float | None = f.parameter(
         None,
         f.RATIO,
-        "Overlap of neighbouring beads as a share of the bead width; takes the place of the bead spacing.",
+        "Overlap of neighbouring beads as a share of the bead width; replaces the bead spacing.",
         low=0.0,
         high=0.9,
         optional=True,
@@ -90,8 +90,8 @@ class FilledParameters(LayerParameters):
     fill: str = f.parameter(
         "contours",
         f.CHOICE,
-        "Parallel contours, parallel lines, or either linked: connected, spiral, zigzag; below 100 % "
-        "also grid, triangles, honeycomb, gyroid.",
+        "Parallel contours, parallel lines, or the two linked: connected, spiral, zigzag; below "
+        "100 % also grid, triangles, honeycomb, gyroid.",
         choices=(
             "contours",
             "connected",
@@ -107,29 +107,29 @@ class FilledParameters(LayerParameters):
     spacing_range: tuple[float, float] = f.parameter(
         (1.0, 1.0),
         f.RATIO_RANGE,
-        "How narrow and how wide beads may be, of their usual width and spacing, so that "
-        "contours come out even over the thickness of a region, and beads in thin places are as wide as these.",
+        "Range of bead widths, as a share of the usual width and spacing, so that contours fill "
+        "a region evenly and beads in thin places match its width.",
         low=0.3,
         high=2.0,
     )
     starts: str = f.parameter(
         "aligned",
         f.CHOICE,
-        "Where beads start: where the seam says (aligned), or apart from those of neighbouring "
-        "contours and layers, lines of every second layer at their other end (spread).",
+        "Start of beads: at the seam (aligned), or away from the starts of neighbouring contours "
+        "and layers, with every second layer of lines reversed (spread).",
         choices=("aligned", "spread"),
     )
     fill_density: float = f.parameter(
         1.0,
         f.RATIO,
-        "Share of the area inside of the walls that beads fill: their length times their spacing.",
+        "Share of the area inside the walls that beads fill: their length times their spacing.",
         low=0.01,
         high=1.0,
     )
     solid_layers: int = f.parameter(
         0,
         f.COUNT,
-        "So many layers under tops and over bottoms are filled at 100 %.",
+        "Number of layers below tops and above bottoms that are filled at 100 %.",
         low=0,
         high=1000,
     )
@@ -141,58 +141,58 @@ class FilledParameters(LayerParameters):
         f.ANGLE,
         "How far the direction of lines and zigzags turns from layer to layer.",
     )
-    contour: bool = f.parameter(True, f.FLAG, "Contours are laid round lines and the like.")
+    contour: bool = f.parameter(True, f.FLAG, "Contours around lines and similar patterns.")
     walls: int | str = f.parameter(
         1,
         f.COUNT,
-        "How many contours lie round lines and the like; inf: contours only.",
+        "Number of contours around lines and similar patterns; inf: contours only.",
         low=0,
         words=("inf",),
     )
     margin: float = f.parameter(
         0.0,
         f.LENGTH,
-        "How far the deposit stands out from the part, to be machined off; above it by the layers that "
-        "begin less than that above its last one.",
+        "Machining allowance on the sides of the part; on top, every layer that begins within "
+        "this height above the last one.",
         low=0.0,
     )
     order: str = f.parameter(
         "around-axis",
         f.CHOICE,
-        "The same layer of all solids on a base in turn, around the axis, the same ring of each "
-        "and the inner ones first; or solid by solid (feature).",
+        "Order of several solids on a base: the same layer of each in turn, around the axis, the "
+        "same ring of each, inner rings first; or solid by solid (feature).",
         choices=("around-axis", "feature"),
     )
     wait: float = f.parameter(
         0.0,
         f.TIME,
-        "Least time between the end of a solid's layer and the start of its next.",
+        "Least time between the end of a layer of a solid and the start of its next.",
         low=0.0,
     )
     min_layer_time: float = f.parameter(
         0.0,
         f.TIME,
-        f"{LAYER_TIME}, and islands come in the same order in every layer, so that each cools while the others "
-        "are laid.",
+        f"{LAYER_TIME}, and islands keep the same order in every layer, so that each cools while "
+        "others are printed.",
         low=0.0,
     )
     deflection: float = f.parameter(
         0.0,
         f.ANGLE,
-        "Torch turned outwards about the bead on outer contours.",
+        "Outward tilt of the torch about the bead on outer contours.",
         low=-math.pi / 3.0,
         high=math.pi / 3.0,
     )
     thin: str = f.parameter(
         "single",
         f.CHOICE,
-        "A region narrower than a bead gets a single bead, or the job is refused.",
+        "A region narrower than a bead gets a single bead, or the job is rejected.",
         choices=("single", "refuse"),
     )
     gap: float = f.parameter(
         0.2,
         f.RATIO,
-        "Widest gap that may stay open between beads, as a share of the bead spacing.",
+        "Widest gap allowed between beads, as a share of the bead spacing.",
         low=0.01,
         high=1.0,
         advanced=True,
@@ -200,8 +200,8 @@ class FilledParameters(LayerParameters):
     longest_link: float = f.parameter(
         3.0,
         f.RATIO,
-        "Longest way from one line of a zigzag to the next, as a share of the bead spacing; where it would be "
-        "longer another zigzag begins.",
+        "Longest link from one line of a zigzag to the next, as a share of the bead spacing; a "
+        "longer link starts a new zigzag.",
         low=1.0,
         high=100.0,
         advanced=True,
@@ -209,8 +209,8 @@ class FilledParameters(LayerParameters):
     shortest: float | str = f.parameter(
         "auto",
         f.LENGTH,
-        "Beads that close gaps are made no shorter than this; others that are shorter are left out. auto: "
-        "2 mm, or the bead spacing where that is less.",
+        "Minimum length of beads that close gaps; shorter beads are otherwise omitted. auto: 2 "
+        "mm, or the bead spacing if that is less.",
         low=0.0,
         words=("auto",),
         advanced=True,
@@ -219,8 +219,8 @@ class FilledParameters(LayerParameters):
     narrowest: float = f.parameter(
         0.3,
         f.RATIO,
-        "How narrow, of their usual width, beads in planes may be laid where others leave them less room; all "
-        "of it: none is, and layers get higher there.",
+        "Smallest width of beads in planes where neighbours leave less space, as a share of "
+        "their usual width; 100 %: beads are never narrowed, and layers get higher there.",
         low=0.1,
         high=1.0,
         advanced=True,
@@ -236,14 +236,14 @@ class FilledParameters(LayerParameters):
             raise InputError(
                 "BAD_VALUE",
                 "strategy.spacing_range",
-                "{} is without 100 %, the usual width; include it",
+                "{} excludes 100 %, the usual width; include it",
                 ends,
             )
         if self.fill in ("connected", "spiral") and self.fill_density < 1.0:
             raise InputError(
                 "BAD_VALUE",
                 "strategy.fill_density",
-                "{} fills the whole, not {:g} %; use 100 %, or fill: contours, lines, "
+                "{} always fills everything, not {:g} %; use 100 %, or fill: contours, lines, "
                 "zigzag, grid, triangles, honeycomb or gyroid",
                 self.fill,
                 100.0 * self.fill_density,
@@ -292,42 +292,43 @@ class SolidParameters(FilledParameters):
     layers: str = f.parameter(
         PLANES,
         f.CHOICE,
-        "What the layers are: parallel planes; at equal distances by the way through the part from "
-        "where it stands, so that nothing needs support (geodesic); at equal distances straight from there (offset); or "
-        "planes normal to a guide curve (along).",
+        "Shape of the layers: parallel planes; surfaces at equal distances from the support, "
+        "measured through the part, so that no support material is needed (geodesic); surfaces "
+        "at equal straight distances from it (offset); or planes normal to a guide curve "
+        "(along).",
         choices=(PLANES, GEODESIC, OFFSET, "along"),
     )
     direction: str = f.parameter(
         "0 0 1",
         f.TEXT,
-        "Stacking direction x y z in the part's coordinates, from the first layer to the last; auto: the "
-        "one with the least area over nothing, of these the one with the least height.",
+        "Stacking direction x y z in part coordinates, from the first layer to the last; auto: "
+        "the direction with the least overhanging area, then the least height.",
     )
     cut_at: str = f.parameter(
         "middle",
         f.CHOICE,
-        "Where in its height a layer takes its outline from the part.",
+        "Height within a layer at which the part is cut for its outline.",
         choices=("middle", "bottom", "top"),
     )
     max_overhang: float = f.parameter(
         math.radians(45.0),
         f.ANGLE,
-        "Largest angle between the stacking direction and a wall that leans out, before there "
-        "is a warning; 90 deg: none.",
+        "Largest overhang angle between the stacking direction and a wall without a warning; 90 "
+        "deg: no warning.",
         low=0.0,
         high=math.pi / 2.0,
     )
     band: float = f.parameter(
         0.2,
         f.RATIO,
-        "Share of the layer height by which layers along a guide may be higher or lower beside it.",
+        "Share of the layer height by which the local height of layers along a guide may differ.",
         low=0.0,
         high=0.9,
     )
     fuse: str = f.parameter(
         "auto",
         f.CHOICE,
-        "Solids that touch or overlap are deposited as one (auto), or each by itself (none).",
+        "Solids that touch or overlap are deposited as one (auto), or separately (none).",
         choices=("auto", "none"),
         advanced=True,
     )
@@ -357,22 +358,22 @@ class CladdingParameters(FilledParameters):
     layers: int = f.parameter(
         1,
         f.COUNT,
-        "How many layers lie on the faces, one layer height over the other along their normals.",
+        "Number of layers on the faces, one layer height apart along their normals.",
         low=1,
         high=1000,
     )
     side: str = f.parameter(
         "front",
         f.CHOICE,
-        "The side of the faces that is covered: where their normals point, outwards of a solid (front), "
-        "or the other side of faces that are of no solid (back).",
+        "Side of the faces to cover: the side of their normals, the outside of a solid (front), "
+        "or the other side of faces without a solid (back).",
         choices=("front", "back"),
     )
     distortion: float = f.parameter(
         0.1,
         f.RATIO,
-        "Largest share by which beads may lie nearer together or farther apart than the bead spacing on faces "
-        "that are bent both ways; these are covered in pieces that keep to it.",
+        "Largest variation of the bead spacing on doubly curved faces, as a share; such faces "
+        "are divided into pieces that respect it.",
         low=0.01,
         high=0.3,
         advanced=True,
@@ -388,6 +389,6 @@ class CladdingParameters(FilledParameters):
                 raise InputError(
                     "NOT_FOR_FAMILY",
                     f"strategy.{key}",
-                    "it is for solids, not for cladding; use {}",
+                    "it is for solids, not cladding; use {}",
                     instead,
                 )

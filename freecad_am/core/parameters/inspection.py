@@ -30,62 +30,62 @@ class InspectionParameters:
     unit: str = f.parameter(
         AUTO,
         f.CHOICE,
-        "Unit of the measured coordinates; auto: the one that the file names, else mm.",
+        "Unit of the measured coordinates; auto: the unit in the file, otherwise mm.",
         choices=(AUTO, *UNITS),
     )
     probe_radius: float = f.parameter(
         0.0,
         f.LENGTH,
-        "Radius of the probe's ball where its centre was measured; 0 where the points lie on the surface.",
+        "Radius of the probe ball if its centre was measured; 0 if the points are on the surface.",
         low=0.0,
         high=100.0,
     )
     fit: str = f.parameter(
         BEST,
         f.CHOICE,
-        "How the points may be moved onto the part: best fit, shifts only, a turn about and a shift along "
-        "the part's axis, or none but what pairs of points say.",
+        "Motion allowed to fit the points to the part: best fit, shifts only, a turn about and a "
+        "shift along the axis of the part, or only what pairs of points define.",
         choices=(BEST, SHIFT, AXIS, NONE),
     )
     trim: float = f.parameter(
         0.0,
         f.RATIO,
-        "Share of the points, those farthest off, that the fit leaves out.",
+        "Share of the points, the farthest, that the fit ignores.",
         low=0.0,
         high=0.49,
     )
     pairs: str = f.parameter(
         "",
         f.TEXT,
-        "Where the fit begins: three or more pairs of a measured point and the same point of the part, each "
-        "x y z > x y z in mm, with a semicolon between; empty: it is searched for.",
+        "Initial fit: three or more pairs of a measured point and the same point on the part, "
+        "each x y z > x y z in mm, separated by semicolons; empty: automatic.",
         advanced=True,
     )
     side: str = f.parameter(
         OUTER,
         f.CHOICE,
-        "Which side of a wall was measured: that of its outer normals, the inner one, or both.",
+        "Measured side of a wall: the outer side, the inner side, or both.",
         choices=(OUTER, INNER, BOTH),
     )
     thickness: float = f.parameter(
         0.0,
         f.LENGTH,
-        "Planned thickness of the wall, half of it on each side of the planned surface; 0: the planned "
-        "surface itself is the measured one.",
+        "Planned thickness of the wall, centred on the planned surface; 0: the planned surface "
+        "was measured directly.",
         low=0.0,
         high=1000.0,
     )
     heights: tuple[str, ...] = f.parameter(
         (),
         f.TEXT,
-        "Heights above the part's base, in mm, at which circularity is evaluated; none: a sixth, a half and "
-        "five sixths of what was measured.",
+        "Heights above the base of the part, in mm, at which circularity is evaluated; none: one "
+        "sixth, one half and five sixths of the measured height.",
         unit="mm",
     )
     band: float = f.parameter(
         0.5,
         f.LENGTH,
-        "Points up to this far above or below such a height count there, slid along the planned surface.",
+        "Points within this height of such a level count, moved to it along the planned surface.",
         low=0.0,
         open_low=True,
         high=100.0,
@@ -98,7 +98,7 @@ class InspectionParameters:
             raise InputError(
                 "BAD_VALUE",
                 f"{PREFIX}.thickness",
-                "both sides of a wall have a thickness between; give it",
+                "both sides of a wall need its thickness; add it",
             )
         self.levels()
         self.start_pairs()

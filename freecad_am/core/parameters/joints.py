@@ -40,7 +40,10 @@ class JointParameters:
         choices=METHODS,
     )
     rz: float | str = f.parameter(
-        "auto", f.ANGLE, "Method constant: the one RZ, or auto to search it.", words=("auto",)
+        "auto",
+        f.ANGLE,
+        "Method constant: RZ for the whole job, or auto to search for it.",
+        words=("auto",),
     )
     degree: int = f.parameter(
         1, f.COUNT, "Degree of the polynomial of a layer.", low=0, high=HIGHEST
@@ -48,8 +51,8 @@ class JointParameters:
     given: tuple[str, ...] = f.parameter(
         (),
         f.TEXT,
-        "Method layer-by-layer: polynomials that are given, not searched: layer/bead:constant:slope, or * for every other "
-        "bead, in deg and deg per turn.",
+        "Method layer-by-layer: given polynomials instead of a search: "
+        "layer/bead:constant:slope, or * for all other beads, in deg and deg per turn.",
         advanced=True,
     )
     parameter: str = f.parameter(
@@ -65,12 +68,13 @@ class JointParameters:
         "Allowed rotation about the tool axis; a full turn means free, narrower for a torch that is not coaxial.",
     )
     objective: str = f.parameter(
-        "displacement", f.CHOICE, "What a joint path is judged by.", choices=OBJECTIVES
+        "displacement", f.CHOICE, "Objective for the joint path.", choices=OBJECTIVES
     )
     min_condition: float | str = f.parameter(
         "auto",
         f.NUMBER,
-        "Smallest condition allowed; auto: at each point a quarter of its value at RZ = 0, but at least 0.02.",
+        "Smallest inverse condition number allowed; auto: at each point a quarter of its value "
+        "at RZ = 0, but at least 0.02.",
         low=0.0,
         high=1.0,
         words=("auto",),
@@ -78,7 +82,7 @@ class JointParameters:
     characteristic_length: float = f.parameter(
         1000.0,
         f.LENGTH,
-        "Divides the translation rows of the Jacobian.",
+        "Length that divides the translation rows of the Jacobian.",
         low=0.0,
         open_low=True,
         advanced=True,
@@ -86,7 +90,7 @@ class JointParameters:
     tolerance: float = f.parameter(
         1e-8,
         f.NUMBER,
-        "Change of the objective and of the coefficients at which the optimiser stops.",
+        "Change of objective and coefficients at which the optimiser stops.",
         low=0.0,
         open_low=True,
         high=1.0,
@@ -103,31 +107,31 @@ class JointParameters:
     lock: str = f.parameter(
         "none",
         f.CHOICE,
-        "Rotary table only: which of the two turning axes, counted from the torch, stands still (four axes).",
+        "Five-axis machines only: the revolute axis to lock, counted from the torch (four axes).",
         choices=("none", "first", "second"),
     )
     lock_at: float | str = f.parameter(
         "auto",
         f.ANGLE,
-        "Where the locked axis stands; auto: where the largest angle left is least.",
+        "Position of the locked axis; auto: the position with the smallest residual angle.",
         words=("auto",),
     )
     max_residual: float = f.parameter(
         math.radians(45.0),
         f.ANGLE,
-        "Four axes only: by how much the tool may miss the direction asked for.",
+        "Four axes only: largest deviation of the tool from the requested direction.",
         low=0.0,
         high=math.pi,
     )
     own_branch: str = f.parameter(
         OF_CELL,
         f.CHOICE,
-        "Shoulder, elbow and wrist of this joint path; cell: as the cell says.",
+        "Shoulder, elbow and wrist of the joint path; cell: as set in the cell.",
         choices=(OF_CELL, *BRANCHES),
         advanced=True,
     )
     compare: tuple[str, ...] = f.parameter(
-        (), f.TEXT, "Further methods planned for the comparison of the report.", advanced=True
+        (), f.TEXT, "Further methods to plan for the comparison in the report.", advanced=True
     )
     certificate: bool = f.parameter(
         False,
@@ -138,15 +142,17 @@ class JointParameters:
     close_gap: bool = f.parameter(
         False,
         f.FLAG,
-        "Where it takes less motion than a polynomial, the rotation about the tool axis is free at every point of a bead: "
-        "the best course that is found, for the objective displacement. Takes up to seconds per bead.",
+        "Let the rotation about the tool axis vary at every point of a bead if this needs less "
+        "motion than a polynomial: the best rotation found for the objective displacement. Takes "
+        "up to seconds per bead.",
         advanced=True,
     )
     external_axes: str = f.parameter(
         LEVEL,
         f.CHOICE,
-        "External axes. level: they turn no more than the angle from the vertical asks for; optimised: one "
-        "polynomial per bead of each, together with the rotation about the tool, for less motion and larger margins.",
+        "External axes. level: they turn only as far as the angle from the vertical requires; "
+        "optimised: each follows one polynomial per bead, optimised together with the tool "
+        "rotation for less motion and larger margins.",
         choices=(LEVEL, OPTIMISED),
     )
 
@@ -184,14 +190,18 @@ def given_polynomials(given: tuple[str, ...]) -> dict[tuple[int, int] | None, tu
             raise InputError(
                 "BAD_VALUE",
                 "joints.given",
-                "{!r} is not understood; give layer/bead:constant:slope with up to {} "
-                "coefficients in deg and deg per turn, such as 12/0:-35:360; * stands for every other bead",
+                "{!r} is not understood; use layer/bead:constant:slope with up to {} "
+                "coefficients in deg and deg per turn, such as 12/0:-35:360; * means every other "
+                "bead",
                 entry,
                 HIGHEST + 1,
             )
         if key in found:
             raise InputError(
-                "BAD_VALUE", "joints.given", "{} is there twice; give each bead one", place.strip()
+                "BAD_VALUE",
+                "joints.given",
+                "{} is listed twice; keep one entry per bead",
+                place.strip(),
             )
         found[key] = tuple(
             math.radians(value) / (2.0 * math.pi) ** power for power, value in enumerate(values)

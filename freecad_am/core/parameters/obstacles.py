@@ -48,7 +48,7 @@ class Obstacle:
             raise InputError(
                 "BAD_VALUE",
                 WHERE,
-                "{} is neither a file nor a box, or both; give one of them",
+                "{} must be either a file or a box; give exactly one",
                 self.name,
             )
         if self.size is not None and not all(0.0 < edge <= LARGEST for edge in self.size):
@@ -56,7 +56,7 @@ class Obstacle:
             raise InputError(
                 "BAD_VALUE",
                 WHERE,
-                "{}: {} mm is not a box; give three lengths of more than 0 mm, at most {:g} mm",
+                "{}: {} mm is not a box; give three positive lengths of at most {:g} mm",
                 self.name,
                 edges,
                 LARGEST,
@@ -89,7 +89,7 @@ def obstacles(text: str) -> tuple[Obstacle, ...]:
             raise InputError(
                 "BAD_VALUE",
                 WHERE,
-                "{} of them are called {!r}; give each its own name",
+                "{} obstacles are called {!r}; use unique names",
                 names.count(name),
                 name,
             )

@@ -26,23 +26,18 @@ class PlaceParameters:
     moves: str = f.parameter(
         AUTO,
         f.CHOICE,
-        "What is moved: the deposition point (with the tool on the robot the fixed platform), the "
-        "platform on the flange or the table, or the base of the positioner; auto: the one that places the part.",
+        "Object to move: the deposition point (with the tool on the robot the fixed platform), "
+        "the platform on the flange or the table, or the base of the positioner; auto: whichever "
+        "places the part.",
         choices=(AUTO, POINT, PLATFORM, POSITIONER),
     )
-    x: float = f.parameter(
-        200.0, f.LENGTH, "How far its x is changed to either side.", low=0.0, high=20_000.0
-    )
-    y: float = f.parameter(
-        200.0, f.LENGTH, "How far its y is changed to either side.", low=0.0, high=20_000.0
-    )
-    z: float = f.parameter(
-        200.0, f.LENGTH, "How far its z is changed to either side.", low=0.0, high=20_000.0
-    )
+    x: float = f.parameter(200.0, f.LENGTH, "Range of x to either side.", low=0.0, high=20_000.0)
+    y: float = f.parameter(200.0, f.LENGTH, "Range of y to either side.", low=0.0, high=20_000.0)
+    z: float = f.parameter(200.0, f.LENGTH, "Range of z to either side.", low=0.0, high=20_000.0)
     rx: float = f.parameter(
         0.0,
         f.ANGLE,
-        "How far its RX is changed to either side.",
+        "Range of RX to either side.",
         low=0.0,
         high=math.pi,
         advanced=True,
@@ -50,7 +45,7 @@ class PlaceParameters:
     ry: float = f.parameter(
         0.0,
         f.ANGLE,
-        "How far its RY is changed to either side.",
+        "Range of RY to either side.",
         low=0.0,
         high=math.pi,
         advanced=True,
@@ -58,18 +53,16 @@ class PlaceParameters:
     rz: float = f.parameter(
         0.0,
         f.ANGLE,
-        "How far its RZ is changed to either side.",
+        "Range of RZ to either side.",
         low=0.0,
         high=math.pi,
         advanced=True,
     )
-    step: float = f.parameter(
-        100.0, f.LENGTH, "Between two values of x, y or z.", low=0.0, open_low=True
-    )
+    step: float = f.parameter(100.0, f.LENGTH, "Step of x, y and z.", low=0.0, open_low=True)
     angle_step: float = f.parameter(
         math.radians(45.0),
         f.ANGLE,
-        "Between two values of RX, RY or RZ.",
+        "Step of RX, RY and RZ.",
         low=0.0,
         high=math.pi,
         open_low=True,
@@ -78,7 +71,7 @@ class PlaceParameters:
     points: int = f.parameter(
         300,
         f.COUNT,
-        "Points of the toolpath that each pose is judged by, about.",
+        "Approximate number of toolpath points checked per pose.",
         low=20,
         high=100_000,
         advanced=True,
@@ -86,14 +79,14 @@ class PlaceParameters:
     best: str = f.parameter(
         MARGIN,
         f.CHOICE,
-        "What makes a feasible pose the best one: the largest least margin, the shortest time, or the "
-        "largest distance of the arm from everything.",
+        "Criterion for the best feasible pose: the largest minimum margin, the shortest time, or "
+        "the largest clearance of the arm.",
         choices=(MARGIN, TIME, CLEARANCE),
     )
     proven: int = f.parameter(
         5,
         f.COUNT,
-        "So many of the best poses are planned with all points, until one is feasible.",
+        "Number of the best poses to plan with all points, until one is feasible.",
         low=1,
         high=100,
         advanced=True,
@@ -106,7 +99,7 @@ class PlaceParameters:
             raise InputError(
                 "BAD_VALUE",
                 "place.step",
-                "these are {} poses, more than {}; give a larger step or a smaller box",
+                "the search has {} poses, more than {}; use a larger step or a smaller box",
                 count,
                 MAX_POSES,
             )

@@ -37,8 +37,8 @@ IN_PROCESS = (
 class SeamParameters:
     """Where closed beads start. rad about the axis, from the X of the feature frame."""
 
-    angle: float = f.parameter(0.0, f.ANGLE, "Where closed beads start.")
-    step: float = f.parameter(0.0, f.ANGLE, "How far the start moves from layer to layer.")
+    angle: float = f.parameter(0.0, f.ANGLE, "Start of closed beads.")
+    step: float = f.parameter(0.0, f.ANGLE, "Shift of the start from layer to layer.")
 
     def __post_init__(self) -> None:
         f.check(self, "process.seam")
@@ -52,16 +52,16 @@ class WireParameters:
     feed: float | str = f.parameter(
         "auto",
         f.SPEED,
-        "Speed of the wire; auto: what makes beads of their width and the layer height at the travel "
-        "speed, or what the beads of the bead model were made with. 0: no wire.",
+        "Wire feed; auto: the feed for the bead width and layer height at the travel speed, or "
+        "that of the bead model. 0: no wire.",
         low=0.0,
         words=("auto",),
     )
     feed_mode: str = f.parameter(
         "constant",
         f.CHOICE,
-        "Speed of the wire: constant, or in proportion to the travel speed that a bead model sets, so "
-        "that beads keep their section.",
+        "Wire feed: constant, or proportional to the travel speed of a bead model, so that beads "
+        "keep their cross-section.",
         choices=("constant", "proportional"),
     )
 
@@ -79,9 +79,9 @@ class BetweenLayersParameters:
     """What happens between two layers."""
 
     lift: float = f.parameter(
-        20.0, f.LENGTH, "How far the tool is withdrawn along its axis between beads.", low=0.0
+        20.0, f.LENGTH, "Retract distance along the tool axis between beads.", low=0.0
     )
-    wait: float = f.parameter(0.0, f.TIME, "How long to wait between layers.", low=0.0)
+    wait: float = f.parameter(0.0, f.TIME, "Waiting time between layers.", low=0.0)
     input: int | None = f.parameter(
         None,
         f.COUNT,
@@ -108,20 +108,20 @@ class CoolingParameters:
     below: float | None = f.parameter(
         None,
         f.NUMBER,
-        "Temperature in degrees Celsius that a solid, or a wall, has to be below before its next layer; the "
-        "torch waits above where that begins.",
+        "Temperature in degrees Celsius below which a solid or a wall must cool before its next "
+        "layer; the torch waits above the start of that layer.",
         low=0.0,
         open_low=True,
         optional=True,
         unit="°C",
     )
     input: int = f.parameter(
-        1, f.COUNT, "Number of the analogue input that the sensor is on.", low=1, high=64
+        1, f.COUNT, "Number of the analogue input of the sensor.", low=1, high=64
     )
     gain: float = f.parameter(
         1.0,
         f.NUMBER,
-        "By how much the input's value in a program rises with a degree.",
+        "Change of the input value in a program per degree.",
         low=0.0,
         open_low=True,
         advanced=True,
@@ -140,19 +140,19 @@ class MaterialParameters:
     """What is deposited, and where its figures are from."""
 
     name: str | None = f.parameter(
-        None, f.TEXT, "Name of the material; carried to the report.", optional=True
+        None, f.TEXT, "Name of the material; copied to the report.", optional=True
     )
     source: str | None = f.parameter(
         None,
         f.TEXT,
-        "Where the figures of the material are from; carried to the report.",
+        "Source of the material data; copied to the report.",
         optional=True,
         advanced=True,
     )
     slowest: float | None = f.parameter(
         None,
         f.SPEED,
-        "Slowest travel speed at which the material is laid; slower beads are reported.",
+        "Slowest travel speed for the material; slower beads are reported.",
         low=0.0,
         open_low=True,
         optional=True,
@@ -161,7 +161,7 @@ class MaterialParameters:
     fastest: float | None = f.parameter(
         None,
         f.SPEED,
-        "Fastest travel speed at which the material is laid; faster beads are reported.",
+        "Fastest travel speed for the material; faster beads are reported.",
         low=0.0,
         open_low=True,
         optional=True,
@@ -179,22 +179,24 @@ class ProcessParameters:
     travel_speed: float = f.parameter(
         6.0,
         f.SPEED,
-        "Speed of the torch along the deposit while depositing.",
+        "Travel speed while depositing.",
         low=0.0,
         open_low=True,
     )
     rapid_speed: float = f.parameter(100.0, f.SPEED, "Speed between beads.", low=0.0, open_low=True)
-    seam: SeamParameters = f.group(SeamParameters, "Where closed beads start.")
+    seam: SeamParameters = f.group(SeamParameters, "Start of closed beads.")
     direction: str = f.parameter(
         "counter-clockwise",
         f.CHOICE,
-        "Direction of closed beads seen against the build direction; open beads run as found unless alternate.",
+        "Direction of closed beads seen against the build direction; open beads keep their "
+        "direction unless alternate.",
         choices=("counter-clockwise", "clockwise", "alternate", "as found"),
     )
     bead_width: float = f.parameter(
         8.0,
         f.LENGTH,
-        "Width of the bead; held by the bead model. Solids on hubs are filled with beads that wide.",
+        "Width of the bead; the bead model keeps it. Solids on hubs are filled with beads of "
+        "this width.",
         low=0.0,
         open_low=True,
     )
@@ -216,26 +218,32 @@ class ProcessParameters:
         unit="g/cm³",
     )
     temperature: float | None = f.parameter(
-        None, f.NUMBER, "Temperature in degrees Celsius; carried along.", optional=True, unit="°C"
+        None,
+        f.NUMBER,
+        "Temperature in degrees Celsius; copied to the report.",
+        optional=True,
+        unit="°C",
     )
-    gas: str | None = f.parameter(None, f.TEXT, "Shielding gas; carried along.", optional=True)
+    gas: str | None = f.parameter(
+        None, f.TEXT, "Shielding gas; copied to the report.", optional=True
+    )
     stand_off: float | None = f.parameter(
-        None, f.LENGTH, "Stand-off of the nozzle; carried along.", optional=True
+        None, f.LENGTH, "Nozzle stand-off; copied to the report.", optional=True
     )
     lead_on: float = f.parameter(
-        0.0, f.TIME, "Deposit switched on this long before a bead starts.", low=0.0
+        0.0, f.TIME, "Time by which the deposit is switched on before a bead starts.", low=0.0
     )
     lead_off: float = f.parameter(
-        0.0, f.TIME, "Deposit switched off this long after a bead ends.", low=0.0
+        0.0, f.TIME, "Time by which the deposit is switched off after a bead ends.", low=0.0
     )
     overlap: float = f.parameter(
-        0.0, f.LENGTH, "How far a closed bead runs on past its seam.", low=0.0
+        0.0, f.LENGTH, "Length by which a closed bead continues past its seam.", low=0.0
     )
     retreat: float = f.parameter(
         0.0,
         f.LENGTH,
-        "How far the torch goes back over an open bead from its end, still depositing, so that its crater is "
-        "filled.",
+        "Length by which the torch returns over an open bead from its end, still depositing, to "
+        "fill the crater.",
         low=0.0,
     )
     between_layers: BetweenLayersParameters = f.group(
@@ -247,8 +255,8 @@ class ProcessParameters:
     bead_model: str = f.parameter(
         "none",
         f.TEXT,
-        "Sets the travel speed so that beads keep their width in bends: none, csw (steel, Dai 2020), "
-        "li-2025 (aluminium), or the path of a calibration table.",
+        "Model that sets the travel speed so that beads keep their width in bends: none, csw "
+        "(steel, Dai 2020), li-2025 (aluminium), or the path of a calibration table.",
     )
     acceleration: float = f.parameter(
         20.0,
@@ -263,8 +271,8 @@ class ProcessParameters:
     schedule: int | None = f.parameter(
         None,
         f.COUNT,
-        "Number of the schedule by which the welder or extruder lays beads; program.schedule says how it "
-        "is sent.",
+        "Schedule number with which the welder or extruder deposits beads; program.schedule "
+        "defines how it is sent.",
         low=1,
         high=bead_classes.LARGEST_SCHEDULE,
         optional=True,
@@ -272,14 +280,14 @@ class ProcessParameters:
     classes: str = f.parameter(
         bead_classes.NONE,
         f.TEXT,
-        "What differs for classes of beads (first_layer, contour, fill, closing, link, wall), "
-        "such as: contour: travel_speed 8, schedule 3; fill: lead 5; or none.",
+        "Settings of bead classes (first_layer, contour, fill, closing, link, wall), such as: "
+        "contour: travel_speed 8, schedule 3; fill: lead 5; or none.",
     )
 
     weave: int | None = f.parameter(
         None,
         f.COUNT,
-        "Number of the controller's own weave that beads are laid with; 0 or none: straight.",
+        "Weave number of the controller for the beads; 0 or none: straight.",
         low=0,
         high=bead_classes.LARGEST_WEAVE,
         optional=True,
@@ -291,8 +299,8 @@ class ProcessParameters:
     machining_allowance: float | None = f.parameter(
         None,
         f.LENGTH,
-        "How far the deposit is to reach beyond the part everywhere, to be machined off: its shape is "
-        "predicted and compared with the part; none: it is not.",
+        "Required machining allowance around the whole part: the deposit is predicted and "
+        "compared with the part; none: no comparison.",
         low=0.0,
         optional=True,
         advanced=True,

@@ -16,7 +16,7 @@ class StartParameters:
     """Where a job resumes; both count from 0."""
 
     layer: int = f.parameter(0, f.COUNT, "First layer to deposit.", low=0)
-    bead: int = f.parameter(0, f.COUNT, "First bead of that layer.", low=0)
+    bead: int = f.parameter(0, f.COUNT, "First bead of the first layer to deposit.", low=0)
 
     def __post_init__(self) -> None:
         f.check(self, "program.start_at")
@@ -66,7 +66,7 @@ class NcParameters:
     wire_gain: float = f.parameter(
         1.0,
         f.NUMBER,
-        "Value of that output at 1 m/min of wire.",
+        "Value of the analogue output at 1 m/min of wire.",
         low=0.0,
         open_low=True,
         high=1e6,
@@ -97,7 +97,7 @@ class AxesParameters:
     first: int = f.parameter(
         1,
         f.COUNT,
-        "Which of the controller's external axes e1 is; the others follow: eax_a, E1 are 1.",
+        "External axis of the controller that carries e1; the others follow: eax_a, E1 are 1.",
         low=1,
         high=6,
         advanced=True,
@@ -114,20 +114,20 @@ class ScheduleParameters:
     by: str = f.parameter(
         "output",
         f.CHOICE,
-        "The number of a schedule is set on a group output; named by the arc instructions, which then "
-        "switch the deposit; or is that of a program that is called.",
+        "The schedule number is set on a group output; or arc instructions name it and switch "
+        "the deposit; or it selects the program to call.",
         choices=("output", "arc", "call"),
     )
     output: int = f.parameter(
         2,
         f.COUNT,
-        "Group output, H word, register or analogue output that carries it; for KUKA the first of eight "
+        "Group output, H word, register or analogue output for it; for KUKA the first of eight "
         "outputs.",
         low=1,
         high=4096,
     )
     call: str = f.parameter(
-        "SCHEDULE", f.TEXT, "Name of the programs that are called, without their number: SCHEDULE3."
+        "SCHEDULE", f.TEXT, "Name of the called programs, without their number: SCHEDULE3."
     )
 
     def __post_init__(self) -> None:
@@ -141,8 +141,8 @@ class TriggerParameters:
     lead: float | None = f.parameter(
         None,
         f.TIME,
-        "The deposit is switched on the move itself, this long before a bead's start or end is reached: the "
-        "time that its equipment takes. None: where the robot stands.",
+        "Time by which the deposit is switched ahead, during the motion, to compensate the delay "
+        "of the equipment. None: the robot stops to switch.",
         low=0.0,
         high=0.5,
         optional=True,
@@ -157,18 +157,18 @@ class TriggerParameters:
 class ProgramParameters:
     """What is written for the controller."""
 
-    post: str = f.parameter("fanuc", f.TEXT, "The controller the program is written for, or none.")
+    post: str = f.parameter("fanuc", f.TEXT, "The controller of the program, or none.")
     motion: str = f.parameter(
         "joint", f.CHOICE, "Points as joint values, or as positions of the tool.", choices=MOTIONS
     )
     max_points: int = f.parameter(
-        2000, f.COUNT, "Most points of one program file; longer ones are chained.", low=10
+        2000, f.COUNT, "Maximum points per program file; longer programs are chained.", low=10
     )
     origin: str | Pose = f.parameter(
         "auto",
         f.POSE,
-        "What the positions of Cartesian programs are relative to, in the part's coordinates: x y z mm, "
-        "RX RY RZ deg; auto: the frame that sits on the platform.",
+        "Frame of the positions of Cartesian programs, in part coordinates: x y z mm, RX RY RZ "
+        "deg; auto: the frame on the platform.",
         words=("auto",),
     )
     dry_run: bool = f.parameter(False, f.FLAG, "The same motion without deposit.")
@@ -176,7 +176,8 @@ class ProgramParameters:
     blend: int = f.parameter(
         100,
         f.COUNT,
-        "How much corners within a bead are rounded, percent: CNT of FANUC, and of the most that others may.",
+        "Corner rounding within a bead, percent: CNT of FANUC, and of the maximum of other "
+        "controllers.",
         low=0,
         high=100,
         advanced=True,

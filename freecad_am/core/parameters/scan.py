@@ -17,8 +17,8 @@ class ScanParameters:
     scan_within: float = f.parameter(
         5.0,
         f.LENGTH,
-        "How far the scan may lie from what was planned; farther, and it is taken for a scan of something "
-        "else.",
+        "Largest distance of the scan from the plan; beyond it, the scan is rejected as another "
+        "part.",
         low=0.0,
         open_low=True,
         high=1000.0,
@@ -27,8 +27,8 @@ class ScanParameters:
     scan_band: float = f.parameter(
         0.2,
         f.RATIO,
-        "How far the height of layers may differ from the layer height where they lead from what was scanned "
-        "back to the plan.",
+        "Largest deviation of the local layer height where layers blend from the scan back to "
+        "the plan, as a share of the layer height.",
         low=0.0,
         open_low=True,
         high=0.5,
@@ -37,8 +37,8 @@ class ScanParameters:
     after_layer: int | None = f.parameter(
         None,
         f.COUNT,
-        "The scan was made after this layer, counted from 0: the layers above are fitted to it; none: it is "
-        "of the bare substrate.",
+        "Layer after which the scan was made, counted from 0: the layers above are fitted to it; "
+        "none: the scan shows the bare substrate.",
         low=0,
         optional=True,
         advanced=True,

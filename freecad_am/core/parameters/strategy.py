@@ -14,8 +14,13 @@ from .chord_error import LEAST, DefaultLength
 ISO = "iso-parameter"
 SPACINGS = ("constant-distance", "smooth", ISO)
 FRONTS = "fronts"  # a method
-MEND = "Holes of meshes up to this size across are closed, with a note; larger ones are refused."
-LAYER_TIME = "Least time of a layer, from its first bead to the next layer's; the machine waits for what is missing"
+MEND = (
+    "Largest hole in a mesh that is closed automatically, with a note; larger holes are rejected."
+)
+LAYER_TIME = (
+    "Least time of a layer, from its first bead to the first of the next; the machine "
+    "waits if needed"
+)
 MOST_LAYERS = (
     20_000  # more is a mistake in the units: half a millimetre each on the widest platform, 10 m
 )
@@ -31,8 +36,9 @@ class LayerParameters:
     chord_error: float = f.parameter(
         DefaultLength(LEAST),
         f.LENGTH,
-        "Largest distance between a bead and the straight segments that stand for it. A new feature begins with 0.01 mm "
-        "up to a size of 250 mm and with more beyond, at most a hundredth of the bead width.",
+        "Largest distance between a bead and the straight segments that approximate it. A new "
+        "feature starts with 0.01 mm up to a size of 250 mm and with more for larger ones, at "
+        "most a hundredth of the bead width.",
         low=1e-5,
         high=10.0,
     )
@@ -81,30 +87,31 @@ class SurfaceParameters(LayerParameters):
     spacing: str = f.parameter(
         "constant-distance",
         f.CHOICE,
-        "Layers at the layer height from the nearest point of the one below (constant-distance), within a band of it "
-        "and without corners (smooth), or along the lines up the wall (iso-parameter).",
+        "Layers at the layer height from the nearest point below (constant-distance), within a "
+        "band around it and without corners (smooth), or along the lines up the wall "
+        "(iso-parameter).",
         choices=SPACINGS,
     )
     method: str = f.parameter(
         "auto",
         f.CHOICE,
-        "How layers are found: on a tube of one surface by its closed parameter and on all other walls as "
-        "fronts (auto), or as fronts on every wall (fronts).",
+        "Method for layers: by the closed parameter on a tube of one surface and as fronts on "
+        "all other walls (auto), or as fronts on every wall (fronts).",
         choices=("auto", FRONTS),
         advanced=True,
     )
     band: float = f.parameter(
         0.2,
         f.RATIO,
-        "Share of the layer height by which the local distance of smooth layers may differ; of iso-parameter "
-        "layers, before there is a warning.",
+        "Share of the layer height by which the local distance of smooth layers may differ; for "
+        "iso-parameter layers, the limit for a warning.",
         low=0.0,
         high=1.0,
     )
     bead_turn: float = f.parameter(
         math.radians(6.0),
         f.TURN_RATE,
-        "Turn of the bead within the wall that smooth layers stay below where the band allows.",
+        "Turn of the bead within the wall that smooth layers stay below if the band allows.",
         low=0.0,
         open_low=True,
     )
@@ -118,13 +125,13 @@ class SurfaceParameters(LayerParameters):
     end: str = f.parameter(
         "trim",
         f.CHOICE,
-        "Last layers trimmed flush with the wall's upper edge, or whole layers only.",
+        "Last layers trimmed at the upper edge of the wall, or whole layers only.",
         choices=("trim", "whole"),
     )
     compare: tuple[str, ...] = f.parameter(
         (),
         f.TEXT,
-        "Further spacings whose joint paths are planned for the comparison of the report.",
+        "Further spacings to plan for the comparison in the report.",
     )
     mend: float = f.parameter(5.0, f.LENGTH, MEND, low=0.0, high=10000.0, advanced=True)
     min_layer_time: float = f.parameter(0.0, f.TIME, f"{LAYER_TIME}.", low=0.0)
@@ -139,8 +146,8 @@ class SurfaceParameters(LayerParameters):
             raise InputError(
                 "NO_PARAMETER",
                 "strategy.method",
-                "fronts follow no lines of a surface, as iso-parameter "
-                "layers do; leave strategy.method out, or use constant-distance or smooth",
+                "fronts do not follow surface lines, as iso-parameter layers do; remove "
+                "strategy.method, or use constant-distance or smooth",
             )
 
 
@@ -151,28 +158,30 @@ class CurvesParameters(LayerParameters):
     direction: str = f.parameter(
         "0 0 1",
         f.TEXT,
-        "Direction x y z from the deposit towards the tool, in the part's coordinates, where neither the "
-        "curves nor faces say one.",
+        "Direction x y z from the deposit towards the tool, in part coordinates, used where "
+        "neither the curves nor faces define one.",
     )
     repeat: int = f.parameter(
         1,
         f.COUNT,
-        "How many times the curves are laid, one layer height over the other.",
+        "Number of layers along the curves, one layer height apart.",
         low=1,
         high=MOST_LAYERS,
     )
     roles: str = f.parameter(
         gcode_roles.PART,
         f.TEXT,
-        "Of G-code, what is deposited: part, all, or groups and types of the slicer, separated by commas, such as "
-        "part, support. Skirt, brim, raft, support, towers, ironing and purge lines are not part.",
+        "G-code: moves to deposit: part, all, or groups and types of the slicer, separated by "
+        "commas, such as part, support. Skirt, brim, raft, support, towers, ironing and purge "
+        "lines do not belong to part.",
         advanced=True,
     )
     rotary: str = f.parameter(
         gcode.NO_ROTARY,
         f.CHOICE,
-        "Of G-code, how the words A, B and C turn the tool while X, Y and Z are the tip in the part: the head by C and "
-        "then A (head-ac) or B (head-bc), or the part under it (table-ac, table-bc); none rejects them.",
+        "G-code: meaning of the words A, B and C while X, Y and Z are the tip in the part: the "
+        "head turns by C and then A (head-ac) or B (head-bc), or the part turns below it "
+        "(table-ac, table-bc); none rejects them.",
         choices=gcode.ROTARY,
         advanced=True,
     )

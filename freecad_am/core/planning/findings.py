@@ -28,8 +28,8 @@ def findings(task: Task, path: BeadPath) -> list[Issue]:
                 ERROR,
                 "UNREACHABLE",
                 Text(
-                    "{} of {} directions cannot be turned to the torch by this machine; tilt less, or "
-                    "mount the part otherwise",
+                    "{} of {} directions are out of reach of the torch on this machine; tilt "
+                    "less, or mount the part differently",
                     len(unreachable),
                     len(path.joints),
                 ),
@@ -39,7 +39,7 @@ def findings(task: Task, path: BeadPath) -> list[Issue]:
         ]
     if len(unreachable):
         count = Text(
-            "{} of {} points cannot be reached with this branch; ",
+            "{} of {} points are out of reach in this configuration; ",
             len(unreachable),
             len(path.joints),
         )
@@ -98,8 +98,9 @@ def out_of_reach(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
             ERROR,
             "UNREACHABLE",
             Text(
-                "the positioner is out of the robot's reach: the nearest point of the part is {:.0f} mm "
-                "from the shoulder, arm and tool stretch {:.0f} mm at most; put the positioner nearer (cell.external)",
+                "the positioner is out of reach of the robot: the nearest point of the part is "
+                "{:.0f} mm from the shoulder, and arm and tool reach {:.0f} mm; move the "
+                "positioner nearer (cell.external)",
                 nearest,
                 reach,
             ),
@@ -122,7 +123,7 @@ def _limit_findings(task: Task, path: BeadPath, bead_fields: dict[str, int]) -> 
             else ("deg", math.radians(1.0))
         )
         text = Text(
-            "{} would be at {:.2f} {}, its limit is {:g} {}",
+            "{} would be at {:.2f} {}, beyond its limit of {:g} {}",
             rows.labels[row],
             value / factor,
             unit,
@@ -153,7 +154,8 @@ def _condition_findings(path: BeadPath, bead_fields: dict[str, int]) -> list[Iss
             ERROR,
             "SINGULAR",
             Text(
-                "condition {:.4f} is below the {:.4f} asked for: too near a singularity",
+                "inverse condition number {:.4f} is below the required {:.4f}: too near a "
+                "singularity",
                 path.condition[point],
                 path.threshold[point],
             ),
@@ -176,7 +178,7 @@ def _range_findings(task: Task, path: BeadPath, bead_fields: dict[str, int]) -> 
             ERROR,
             "ROTATION_RANGE",
             Text(
-                "the rotation about the tool axis would be {:.2f} deg, outside the range allowed",
+                "the tool rotation would be {:.2f} deg, outside the allowed range",
                 math.degrees(path.phi[point]),
             ),
             point=point,

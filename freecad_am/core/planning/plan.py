@@ -187,8 +187,8 @@ def _in_branches(
             Issue(
                 NOTE,
                 "FOLLOWED",
-                "several solutions of this arm bear the same configuration; along each bead the one it begins "
-                "with is followed",
+                "several solutions of the arm share a configuration; each bead keeps the "
+                "solution of its first point",
             ),
         ]
     comparisons = tuple(
@@ -254,8 +254,8 @@ def _used(cell: Cell, parameters: JointParameters) -> tuple[JointParameters, lis
             NOTE,
             "NOT_USED",
             Text(
-                "{}: of no effect on a machine with two rotary axes, which leaves no rotation about the tool "
-                "to choose; leave out what is meant for robots",
+                "{}: no effect on a five-axis machine, which has no tool redundancy; remove the "
+                "settings for robots",
                 ", ".join(ignored),
             ),
         )

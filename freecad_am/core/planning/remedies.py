@@ -81,7 +81,8 @@ def remedies(
                 NOTE,
                 NO_REMEDY,
                 Text(
-                    "the search for what makes the job feasible stopped after {:.0f} s; tried in vain by then: {}",
+                    "the search for a feasible job stopped after {:.0f} s; tried without "
+                    "success: {}",
                     longest,
                     tried_text,
                 ),
@@ -100,7 +101,7 @@ def _searched(
     failed = _failed(issues)
     points, full_plans_left = POINTS, MAX_FULL_PLANS
     for change in _changes(job, path, issues):
-        progress(1.0, Text("looking for what would make it feasible: {}", change.remedy))
+        progress(1.0, Text("searching for a feasible change: {}", change.remedy))
         try:
             toolpath = change.toolpath()
             sampled = some_of(toolpath, failed)
@@ -117,8 +118,8 @@ def _searched(
                         NOTE,
                         REMEDY,
                         Text(
-                            "with {} the {} of the layers in question that were planned again are "
-                            "feasible; the whole job was not tried",
+                            "with {} the {} affected layers planned again are feasible; the "
+                            "whole job was not tested",
                             change.remedy,
                             count,
                         ),
@@ -144,7 +145,7 @@ def _searched(
             NOTE,
             NO_REMEDY,
             Text(
-                "none of these makes the job feasible, each was tried: {}",
+                "no tested change makes the job feasible: {}",
                 Text.joined("; ", attempts),
             ),
         )

@@ -40,7 +40,7 @@ def suited(job: Tried, progress: Progress, failed_layers: Collection[int] = ()) 
         points_left -= sample.point_count
         if points_left < 0 or time.monotonic() > until:
             break
-        progress(1.0, Text("looking for a cell in which it can be done: {}", change.remedy))
+        progress(1.0, Text("searching for a suitable cell: {}", change.remedy))
         try:
             if not _errors(change, sample, progress):
                 return change.settings

@@ -31,8 +31,8 @@ def nozzle(issues: Sequence[Issue], nozzle_check: Looked | None) -> Promise:
         return Promise(what, "not checked: build_direction.clearance is none", None)
     collisions = select_issues(issues, DEPOSITING)
     how = Text(
-        "the nozzle as a cone at {} points, against platform, part and what is deposited by then; beads as wide and "
-        "high as they count",
+        "nozzle cone at {} points, against platform, part and the deposit at that time, with "
+        "nominal bead width and height",
         nozzle_check.count,
     )
     location = (
@@ -55,8 +55,8 @@ def rapids(issues: Sequence[Issue], rapids_check: RapidsLooked) -> Promise:
     """Whether the nozzle keeps clear on rapids."""
     collisions = select_issues(issues, RAPIDS)
     how = Text(
-        "retracts, travels and approaches driven again, at {} places {} mm apart, against bodies, platform and beads "
-        "as wide and high as they are by then",
+        "retracts, travels and approaches simulated again, at {} places {} mm apart, against "
+        "obstacles, platform and beads with their width and height at that time",
         rapids_check.places,
         number(rapids_check.step),
     )
@@ -99,7 +99,8 @@ def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: boo
         )
         return Promise(what, how, None, float(len(rows)), "points", None, location)
     how = Text(
-        "shapes of all links, against each other too, every {} deg of the whole motion: they {} {}",
+        "shapes of all links, also against each other, every {} deg of the whole motion: they {} "
+        "{}",
         step,
         Word(contact_verb),
         Word(met),
@@ -122,9 +123,11 @@ def external_links(
     what = "Positioner and track stay clear of nozzle, torch, robot and obstacles"
     names = [item.name for item in cell.external_links]
     lacking = ", ".join(titles_without_shape(cell.external, cell.external_links))
-    missing = Text("no file says what {} is made of", lacking) if lacking else ""
+    missing = Text("no file describes the shape of {}", lacking) if lacking else ""
     if touches is None or not names:
-        return [Promise(what, Text("not checked: no file says what {} is made of", lacking), None)]
+        return [
+            Promise(what, Text("not checked: no file describes the shape of {}", lacking), None)
+        ]
     robot_axes = cell.robot.chain.axes
     about = np.isin(touches.what, [touches.names.index(name) for name in names]) | (
         touches.link >= robot_axes + LINKS_MORE

@@ -27,7 +27,7 @@ def layers(
     """Promise on the distance between layers, (n,) for each except the first; families state themselves
     which distances they allow.
     """
-    what = "Layers lie one layer height apart"
+    what = "Layers are one layer height apart"
     how = "distance in space of each point to the layer below, against what the strategy allows"
     if toolpath.filled and not spacing.is_plane(toolpath):
         known_distances = layer_heights.over_layers(toolpath)
@@ -51,18 +51,19 @@ def layers(
 
 def lies_on_part(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
     """Promise on the distance between the beads and the faces or solids of the part."""
-    what = "What is deposited lies on the part"
+    what = "The deposit is on the part"
     if toolpath.on_part is None:
         return Promise(what, "not checked: the part has no faces to measure from", None)
     count, worst, allowed = toolpath.on_part
     deviations = select_issues(issues, (on_part.CODE,))
     how = Text(
-        "distance of {:.0f} places of the beads to the shape itself, which slicing does not use",
+        "distance of {:.0f} bead points to the original shape, independent of slicing",
         count,
     )
     if toolpath.fitted is not None:
         how = Text(
-            "distance of {:.0f} places of the beads to the shape itself, less what a scan moved their layers",
+            "distance of {:.0f} bead points to the original shape, less the layer shift from a "
+            "scan",
             count,
         )
     off = worst > allowed or bool(select_issues(issues, (REMAINS,), WARNING))
@@ -94,7 +95,10 @@ def nothing_outside(balance: Balance | None, issues: Sequence[Issue]) -> Promise
     )
     how = "volume of the beads, as wide as they count, that is wider than the part is thick"
     if balance.filled:
-        how = "volume of the beads, as wide as they are laid, outside of their layers, and of layers outside of the part"
+        how = (
+            "volume of the beads, at their printed width, outside their layers, and of layers "
+            "outside the part"
+        )
     return Promise(what, how, not excess, balance.outside / MM3, "cm3")
 
 
@@ -106,9 +110,12 @@ def once(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
     overlaps = select_issues(
         [*issues, *deposit_balance.issues(balance)], (deposit_balance.TWICE,), WARNING
     )
-    how = "what of beads of one layer is wider than they are apart, against 10 % of the beads"
+    how = "bead volume beyond the bead spacing of the layer, compared with 10 % of the beads"
     if balance.filled:
-        how = "volume of the beads, as wide as they are apart, less what they cover, against 10 % of the part"
+        how = (
+            "volume of the beads, as wide as their spacing, less the covered volume, compared "
+            "with 10 % of the part"
+        )
     reference_volume = (
         (balance.part_volume or 0.0) - balance.hub if balance.filled else balance.beads or 0.0
     )
@@ -124,11 +131,14 @@ def once(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
 
 def beads_supported(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
     """Promise on unsupported beads."""
-    what = "Every bead is carried by what lies below it"
+    what = "Every bead is supported from below"
     if toolpath.unsupported is None:
         return Promise(what, "not checked: it is not known how wide the beads count", None)
     overhangs = select_issues(issues, (support.CODE,), WARNING)
-    how = "each short piece of a bead, against its build direction, over earlier deposit as wide as it is and what is there"
+    how = (
+        "each short piece of a bead, against its build direction, above earlier deposit with "
+        "its actual width and existing parts"
+    )
     is_supported = not overhangs and toolpath.unsupported <= 0.0
     return Promise(what, how, is_supported, toolpath.unsupported, "mm", 0.0, issue_place(overhangs))
 
@@ -143,13 +153,13 @@ def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...
     from ..process.shape import compare  # few jobs have one
 
     how = Text(
-        "how far a deposit of cubes of {:.3g} mm, filled bead by bead with what the wire feeds, reaches beyond {} "
-        "places of the part's faces, along their normals",
+        "distance by which the predicted deposit, in cubes of {:.3g} mm filled bead by bead from "
+        "the wire feed, extends beyond {} points on the part faces, along their normals",
         prediction.edge,
         prediction.places,
     )
     inside = Promise(
-        "The part lies inside the predicted deposit, by its machining allowance",
+        "The predicted deposit covers the part and its machining allowance",
         how,
         prediction.short <= 0.0,
         prediction.least,
@@ -214,7 +224,7 @@ def wire_feed(toolpath: Toolpath, process: ProcessParameters) -> Promise:
     off, where = max(mismatches, key=lambda mismatch: mismatch[0], default=(0.0, None))
     if schedule_classes and off <= wire.TOLERANCE:
         how: str = Text(
-            "not checked: the welder's own schedules, which are not known here, set the feed of {}",
+            "not checked: the welder schedules, unknown here, set the feed of {}",
             ", ".join(schedule_classes),
         )
         return Promise(what, how, None)

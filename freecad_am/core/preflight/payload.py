@@ -32,7 +32,7 @@ def payload_promises(
     mass, text = finished(motion, cell, toolpath, process), select_issues(issues, (CODE,))
     weakest = min(cell.carriers, key=lambda carrier: carrier.payload.kg)
     weighed = Text(
-        "deposit and what it grows on, where that is closed, at {} g/cm3 (process.density)",
+        "deposit and closed substrate, at {} g/cm3 (process.density)",
         number(process.density),
     )
     untold = [carrier.title for carrier in cell.carriers if math.isinf(carrier.payload.kg)]
@@ -40,16 +40,16 @@ def payload_promises(
         return [
             Promise(
                 WHAT,
-                Text("not checked: the file of {} gives no payload; {}", untold[0], Word(weighed)),
+                Text("not checked: the file of {} states no payload; {}", untold[0], Word(weighed)),
                 None,
                 mass,
                 "kg",
             )
         ]
-    how = Text("{}, against what {} carries", Word(weighed), weakest.title)
+    how = Text("{}, compared with the payload of {}", Word(weighed), weakest.title)
     if not math.isinf(weakest.payload.from_axis):
         how = Text(
-            "{}, against what {} carries, and its moment about the last axis, as it grows",
+            "{}, compared with the payload of {}, and its moment about the last axis, as it grows",
             Word(weighed),
             weakest.title,
         )

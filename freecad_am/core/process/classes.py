@@ -61,8 +61,8 @@ def refuse_speeds(process: ProcessParameters) -> None:
         raise InputError(
             "NOT_FOR_FAMILY",
             f"{named[0]}.travel_speed",
-            "the bead model sets the travel speed of all "
-            "beads; leave it out, or use bead_model: none",
+            "the bead model sets the travel speed of every bead; remove it, or use bead_model: "
+            "none",
         )
 
 
@@ -84,8 +84,8 @@ def set_bead_ends(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
                 raise InputError(
                     "PHASE_LENGTH",
                     f"process.classes.{bead.bead_class}",
-                    "start and end take {:.4g} mm{}, and a bead of this class in layer {} is {:.4g} mm long; make them "
-                    "shorter for the class, or lay no beads as short as that",
+                    "start and end take {:.4g} mm{}, but a bead of the class in layer {} is "
+                    "{:.4g} mm long; shorten them for the class, or avoid such short beads",
                     used,
                     Word(ramp_text),
                     number,
@@ -110,8 +110,8 @@ def _ends(process: ProcessParameters, name: str) -> tuple[float, ...]:
             raise InputError(
                 "BAD_VALUE",
                 f"{where}.ramp",
-                "a ramp of {:g} mm leads from or to the travel_speed there, and there is "
-                "none; give it, or leave the ramp out",
+                "a ramp of {:g} mm connects to a travel_speed that is not set; set travel_speed, "
+                "or remove the ramp",
                 phase.ramp,
             )
     if not process.start.there and not process.end.there:

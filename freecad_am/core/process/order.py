@@ -179,8 +179,8 @@ def enforce_layer_time(toolpath: Toolpath, min_layer_time: float, rapid_speed: f
                 NOTE,
                 "WAITS",
                 Text(
-                    "the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in all, so that no layer "
-                    "takes less than {:g} s",
+                    "the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in "
+                    "total, so that every layer takes at least {:g} s",
                     len(waits),
                     len(layers),
                     max(waits),

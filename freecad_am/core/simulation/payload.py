@@ -24,7 +24,7 @@ from .deposit import volumes
 
 CODE = "PAYLOAD"
 KG = 1e-6  # of a mm3 at 1 g/cm3
-REMEDY = "process.density sets what it weighs; the payload is in the machine's file"
+REMEDY = "process.density sets its weight; the payload is in the machine file"
 
 
 def issues(
@@ -49,8 +49,8 @@ def issues(
                     motion,
                     row,
                     Text(
-                        "the part weighs more than {:g} kg from here on, {:.4g} kg when it is finished, {:.3g} kg "
-                        "of which it grows on, and {} carries no more; {}",
+                        "from here on the part weighs more than {:g} kg, {:.4g} kg when finished "
+                        "including {:.3g} kg of substrate, above the payload of {}; {}",
                         machine.payload.kg,
                         mass[-1],
                         bodies,
@@ -92,9 +92,9 @@ def _too_far(motion: Motion, machine: Machine, mass: Array, moment: Array) -> li
             motion,
             row,
             Text(
-                "the centre of gravity of the part, {:.4g} kg by then, is {:.4g} mm from the last axis of {} "
-                "({:.4g} mm when it is finished), which carries {}; put it nearer to the middle (cell.platform may be a pose); "
-                "{}",
+                "the centre of gravity of the part, {:.4g} kg at that time, is {:.4g} mm from "
+                "the last axis of {} ({:.4g} mm when finished), whose payload is {}; move it "
+                "nearer to the axis (cell.platform may be a pose); {}",
                 mass[row],
                 out,
                 machine.title,

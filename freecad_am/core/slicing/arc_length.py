@@ -22,7 +22,7 @@ def layers(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]
         raise InputError(
             "LAYER_HEIGHT",
             "strategy.layer_height",
-            "{:g} mm is more than the wall is long ({:.4g} mm); give a smaller one",
+            "{:g} mm exceeds the length of the wall ({:.4g} mm); use a smaller layer height",
             layer_height,
             meridian.length,
         )

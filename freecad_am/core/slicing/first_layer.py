@@ -53,8 +53,8 @@ def _find_exit(
         raise InputError(
             "NO_INTERSECTION",
             label,
-            "the wall does not come out of the substrate everywhere (at v = {:.4g}, for "
-            "instance): let it reach into the substrate all around, or choose the edges it starts from",
+            "the wall does not rise out of the substrate everywhere (at v = {:.4g}, for "
+            "instance): extend it into the substrate all around, or choose start edges",
             missing,
         )
     last_exit = len(u) - 2 - np.argmax(leaves[::-1], axis=0)
@@ -103,8 +103,8 @@ def interpolate_polyline(
         raise InputError(
             "NOT_AROUND",
             label,
-            "the first layer does not run once around the wall: choose one closed loop of edges that "
-            "crosses each line up the wall once",
+            "the first layer does not run once around the wall: choose one closed loop of edges "
+            "that crosses each line up the wall once",
         )
     chord_before = points - np.roll(points, 1, axis=0)
     chord_after = np.roll(chord_before, -1, axis=0)

@@ -21,8 +21,8 @@ def layers(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]
         raise InputError(
             "LAYER_HEIGHT",
             "strategy.layer_height",
-            "{:g} mm is more than the wall is high ({:.4g} mm); give a smaller one, or layers along the wall (spacing: "
-            "arc-length)",
+            "{:g} mm exceeds the height of the wall ({:.4g} mm); use a smaller layer height, or "
+            "layers along the wall (spacing: arc-length)",
             layer_height,
             high - low,
         )

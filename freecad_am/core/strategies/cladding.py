@@ -72,8 +72,8 @@ def plan(
         raise InputError(
             "NOTHING_TO_DEPOSIT",
             clad_faces.label,
-            "no bead of {:g} mm or more finds room on its faces; use a smaller bead "
-            "spacing, or thin = single",
+            "no bead of {:g} mm or more fits on its faces; use a smaller bead spacing, or thin = "
+            "single",
             strategy.least_bead,
         )
     layers = add_waits(
@@ -113,8 +113,8 @@ def _stretched(share: float) -> tuple[Issue, ...]:
             NOTE,
             "DISTORTED",
             Text(
-                "faces that are bent both ways cannot be laid flat without distortion: beads are up to "
-                "{:.2g} % nearer together or farther apart than the bead spacing; strategy.distortion bounds that",
+                "doubly curved faces cannot be flattened without distortion: the bead spacing "
+                "varies by up to {:.2g} %; strategy.distortion limits it",
                 100.0 * share,
             ),
         ),

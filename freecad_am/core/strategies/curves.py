@@ -144,8 +144,8 @@ def _bead(
         raise InputError(
             "ALONG_DIRECTION",
             label,
-            "a bead runs along the direction in which it is laid, at {}: the nozzle would be in "
-            "its own way; give another strategy.direction, faces, or directions in the table",
+            "a bead runs parallel to its tool direction, at {}, so the nozzle would hit it; set "
+            "another strategy.direction, choose faces, or give directions in the table",
             place(points[worst]),
         )
     across = np.cross(forward, directions)

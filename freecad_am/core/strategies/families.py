@@ -68,7 +68,7 @@ FAMILIES = (
         True,
         True,
         ("local",),
-        "{} is not for solids on a hub, which grow along its normals; use local",
+        "{} does not apply to solids on a hub, which grow along its normals; use local",
     ),
     Family(
         "curves",

@@ -111,8 +111,9 @@ def refuse_floating(toolpath: Toolpath, number: int, lengths: dict[int, float]) 
     raise InputError(
         "FLOATS",
         feature.feature_label,
-        "nothing carries it: {:.4g} of {:.4g} mm of its first layer lie over nothing when "
-        "they are deposited; move it onto what is there, give its substrate, or deposit first what it stands on",
+        "the feature has no support: {:.4g} of {:.4g} mm of its first layer are unsupported when "
+        "deposited; move it onto the existing part, set its substrate, or deposit its support "
+        "first",
         open_,
         length,
     )

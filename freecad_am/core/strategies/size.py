@@ -246,8 +246,7 @@ def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = N
         raise InputError(
             "TOO_MANY",
             "strategy.layer_height",
-            "{:g} mm makes about {} layers, and more than {:,} cannot be worked with; "
-            "give at least {:g} mm",
+            "{:g} mm gives about {} layers, above the limit of {:,}; use at least {:g} mm",
             height,
             count(size.layers),
             MOST_LAYERS,
@@ -263,8 +262,7 @@ def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = N
         raise InputError(
             "TOO_MANY",
             cause.key,
-            "{:g} mm makes about {} points, and more than {:,} cannot be worked with; give at least "
-            "{:g} mm",
+            "{:g} mm gives about {} points, above the limit of {:,}; use at least {:g} mm",
             cause.value,
             count(size.points),
             MOST_POINTS,
@@ -294,8 +292,9 @@ def size_issues(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
             NOTE,
             LARGE,
             Text(
-                "about {} points in {} layers are planned, which takes about {:g} min of the processor and {:g} "
-                "GB of memory; a larger strategy.layer_height or strategy.chord_error makes them fewer",
+                "planning about {} points in {} layers takes about {:g} min of processor time "
+                "and {:g} GB of memory; raise strategy.layer_height or strategy.chord_error to "
+                "reduce them",
                 count(size.points),
                 count(size.layers),
                 at_least(seconds / 60.0),
@@ -314,8 +313,9 @@ def _shape_issues(size: Size, seconds: float) -> tuple[Issue, ...]:
                 NOTE,
                 LARGE,
                 Text(
-                    "curved layers are searched for on a grid of about {} nodes, which takes about {:g} min of "
-                    "the processor; a larger strategy.layer_height, or layers: planes, takes less",
+                    "the search for curved layers on a grid of about {} nodes takes about {:g} "
+                    "min of processor time; a larger strategy.layer_height, or layers: planes, "
+                    "takes less",
                     count(size.nodes),
                     at_least(grids / 60.0),
                 ),
@@ -327,8 +327,9 @@ def _shape_issues(size: Size, seconds: float) -> tuple[Issue, ...]:
                 NOTE,
                 LARGE,
                 Text(
-                    "facets meet at sharp angles along about {} mm of edges; finding layers around these takes "
-                    "about {:g} min of the processor; a larger strategy.layer_height, or a mesh with rounded edges, takes less",
+                    "facets meet at sharp angles along about {} mm of edges; computing layers "
+                    "around them takes about {:g} min of processor time; a larger "
+                    "strategy.layer_height, or a mesh with rounded edges, takes less",
                     count(size.folds),
                     at_least(folds / 60.0),
                 ),
@@ -349,9 +350,10 @@ def tilting_issues(points: int, times: int = 1) -> tuple[Issue, ...]:
                 NOTE,
                 LARGE,
                 Text(
-                    "with tilts that keep the nozzle clear the tool turns faster than build_direction.max_turn on "
-                    "beads of {} points; finding slower ones takes up to {}; a larger build_direction.max_turn, a slimmer "
-                    "nozzle, or clearance: none, saves it",
+                    "with tilts for clearance the tool turns faster than "
+                    "build_direction.max_turn on beads of {} points; the search for slower tilts "
+                    "takes up to {}; a larger build_direction.max_turn, a slimmer nozzle, or "
+                    "clearance: none avoids it",
                     count(points),
                     Word(minutes),
                 ),
@@ -362,9 +364,10 @@ def tilting_issues(points: int, times: int = 1) -> tuple[Issue, ...]:
             NOTE,
             LARGE,
             Text(
-                "with the tool axes asked for the nozzle touches beads of {} points; finding tilts that keep it "
-                "clear takes about {}, several times that where the tool would turn too fast; a smaller build_direction.lead "
-                "and build_direction.tilt, or clearance: none, saves it",
+                "at the requested tool axes the nozzle touches beads of {} points; the search "
+                "for clear tilts takes about {}, several times that where the tool would turn "
+                "too fast; a smaller build_direction.lead and build_direction.tilt, or "
+                "clearance: none, avoids it",
                 count(points),
                 Word(minutes),
             ),
@@ -387,8 +390,8 @@ def remedy_issues(
             NOTE,
             LARGE,
             Text(
-                "as it is this job cannot be carried out; looking for what would make it feasible takes up to "
-                "{:g} min of the processor",
+                "the job is infeasible as it is; the search for a feasible change takes up to "
+                "{:g} min of processor time",
                 at_least(seconds / 60.0),
             ),
         ),

@@ -118,12 +118,12 @@ def over_edge(
             WARNING,
             OVER_PLATFORM,
             Text(
-                "{:.4g} mm of the first layer lie over the edge of the platform, up to {:.4g} mm "
-                "beyond it; {}, or set cell.platform_diameter to what there is (0 for none)",
+                "{:.4g} mm of the first layer overhang the platform edge, by up to {:.4g} mm; "
+                "{}, or correct cell.platform_diameter (0 for none)",
                 math.fsum(first_pieces.length[out]),
                 beyond[worst],
                 Word(
-                    "put the part on its middle by cell.mount: feature, move it"
+                    "centre the part by cell.mount: feature, move it"
                     if mounted
                     else "move the part"
                 ),
@@ -176,8 +176,9 @@ def above(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> list[Issu
             WARNING,
             ABOVE_PLATFORM,
             Text(
-                "{:.4g} mm of the first layer lie up to {:.4g} mm above the platform, over nothing; "
-                "put the part on it by cell.mount: feature, move it in its file, or name what it grows on as its substrate",
+                "{:.4g} mm of the first layer are unsupported, up to {:.4g} mm above the "
+                "platform; put the part on it by cell.mount: feature, move it in its file, or "
+                "set its substrate",
                 math.fsum(first_pieces.length[up]),
                 height[highest],
             ),

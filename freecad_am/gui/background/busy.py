@@ -138,7 +138,7 @@ class _Dialog:
         self.text.setObjectName("text")
         self.bar.setObjectName("bar")
         self.button.setObjectName("cancel")
-        self.button.setToolTip(tr("Ends the computation; the document stays as it was before"))
+        self.button.setToolTip(tr("Stops the computation; the document stays unchanged"))
         self.box.setLabel(self.text)
         self.box.setBar(self.bar)
         self.box.setCancelButton(self.button)

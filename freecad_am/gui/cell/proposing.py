@@ -137,14 +137,14 @@ class ProposingPanel(PreviewPanel):
                 continue
             if self._may_put(place, *map(field.row.outer, was)):
                 self._put(
-                    place, shown, tr("Proposed for {}; enter what yours really has.").format(title)
+                    place,
+                    shown,
+                    tr("Proposed for {}; enter the values of your cell.").format(title),
                 )
             else:
                 self._note(
                     place,
-                    tr("Left as it was entered; for {} it would be {}.").format(
-                        title, _value_text(shown)
-                    ),
+                    tr("Kept as entered; for {} it would be {}.").format(title, _value_text(shown)),
                 )
         self._ask_for_job()
 
@@ -217,10 +217,10 @@ class ProposingPanel(PreviewPanel):
                 self._put(
                     place,
                     value,
-                    tr("Proposed for the job of {}; enter what yours really has.").format(label),
+                    tr("Proposed for the job of {}; enter the values of your cell.").format(label),
                 )
             else:
-                text = tr("Left as it was entered; the job of {} can be done with {}.")
+                text = tr("Kept as entered; the job of {} is feasible with {}.")
                 self._note(place, text.format(label, _value_text(value)))
 
     def _all_held(self) -> dict[str, Any]:
@@ -254,7 +254,7 @@ class ProposingPanel(PreviewPanel):
                 carry_out(worker.ended.wait, self.form.windowTitle())
             except Cancelled:
                 self.suiting.cancel()
-                self.say(tr("Cancelled: the document is as it was."))
+                self.say(tr("Cancelled: the document is unchanged."))
                 return False
             background.at_once()
         unseen = [

@@ -67,7 +67,7 @@ class PlannedChoice(Input):
         return (
             ""
             if self.widget.count()
-            else tr("There is nothing to compare with in this document; open the part first.")
+            else tr("This document has nothing to compare with; open the part first.")
         )
 
     def arguments(self) -> dict[str, str]:
@@ -75,7 +75,7 @@ class PlannedChoice(Input):
         chosen = self.document.getObject(name) if name else None
         if name and chosen is None:
             raise InputError(
-                "NO_INPUT", "Inspection", "Planned is missing; it was deleted, choose another"
+                "NO_INPUT", "Inspection", "Planned is missing, as it was deleted; choose another"
             )
         return {"planned": "None" if chosen is None else recorded.reference(chosen)}
 
@@ -104,7 +104,7 @@ class FileChoice(Input):
         self.predict.setObjectName("PredictedDeposit")
         self.predict.setAutoDefault(False)
         self.predict.setToolTip(
-            tr("Nothing was measured: the deposit that the toolpath is predicted to leave")
+            tr("No measurement: compare the deposit predicted for the toolpath")
         )
         self.predict.setWhatsThis(self.predict.toolTip())
         self.predict.clicked.connect(lambda *_: self.line.setText(PREDICTED))

@@ -114,7 +114,7 @@ class FigureTable:
             return math.nan
         where = f"{self.widget.verticalHeaderItem(row).text()}, {self.widget.horizontalHeaderItem(column).text()}"
         if not text:
-            raise InputError("BAD_VALUE", where, tr("it is empty; give a number"))
+            raise InputError("BAD_VALUE", where, tr("the field is empty; enter a number"))
         return number(text, where)
 
     def begun(self, row: int, count: int) -> bool:

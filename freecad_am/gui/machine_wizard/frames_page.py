@@ -31,8 +31,8 @@ class FramesPage(Page):
             "FramesPage",
             tr("Frames and conventions"),
             tr(
-                "The next page compares this with poses of your controller, and says what is likely to be wrong: leave what "
-                "you do not know as it is."
+                "The next page compares these values with poses of your controller and points "
+                "out likely errors: leave unknown values as they are."
             ),
         )
         self.frames = FigureTable(
@@ -41,32 +41,39 @@ class FramesPage(Page):
             _POSE,
             [
                 tr(
-                    "Base: the maker's own base frame, in which the pendant shows positions, seen from the floor plate. FANUC's "
-                    "lies at the height of axis 2. Flange: in the last link, its Z out of the plate. Rotation: about X, then Y, "
-                    "then Z."
+                    "Base: the manufacturer's base frame, in which the pendant shows positions, "
+                    "relative to the floor plate. FANUC places it at the height of axis 2. "
+                    "Flange: in the last link, with Z out of the plate. Rotation: about X, then "
+                    "Y, then Z."
                 )
             ]
             * 6,
         )
         self.column.addWidget(
             heading(
-                tr("Frames (mm, deg): the maker's base on the floor, the flange in the last link")
+                tr(
+                    "Frames (mm, deg): the manufacturer's base on the floor, the flange in the "
+                    "last link"
+                )
             )
         )
         self.column.addWidget(self.frames.widget)
         self.axes = FigureTable("axes", [tr("Sign"), tr("Shows at zero")], ["J1"])
         self.column.addWidget(
             heading(
-                tr("Axes on the pendant: -1 where it counts the other way; what it shows at zero")
+                tr(
+                    "Axes on the pendant: -1 if the axis counts the other way; the value shown at "
+                    "zero"
+                )
             )
         )
         self.column.addWidget(self.axes.widget)
         self.coupling = choice(
             "coupling",
             [
-                (tr("Axis 3 is shown against link 2, as it is"), pendant.NONE),
+                (tr("Axis 3 is shown relative to link 2, unchanged"), pendant.NONE),
                 (
-                    tr("Axis 3 is shown against the horizontal (FANUC, some of ABB)"),
+                    tr("Axis 3 is shown relative to the horizontal (FANUC, some ABB)"),
                     pendant.HORIZONTAL,
                 ),
             ],
@@ -78,8 +85,8 @@ class FramesPage(Page):
             [tr("From"), tr("To")],
             [
                 tr(
-                    "Its limits as the data sheet has them; leave them empty where there are none. Those of the page before are "
-                    "against link 2."
+                    "Limits from the data sheet; leave them empty if unknown. The limits on the "
+                    "previous page are relative to link 2."
                 )
             ]
             * 2,
@@ -125,7 +132,7 @@ class FramesPage(Page):
                 raise InputError(
                     "BAD_VALUE",
                     tr("J3 as shown"),
-                    tr("give the lower end first, or leave both empty"),
+                    tr("enter the lower end first, or leave both empty"),
                 )
             horizontal = None if np.isnan(lower) else (lower, upper)
         chain = Chain(draft.chain.origins, draft.chain.directions, flange, draft.chain.sliding)

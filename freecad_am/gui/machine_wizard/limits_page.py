@@ -23,9 +23,10 @@ class LimitsPage(Page):
             "LimitsPage",
             tr("Limits, speeds, accelerations and jerks"),
             tr(
-                "Of the serial angles: each axis against the link before it. Turning axes in deg, deg/s, deg/s² and deg/s³, "
-                "sliding ones in mm, mm/s, mm/s² and mm/s³. Leave both ends of a range empty for an axis that turns without "
-                "end, speeds, accelerations and jerks where they are not known."
+                "For serial angles: each axis relative to the previous link. Revolute axes in "
+                "deg, deg/s, deg/s² and deg/s³, prismatic ones in mm, mm/s, mm/s² and mm/s³. "
+                "Leave both ends of a range empty for a continuous axis; leave unknown speeds, "
+                "accelerations and jerks empty."
             ),
         )
         self.table = FigureTable("limits", ["J1"], _heads())
@@ -55,7 +56,7 @@ class LimitsPage(Page):
                 raise InputError(
                     "BAD_VALUE",
                     name,
-                    tr("give both ends of its range, or none for an endless axis"),
+                    tr("enter both ends of the range, or neither for a continuous axis"),
                 )
             if lower >= upper:
                 raise InputError(
@@ -66,14 +67,15 @@ class LimitsPage(Page):
                     ),
                 )
             if draft.chain.sliding[row] and np.isnan(lower):
-                raise InputError(
-                    "BAD_VALUE", name, tr("an axis that slides has two ends; enter both")
-                )
+                raise InputError("BAD_VALUE", name, tr("a prismatic axis has two ends; enter both"))
             if any(rate <= 0.0 for rate in rates):
                 raise InputError(
                     "BAD_VALUE",
                     name,
-                    tr("enter speed, acceleration and jerk of more than 0, or leave them empty"),
+                    tr(
+                        "enter positive values for speed, acceleration and jerk, or leave them "
+                        "empty"
+                    ),
                 )
         values = (
             np.where(np.isnan(values), [-np.inf, np.inf, np.inf, np.inf, np.inf], values)

@@ -29,13 +29,14 @@ class NamePage(Page):
             "NamePage",
             tr("Name and posts"),
             tr(
-                "The machine is kept in the folder of your own machines; cells and jobs know it by its name."
+                "The machine is saved in the folder of your own machines; cells and jobs refer "
+                "to it by this name."
             ),
         )
         form = QtGui.QFormLayout()
-        self.title_of = self._line(form, "machineTitle", tr("Maker and model"))
+        self.title_of = self._line(form, "machineTitle", tr("Manufacturer and model"))
         self.name = self._line(form, "machineName", tr("Name in jobs"))
-        self.source = self._line(form, "poseSource", tr("Where the check poses are from"))
+        self.source = self._line(form, "poseSource", tr("Source of the check poses"))
         self.source.setPlaceholderText(
             tr("such as: pendant of R-30iB, 21 November; or a simulator with its version")
         )
@@ -87,13 +88,13 @@ class NamePage(Page):
         arm = machine_draft.closed_form(self.owner.draft)
         if arm is None:
             self.summary.setText(
-                tr("What stands beside a robot: a cell names it as external axis.")
+                tr("Equipment next to a robot: a cell uses it as external axes.")
                 if is_mechanism(self.owner.draft.chain)
-                else tr("Three axes that slide and two that turn.")
+                else tr("Three prismatic and two revolute axes.")
             )
             return
         if not isinstance(arm, OpwArm):
-            self.summary.setText(tr("Six axes that turn, without a spherical wrist."))
+            self.summary.setText(tr("Six revolute axes, without a spherical wrist."))
             return
         lengths = "   ".join(
             f"{name} {getattr(arm, name):.6g}" for name in ("a1", "a2", "b", "c1", "c2", "c3", "c4")
@@ -107,7 +108,7 @@ class NamePage(Page):
         if not title:
             raise InputError(
                 "BAD_NAME",
-                tr("Maker and model"),
+                tr("Manufacturer and model"),
                 tr("the field is empty; give manufacturer and model"),
             )
         sources = tuple(dict.fromkeys((*self.owner.geometry_sources, f"check poses: {source}")))
@@ -130,8 +131,8 @@ class NamePage(Page):
         if not source:
             raise InputError(
                 "NO_INPUT",
-                tr("Where the check poses are from"),
-                tr("it is empty; a machine file is worth no more than its check poses"),
+                tr("Source of the check poses"),
+                tr("the field is empty; a machine file is only as reliable as its check poses"),
             )
         self.owner.saved = user_machines.save(draft.id, text)
         self.owner.draft = draft

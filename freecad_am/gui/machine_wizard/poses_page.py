@@ -35,9 +35,10 @@ class PosesPage(Page):
             "PosesPage",
             tr("Check poses"),
             tr(
-                "Jog the machine to at least three poses in which every axis has moved, and type what the pendant shows: the "
-                "joints, and the place of the tool frame in the base frame. The maker's simulator does as well; figures that "
-                "were computed from this geometry prove nothing. A table can be pasted."
+                "Jog the machine to at least three poses in which every axis has moved, and "
+                "enter the values on the pendant: the joints, and the pose of the tool frame in "
+                "the base frame. The manufacturer's simulator works as well; values computed "
+                "from this geometry prove nothing. You can paste a table."
             ),
         )
         self.convention = choice(
@@ -61,7 +62,7 @@ class PosesPage(Page):
         self.column.addLayout(buttons)
         self.column.addWidget(
             heading(
-                tr("The pendant's tool frame on the flange (mm, deg); zeros for the flange itself")
+                tr("Tool frame of the pendant on the flange (mm, deg); zeros for the flange itself")
             )
         )
         self.tool = FigureTable("tool", [tr("Tool")], ["X", "Y", "Z", "roll", "pitch", "yaw"])
@@ -135,7 +136,7 @@ class PosesPage(Page):
         super().initializePage()
         zeros = ", ".join(shown(value) for value in self.owner.draft.shown.zeros)
         self.zero.setText(
-            tr("One pose is that of the serial zeros, where the controller shows {}.").format(zeros)
+            tr("One pose must be at the serial zeros, where the controller shows {}.").format(zeros)
         )
         self.judge()
 
@@ -163,7 +164,7 @@ class PosesPage(Page):
                 raise InputError(
                     "BAD_VALUE",
                     tr("Pose {}").format(row + 1),
-                    tr("a quaternion is not all zeros; enter the one that the controller shows"),
+                    tr("a quaternion cannot be all zeros; enter the one shown on the controller"),
                 )
             values.append(line[: self.axes])
             figures.append(line[self.axes :])
@@ -186,8 +187,8 @@ class PosesPage(Page):
                 "NO_POSES",
                 tr("Check poses"),
                 tr(
-                    "there are {}; at least {} are needed, for a machine without "
-                    "them is not loaded; enter more"
+                    "only {} are entered, but at least {} are needed, as a machine without them "
+                    "is not loaded; enter more"
                 ).format(len(rows), LEAST),
             )
         if not np.isclose(values, draft.shown.zeros, atol=1e-9).all(axis=1).any():
@@ -207,7 +208,7 @@ class PosesPage(Page):
             raise InputError(
                 "MISSED",
                 tr("Check poses"),
-                tr("the machine does not give them; see the deviations"),
+                tr("the machine does not reproduce them; see the deviations"),
             )
         self.owner.draft = replace(draft, values=values, poses=poses)
 
@@ -235,11 +236,11 @@ class PosesPage(Page):
             self._tell("", None)
         elif pendant.fits(found):
             worst = max(found, key=lambda one: one.position)
-            text = tr("The machine gives all {} poses, within {} mm.").format(
+            text = tr("The machine reproduces all {} poses, within {} mm.").format(
                 len(rows), f"{worst.position:.3g}"
             )
             if draft.shown.coupling == pendant.HORIZONTAL and draft.horizontal is None:
-                text += " " + tr("The limits of J3 as it is shown can be given on the page before.")
+                text += " " + tr("The limits of J3 as shown can be entered on the previous page.")
             self._tell(text, GOOD)
         else:
             self.suspects = pendant.suspects(draft.chain, draft.shown, values, poses)
@@ -249,13 +250,15 @@ class PosesPage(Page):
     def _reason(self, count: int) -> str:
         if count < LEAST:
             return tr(
-                "The machine does not give these poses; three or more would show what is wrong."
+                "The machine does not reproduce these poses; enter at least three to locate the "
+                "error."
             )
         if self.suspects:
-            return tr("The machine does not give these poses. It would if:")
+            return tr("The machine does not reproduce these poses. It would if:")
         return tr(
-            "The machine does not give these poses, and no sign, zero, coupling or frame alone explains it. Look for "
-            "a slip of typing, the way angles are written, the tool frame, and lengths."
+            "The machine does not reproduce these poses, and no single sign, zero, coupling or "
+            "frame explains it. Check for typing errors, the angle convention, the tool frame, "
+            "and lengths."
         )
 
     def _show_deviation(self, row: int, deviation: Deviation) -> None:
@@ -283,7 +286,7 @@ class PosesPage(Page):
         for number, suspect in enumerate(self.suspects):
             button = QtGui.QPushButton(self._words(suspect))
             button.setObjectName(f"suspect{number}")
-            button.setToolTip(tr("Changes the conventions so; poses stay as they were typed"))
+            button.setToolTip(tr("Changes the conventions accordingly; the entered poses stay"))
             button.setAutoDefault(False)
             button.clicked.connect(lambda *_, wanted=suspect: self.adopt(wanted))
             self.offers.addWidget(button)
@@ -297,7 +300,7 @@ class PosesPage(Page):
             )
             what = tr("the flange") if suspect.kind == pendant.FLANGE else tr("the base frame")
             words.append(
-                tr("{} is moved by {} mm and turned by {} deg").format(
+                tr("{} is offset by {} mm and rotated by {} deg").format(
                     what, f"{x:g}, {y:g}, {z:g}", f"{turn:.4g}"
                 )
             )
@@ -312,14 +315,14 @@ class PosesPage(Page):
             return tr("{} counts the other way (sign)").format(axes)
         if suspect.kind == pendant.COUPLED:
             return tr("axis 3 is shown {}").format(
-                tr("against the horizontal")
+                tr("relative to the horizontal")
                 if now.coupling == pendant.HORIZONTAL
-                else tr("against link 2")
+                else tr("relative to link 2")
             )
         if suspect.kind == pendant.ZERO and now.coupling == self.owner.draft.shown.coupling:
             axis = suspect.axes[0]
             return tr("{} shows {} at zero").format(names[0], shown(now.zeros[axis]))
-        return tr("signs and zeros of {} are others").format(axes)
+        return tr("signs and zeros of {} differ").format(axes)
 
     def adopt(self, suspect: Suspect) -> None:
         """Put right what may be wrong, in the draft and on the page of conventions."""

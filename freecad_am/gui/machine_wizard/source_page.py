@@ -39,11 +39,12 @@ class SourcePage(Page):
         super().__init__(
             wizard,
             "SourcePage",
-            tr("Where the geometry comes from"),
+            tr("Source of the geometry"),
             tr(
-                "Lengths are in mm, angles in degrees. Robots need six axes that turn, machine tools three axes that slide "
-                "and two that turn; whether yours is one is checked when you go on. Tracks, turntables and positioners, "
-                "which stand beside a robot, have one axis or two."
+                "Lengths are in mm, angles in degrees. Robots need six revolute axes, machine "
+                "tools three prismatic and two revolute axes; the wizard checks this when you "
+                "continue. Tracks, turntables and positioners next to a robot have one axis or "
+                "two."
             ),
         )
         self.kind = choice(
@@ -51,7 +52,7 @@ class SourcePage(Page):
             [
                 (tr("A URDF file"), "urdf"),
                 (tr("A table of Denavit and Hartenberg"), "table"),
-                (tr("Figures of an arm with a spherical wrist (OPW)"), "opw"),
+                (tr("Dimensions of an arm with a spherical wrist (OPW)"), "opw"),
                 (tr("A copy of another machine"), "copy"),
             ],
         )
@@ -90,20 +91,16 @@ class SourcePage(Page):
         rows.addRow(tr("File"), line)
         self.mechanism, self.mechanism_row = (
             choice("mechanism", []),
-            QtGui.QLabel(tr("Of the cell")),
+            QtGui.QLabel(tr("Part of the cell")),
         )
-        self.mechanism.setToolTip(
-            tr("What the file has beside one another; each gets a machine file of its own")
-        )
+        self.mechanism.setToolTip(tr("Mechanisms in the file; each gets its own machine file"))
         rows.addRow(self.mechanism_row, self.mechanism)
         self.mechanism.currentIndexChanged.connect(self._choose_mechanism)
         self.mechanisms: list[tuple[str, Any, str]] = []
         self.base, self.tip = choice("baseLink", []), choice("tipLink", [])
-        self.base.setToolTip(tr("The link that stands still"))
+        self.base.setToolTip(tr("The fixed link"))
         self.tip.setToolTip(
-            tr(
-                "The link whose frame is the flange, with its Z out of it: tool0 in files of ROS-Industrial"
-            )
+            tr("The flange link, with Z out of the flange: tool0 in ROS-Industrial files")
         )
         rows.addRow(tr("From link"), self.base)
         rows.addRow(tr("To link"), self.tip)
@@ -129,13 +126,13 @@ class SourcePage(Page):
             [f"J{number}" for number in range(1, MOST_AXES + 1)],
             ["theta", "d", "a", "alpha", tr("sign"), tr("slides")],
             [
-                tr("Angle that is added to the joint's, deg"),
+                tr("Angle added to the joint angle, deg"),
                 tr("Offset along z, mm"),
                 tr("Length along x, mm"),
                 tr("Twist about x, deg"),
-                tr("1, or -1 where the joint moves the other way"),
+                tr("1, or -1 if the joint moves the other way"),
                 tr(
-                    "0, or 1 where the joint slides along z: a machine with rotary axes has three of them"
+                    "0, or 1 if the joint slides along z: a five-axis machine has three such joints"
                 ),
             ],
         )
@@ -146,8 +143,8 @@ class SourcePage(Page):
             ["X", "Y", "Z", "roll", "pitch", "yaw"],
             [
                 tr(
-                    "The frame of the first row in that of the base, and the flange in that of the last row. mm and deg; about X "
-                    "first, then Y, then Z of the outer frame."
+                    "Frame of the first row in the base, and flange in the frame of the last "
+                    "row. mm and deg; about X first, then Y, then Z of the outer frame."
                 )
             ]
             * 6,
@@ -157,7 +154,7 @@ class SourcePage(Page):
         column.addWidget(self.rows.widget)
         column.addWidget(
             QtGui.QLabel(
-                tr("Poses before the first row and after the last, where the table has some")
+                tr("Poses before the first row and after the last row, if the table has them")
             )
         )
         column.addWidget(self.ends.widget)
@@ -325,7 +322,8 @@ class SourcePage(Page):
         if not self._stands():
             return draft
         stands = tr(
-            "Beside the robot of this file, in its base frame, as a cell names it: NAME {}"
+            "External axes of the robot in this file, in its base frame, as named in a cell: "
+            "NAME {}"
         ).format(self._stands())
         return replace(draft, notes=(*draft.notes, stands))
 

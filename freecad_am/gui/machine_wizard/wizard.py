@@ -74,7 +74,7 @@ class MachineWizard(QtGui.QWizard):
         asked = box.question(
             self,
             tr("New machine"),
-            tr("Close without a machine file? What you entered on the pages is lost."),
+            tr("Close without saving a machine file? All entries are lost."),
             box.Discard | box.Cancel,
             box.Cancel,
         )
@@ -88,7 +88,7 @@ class MachineWizard(QtGui.QWizard):
     def _closed(self, *_: Any) -> None:
         if self.saved:
             App.Console.PrintMessage(
-                tr("Machine {} is written: {}").format(self.draft.id, self.saved) + "\n"
+                tr("Machine {} was saved: {}").format(self.draft.id, self.saved) + "\n"
             )
         if self in _open:
             _open.remove(self)

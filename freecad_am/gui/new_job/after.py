@@ -36,12 +36,13 @@ def tell_next(stages: list[Any], proposed: str = "") -> None:
         )
     elif stages[-1].Proxy.kind == "program":
         text = tr(
-            "The job is ready. Simulate… plays it; double-click Program to read it, Cell to set your machine up."
+            "The job is ready. Simulate… plays it; double-click Program to read it, Cell to "
+            "configure your machine."
         )
     else:
         text = tr(
-            "The joint path is ready; no post writes a program for this machine and set-up yet. Simulate… plays it, Export "
-            "Path… writes its points as a table."
+            "The joint path is ready, but no post writes a program for this machine and setup "
+            "yet. Simulate… plays it, Export Path… writes its points as a table."
         )
     warned = [
         obj.Label for obj in stages if any(issue.level == WARNING for issue in issues_of(obj))
@@ -59,7 +60,7 @@ def tell_next(stages: list[Any], proposed: str = "") -> None:
     if proposed == GEODESIC and any(
         obj.Proxy.kind == "feature" and obj.Layers != GEODESIC for obj in stages
     ):
-        text = tr("In plane layers, for curved ones could not be carried out. {}").format(text)
+        text = tr("In planar layers, as curved ones were infeasible. {}").format(text)
     Gui.getMainWindow().statusBar().showMessage(text, SHOWN_MS)
     App.Console.PrintMessage(text + "\n")
     _show_whole()
@@ -80,7 +81,7 @@ def show_machine(stages: list[Any], asked: bool) -> None:
     cell.ViewObject.ShowMachine = True
     if externals(cell.External):
         App.Console.PrintWarning(
-            tr("{}: proposed for this job: {}; enter what yours really has.").format(
+            tr("{}: proposed for this job: {}; enter the values of your cell.").format(
                 cell.Label, cell.External
             )
             + "\n"

@@ -50,7 +50,7 @@ def machines(chosen: str, doc: Any) -> Any:
     machine = QtGui.QComboBox()
     machine.setObjectName("Machine")
     machine.setToolTip(
-        tr("The machine that deposits, or a saved cell; the program is written for its controller")
+        tr("The machine that deposits, or a saved cell; the program matches its controller")
     )
     machine.setEditable(True)
     cells = [(path, tr("saved cell: {}").format(name)) for path, name in saved_cells.known(doc)]
@@ -97,8 +97,8 @@ class HowItStands:
         self.setup.setObjectName("Setup")
         self.setup.setToolTip(
             tr(
-                "What the robot carries. Where the job cannot be done in the cell that suits the robot, "
-                "another place, another branch or a positioner is proposed, and the robot shown there."
+                "What the robot carries. If the job is infeasible in the proposed cell, another "
+                "position, another branch or a positioner is proposed and shown."
             )
         )
         for one in OF_ROBOTS:
@@ -169,7 +169,7 @@ class Sizes:
         self.platform = FittedLength(
             _row(CellParameters, "platform_diameter"),
             tr("auto"),
-            tr("Left empty, it is as large as the first layer needs it."),
+            tr("If empty, it is sized for the first layer."),
         )
         self.of_job = {
             "strategy.layer_height": self.layer,

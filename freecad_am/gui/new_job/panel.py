@@ -79,9 +79,9 @@ class JobPanel:
         )
         set_role(self.error, WRONG)
         self.kind = self._kinds()
-        self.part = shown("Source", tr("What is deposited: click it in the tree or the 3D view"))
+        self.part = shown("Source", tr("Object to deposit: click it in the tree or the 3D view"))
         self.ground = shown(
-            "Ground", tr("What it grows on: click it with Ctrl in the tree or the 3D view")
+            "Ground", tr("Substrate: click it with Ctrl in the tree or the 3D view")
         )
         self.machine = machines(before.machine(self.document), self.document)
         self.stands = HowItStands()
@@ -114,8 +114,8 @@ class JobPanel:
         connect(self.name.widget, "textChanged(QString)", self._entered_anew)
         hint = QtGui.QLabel(
             tr(
-                "Cell, feature, toolpath, joint path and program are made with their defaults; "
-                "double-click one in the tree to change it."
+                "Cell, feature, toolpath, joint path and program are created with their "
+                "defaults; double-click one in the tree to change it."
             )
         )
         hint.setWordWrap(True)
@@ -137,7 +137,7 @@ class JobPanel:
     def _kinds(self) -> Any:
         kind = QtGui.QComboBox()
         kind.setObjectName("Kind")
-        kind.setToolTip(tr("How the part is cut into layers; proposed from the selection"))
+        kind.setToolTip(tr("Method of cutting the part into layers; proposed from the selection"))
         kind.setSizeAdjustPolicy(
             QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon
         )  # a narrow panel stays whole
@@ -200,7 +200,7 @@ class JobPanel:
             self.found = JobProposal(self.asked, "", missing=translated_error(error))
             self._show()
             return
-        self.found = JobProposal("", tr("Looking at the shape."), (picking.whole(self.picks[0]),))
+        self.found = JobProposal("", tr("Analysing the shape."), (picking.whole(self.picks[0]),))
         self._show()
         self.background.start(work, self._look)
 
@@ -253,7 +253,8 @@ class JobPanel:
             found.missing
             if self.picks
             else tr(
-                "Click what is to be deposited, in the tree or the 3D view; then with Ctrl what it grows on, if there is such."
+                "Click the object to deposit, in the tree or the 3D view; then, with Ctrl, its "
+                "substrate, if any."
             )
         )
         reason = found.reason
@@ -315,7 +316,7 @@ class JobPanel:
             else:
                 self.say(translated_error(error))
         except Cancelled:
-            self.say(tr("Cancelled: the document is as it was."))
+            self.say(tr("Cancelled: the document is unchanged."))
         except ReferenceError:
             self.say(tr(CLOSED))
         else:

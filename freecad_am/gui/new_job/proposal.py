@@ -112,8 +112,8 @@ def taken_whole(found: JobProposal, picks: Sequence[Pick]) -> str:
     for part in found.parts:
         if found.kind != DEVELOPABLE and not part.names and part.obj.Name in clicked:
             return tr(
-                "The whole of {} is taken. To take single faces, click several with Ctrl; for a single one, use "
-                "the panel of Feature or Wall on Part."
+                "The whole of {} is used. To use single faces, click several with Ctrl; for a "
+                "single one, use the panel of Feature or Wall on Part."
             ).format(part.obj.Label)
     return ""
 
@@ -151,11 +151,11 @@ def _of_several(known: Sequence[tuple[Pick, Taken]], width: float) -> JobProposa
             )
     if len(known) > 2:
         if all(part.shape is None or part.shape.Solids for _, part in known):
-            reason = tr("{} solids are selected, which are filled").format(len(known))
+            reason = tr("{} solids are selected, to be filled").format(len(known))
             return JobProposal(
                 SOLID, reason, tuple(Pick(pick.obj) for pick in picks), layers=PLANES
             )
-        return as_kind(SURFACE, picks, tr("some of what is selected is not a solid"))
+        return as_kind(SURFACE, picks, tr("the selection includes an object that is not a solid"))
     wall, ground, _ = picking.proposal(picks)
     if wall is None or ground is None:  # both are meshes
         wall, ground = picks
@@ -180,7 +180,7 @@ def _ground_missing(wall: Pick, ground: Pick | None) -> str:
     """What a wall lacks; a mesh may stand on the platform."""
     if ground is not None or picking.is_mesh(wall.obj):
         return ""
-    return tr("Select also, with Ctrl, the part that it grows on.")
+    return tr("Select also, with Ctrl, the part it grows on.")
 
 
 def _meant(pick: Pick, part: Taken) -> Pick:

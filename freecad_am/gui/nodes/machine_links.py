@@ -134,7 +134,7 @@ def _drawn_mesh(shape: LinkShape) -> Mesh | None:
         return mesh_of(shape)
     except InputError as error:
         reported = InputError(
-            error.code, shape.where, "{}; the link has its plain solid for now", error.message
+            error.code, shape.where, "{}; the link is shown as a plain solid for now", error.message
         )
         App.Console.PrintError(error_line(reported))
         return None

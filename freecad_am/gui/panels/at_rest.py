@@ -12,7 +12,7 @@ from ..texts.translation import tr
 def stands(rest: Rest) -> str:
     """What is told of a machine at rest: its title, and what is nearest to its limit."""
     if not rest.machine.free:
-        return tr("{} at rest, its turning axes at 0").format(rest.machine.title)
+        return tr("{} at rest, revolute axes at 0").format(rest.machine.title)
     if not rest.reached:
         text = tr("{} does not reach the part with the nozzle upright: all its axes are drawn at 0")
         return text.format(rest.machine.title)

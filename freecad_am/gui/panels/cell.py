@@ -55,7 +55,8 @@ class CellPanel(ProposingPanel):
         self.machine_box = QtGui.QCheckBox(tr("Show the machine"))
         self.machine_box.setObjectName("PreviewMachine")
         help = tr(
-            "Shows the machine at rest while the panel is open, the nozzle upright on the highest point of the path"
+            "Shows the machine at rest while the panel is open, with the nozzle upright on the "
+            "highest point of the path"
         )
         self.machine_box.setToolTip(help)
         self.machine_box.setWhatsThis(help)

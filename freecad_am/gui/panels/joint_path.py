@@ -166,12 +166,12 @@ def _found(trial: Trial) -> list[str]:
     errors = [issue for issue in trial.planned.issues if issue.level == ERROR]
     if not errors:
         return [
-            tr("All deposit points can be carried out.")
+            tr("All deposit points are feasible.")
             if trial.sample.is_complete
-            else tr("Nothing stands against it so far.")
+            else tr("No problem found so far.")
         ]
     lines = [
-        tr("Cannot be carried out:"),
+        tr("Infeasible:"),
         *(_issue_text(issue, trial.sample.is_complete) for issue in errors[:MOST_SHOWN]),
     ]
     if len(errors) > MOST_SHOWN:
@@ -192,10 +192,10 @@ def _issue_text(issue: Issue, whole: bool) -> str:
 def _figures(judgement: Judgement) -> list[str]:
     """What is least and most; machines with rotary axes have no condition, and what is out of reach nothing."""
     found = (
-        (tr("Least joint margin: {:.1f} %, of {} in layer {}"), judgement.worst_margin, 100.0),
+        (tr("Smallest joint margin: {:.1f} %, of {} in layer {}"), judgement.worst_margin, 100.0),
         (tr("Least condition: {0:.3f}, in layer {2}"), judgement.worst_condition, 1.0),
         (
-            tr("Largest joint speed: {:.0f} % of what {} can do, in layer {}"),
+            tr("Largest joint speed: {:.0f} % of the maximum of {}, in layer {}"),
             judgement.worst_ratio,
             100.0,
         ),
@@ -210,16 +210,17 @@ def _figures(judgement: Judgement) -> list[str]:
 def _looked_at(sample: Sampled) -> str:
     """Of what this is the preview, and what is left to OK."""
     if sample.is_complete:
-        return tr("Preview of all points; OK looks at the rapid moves too.")
+        return tr("Preview of all points; OK also checks the rapids.")
     if sample.beads == 1:
         return tr(
-            "Preview of one point in {}; OK looks at those between and at the rapid moves too."
+            "Preview of one point in {}; OK checks the points between and the rapids too."
         ).format(sample.points)
     if sample.points == 1:
         return tr(
-            "Preview of one bead in {}; OK looks at those between and at the rapid moves too."
+            "Preview of one bead in {}; OK checks the beads between and the rapids too."
         ).format(sample.beads)
     text = tr(
-        "Preview of one point in {} of one bead in {}; OK looks at those between and at the rapid moves too."
+        "Preview of one point in {} of one bead in {}; OK checks the points and beads between "
+        "and the rapids too."
     )
     return text.format(sample.points, sample.beads)

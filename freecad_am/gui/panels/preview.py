@@ -148,7 +148,7 @@ class PreviewPanel(StagePanel):
     def _say_waiting(self, worker: Worker | None) -> None:
         if worker is not None and self.background.worker is worker:
             with contextlib.suppress(RuntimeError):
-                self._say(tr("The preview is being computed."), False)
+                self._say(tr("Computing the preview."), False)
 
     def _show_result(self, worker: Worker) -> None:
         """Show what was computed, or what is wrong."""
@@ -166,7 +166,7 @@ class PreviewPanel(StagePanel):
     def _refuse(self, error: AmError) -> None:
         place, text = self._placed(error)
         if place:
-            self._say(tr("No preview: see the field marked."), False)
+            self._say(tr("No preview: see the marked field."), False)
             self._unfolded(place)
             self.tell(place, text)
             self.blamed.add(place)
@@ -242,7 +242,10 @@ class PreviewPanel(StagePanel):
 
 def stale_lines(labels: Sequence[str]) -> list[str]:
     """What to say of inputs that were out of date when the preview was begun."""
-    return [tr("{} is out of date; this is of what it was.").format(label) for label in labels]
+    return [
+        tr("{} is out of date; the preview shows its earlier state.").format(label)
+        for label in labels
+    ]
 
 
 def coarsened(values: dict[str, Any]) -> dict[str, Any]:

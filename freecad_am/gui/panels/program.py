@@ -196,9 +196,7 @@ def _begun(job: Job, stale: tuple[str, ...], promised: preflight.Work) -> Beginn
 def _lines(beginning: Beginning) -> list[str]:
     sums = beginning.sums
     deposits = (
-        tr("dry run, nothing is deposited")
-        if beginning.dry
-        else tr("mass: {:.1f} g").format(sums.mass)
+        tr("dry run without deposit") if beginning.dry else tr("mass: {:.1f} g").format(sums.mass)
     )
     return [
         tr("Begins with {}. Lines: {}, files: {}").format(

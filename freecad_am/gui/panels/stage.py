@@ -37,7 +37,9 @@ from .noted import Noted, lines_of
 
 ADVANCED = marked("{}: advanced")
 BUTTON_PADDING = 26  # pixels beside its text
-CLOSED = marked("The document or object of this panel is gone; cancel and open the panel again.")
+CLOSED = marked(
+    "The document or object in this panel was deleted; cancel and open the panel again."
+)
 
 
 class StagePanel(Noted):
@@ -256,7 +258,7 @@ class StagePanel(Noted):
         except AmError as error:
             self.tell_error(error)
         except Cancelled:
-            self.say(tr("Cancelled: the document is as it was."))
+            self.say(tr("Cancelled: the document is unchanged."))
         except ReferenceError:
             self.say(tr(CLOSED))
         else:

@@ -51,9 +51,7 @@ class ToolpathPanel(StagePanel):
         field, _, fold = self.places[MODEL]
         self.choose = QtGui.QPushButton(tr("Choose a table…"))
         self.choose.setObjectName("ChooseBeadTable")
-        self.choose.setToolTip(
-            tr("Takes the beads that were measured from a file of comma separated values")
-        )
+        self.choose.setToolTip(tr("Reads measured beads from a file of comma separated values"))
         self.choose.setAutoDefault(False)
         self.choose.clicked.connect(self._choose)
         for more in (self.fit, self.plot, self.choose):

@@ -142,7 +142,7 @@ class PathDock(Follower):
         offer(form.choice, [path.Label for path in paths], paths.index(obj) if obj in paths else -1)
         if not there:
             form.facts.tell(
-                tr("There is no path to look at yet: make a toolpath or a joint path.")
+                tr("There is no path to show yet: make a toolpath or a joint path.")
                 if obj is None
                 else tr("{} is hidden, or has no result.").format(obj.Label)
             )

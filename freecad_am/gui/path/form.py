@@ -25,8 +25,8 @@ class PathForm(QtGui.QWidget):
         column, self.controls = QtGui.QVBoxLayout(self), QtGui.QWidget()
         column.setContentsMargins(9, 4, 9, 4)
         column.setSpacing(3)
-        self.choice = _combo("path", tr("The toolpath or joint path to look at"))
-        self.colouring = _combo("colouring", tr("What the colours of the beads show"))
+        self.choice = _combo("path", tr("The toolpath or joint path to show"))
+        self.colouring = _combo("colouring", tr("Quantity shown by the colours of the beads"))
         self.look = _combo(
             "look", tr("Draw beads as lines, or as tubes of their width and layer height")
         )
@@ -37,12 +37,12 @@ class PathForm(QtGui.QWidget):
         self.all = QtGui.QPushButton(tr("Show all"))
         self.all.setObjectName("all")
         self.from_, self.to, self.point = (
-            Row("from", tr("From layer"), tr("The first layer that is shown"), _LAYER_PAGE),
-            Row("to", tr("To layer"), tr("The last layer that is shown"), _LAYER_PAGE),
+            Row("from", tr("From layer"), tr("The first layer shown"), _LAYER_PAGE),
+            Row("to", tr("To layer"), tr("The last layer shown"), _LAYER_PAGE),
             Row(
                 "point",
                 tr("Point"),
-                tr("The last point that is shown, counted from 0 in the last layer"),
+                tr("The last point shown, counted from 0 in the last layer"),
                 _POINT_PAGE,
             ),
         )

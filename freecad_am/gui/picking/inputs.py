@@ -72,7 +72,7 @@ class StageChoice(Input):
         if not self.link.required or self.widget.count():
             return ""
         return tr(
-            "{0} is missing in this document. Make it first: button {0} in the toolbar."
+            "{0} is missing in this document. Create it first: button {0} in the toolbar."
         ).format(self.label)
 
     def value(self) -> Any:
@@ -100,7 +100,7 @@ class NameChoice(Input):
         self.widget = QtGui.QLineEdit(name)
         self.widget.setObjectName("ProgramName")
         self.widget.setToolTip(
-            tr("Name of the program and of its files; the controller may refuse some")
+            tr("Name of the program and of its files; the controller may reject some names")
         )
 
     def stored(self, obj: Any) -> Any:

@@ -146,7 +146,7 @@ def refused(document: Any) -> str:
         if stage_of(obj) is not None or is_group(obj):
             return tr("{} belongs to a job; select the part itself.").format(obj.Label)
         if links_to_nothing(obj):
-            return tr("{} links to nothing: what it showed is gone or was not loaded.").format(
+            return tr("{} links to nothing: its target was deleted or is not loaded.").format(
                 obj.Label
             )
         return tr("{} has no shape; select a body, solid, face, link or sketch.").format(obj.Label)

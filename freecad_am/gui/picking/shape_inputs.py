@@ -42,9 +42,7 @@ class ShapeChoice(Input):
         self.pick = pick_button(
             tr("Pick"),
             f"Use{link.name}",
-            tr("Takes what is selected now, or else what is clicked next. {}").format(
-                translated(link.help)
-            ),
+            tr("Uses the current selection, or the next click. {}").format(translated(link.help)),
         )
         self.pick.setCheckable(True)
         self.pick.clicked.connect(self._pressed)
@@ -68,7 +66,7 @@ class ShapeChoice(Input):
         pick = found if found is None or self.link.name == "Axis" else picking.whole(found)
         self._take(pick)
         if found is not None and pick is not None and found.names and not pick.names:
-            self.note = tr("The whole of {} is taken; Pick takes the selected faces only.").format(
+            self.note = tr("The whole of {} is used; Pick uses the selected faces only.").format(
                 pick.obj.Label
             )
 
@@ -108,7 +106,10 @@ class ShapeChoice(Input):
             self.take()
         except ReferenceError:
             self.tell(
-                tr("The document or object of this panel is gone; cancel and open the panel again.")
+                tr(
+                    "The document or object in this panel was deleted; cancel and open the panel "
+                    "again."
+                )
             )
 
     def take(self, *_: Any) -> None:
@@ -141,7 +142,7 @@ class ShapeChoice(Input):
         meshes = [pick.obj.Label for pick in picking.selected(self.document)]
         if meshes:
             return tr(
-                "{} is a mesh, which has no exact faces; select a part such as of a STEP file."
+                "{} is a mesh without exact faces; select a part such as from a STEP file."
             ).format(meshes[0])
         return picking.refused(self.document) or tr(
             "Nothing is selected: click in the tree or the 3D view first."

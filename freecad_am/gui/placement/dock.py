@@ -212,7 +212,7 @@ class PlacementDock:
             self.placing = placing_of(self.obj)
         except (AmError, Cancelled, ReferenceError) as error:
             self.form.tell(
-                translated_error(error) or tr("Cancelled: the document is as it was."), True
+                translated_error(error) or tr("Cancelled: the document is unchanged."), True
             )
             return
         finally:

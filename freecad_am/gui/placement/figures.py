@@ -126,18 +126,20 @@ def heads() -> list[str]:
 def summed(found: Placed) -> str:
     """How many poses serve, in a sentence."""
     serve = sum(one.feasible for one in found.judged)
-    text = tr("{} of {} poses are feasible, as far as {} of {} points show.").format(
+    text = tr("{} of {} poses are feasible at {} of {} points.").format(
         serve, len(found.poses), found.points, found.of
     )
     if found.best is None and not serve:
         most = max(range(len(found.poses)), key=lambda k: found.judged[k].share)
         one = found.judged[most]
         wrong = (
-            tr("no rotation about the tool serves the others")
+            tr("no tool rotation reaches the others")
             if one.code == UNREACHED
             else translated(one.message)
         )
-        more = tr("At most {:.0f} % of the points are served: {}.").format(100.0 * one.share, wrong)
+        more = tr("At most {:.0f} % of the points are feasible: {}.").format(
+            100.0 * one.share, wrong
+        )
         return f"{text} {more}"
     if found.best is None:
         return f"{text} {tr('None of the best is with all points.')}"

@@ -37,15 +37,15 @@ class Form(QtGui.QWidget):
         column.addWidget(box.widget)
         column.addWidget(more.widget)
         self.compute = _button(
-            "compute", tr("Compute"), tr("Try all poses beside the window; it can be cancelled")
+            "compute", tr("Compute"), tr("Try all poses in the background; can be cancelled")
         )
         self.use = _button(
-            "use", tr("Use this"), tr("Enter the pose that is chosen in the table into the cell")
+            "use", tr("Use this"), tr("Enter the pose selected in the table into the cell")
         )
         self.reach = _reach()
         self.colour = QtGui.QComboBox()
         self.colour.setObjectName("colour")
-        self.colour.setToolTip(tr("What the colours of the places show"))
+        self.colour.setToolTip(tr("Quantity shown by the colours of the places"))
         for name in figures.NAMES:
             self.colour.addItem(figures.heading(name), name)
         self.key, self.summary = QtGui.QLabel(), QtGui.QLabel()
@@ -113,9 +113,7 @@ def _reach() -> Any:
         QtGui.QSizePolicy.Fixed, QtGui.QSizePolicy.Fixed
     )  # Qt takes clicks on its text alone
     box.setToolTip(
-        tr(
-            "Show where the robot can hold what it carries: blue in few directions, yellow in all of them"
-        )
+        tr("Show the workspace of the robot: blue for few directions, yellow for all directions")
     )
     return box
 

@@ -76,12 +76,12 @@ class PlotsDock(Follower):
         """The fields, in the language of the window, about the canvas."""
         form = QtGui.QWidget()
         self.choice = self._combo(
-            "plotted", tr("The toolpath, joint path or program to look at"), LABEL
+            "plotted", tr("The toolpath, joint path or program to plot"), LABEL
         )
         self.choice.setMaximumWidth(
             WIDE * self.choice.fontMetrics().averageCharWidth()
         )  # leave room for the rest
-        self.which = self._combo("picture", tr("What is drawn"))
+        self.which = self._combo("picture", tr("Quantity to plot"))
         self.over = self._combo("over", tr("Along the time of the job, or along its path"))
         self.first, self.last = (
             self._layer("from", tr("The first layer")),
@@ -163,20 +163,23 @@ class PlotsDock(Follower):
             (
                 "rectangle",
                 "▭",
-                tr("Zoom into a rectangle that the mouse draws; else it moves the picture"),
+                tr(
+                    "Zoom into a rectangle drawn with the mouse; otherwise dragging moves the "
+                    "picture"
+                ),
                 self._rectangle,
             ),
             (
                 "in",
                 "+",
-                tr("Zoom in; so does the wheel, with Ctrl up and down"),
+                tr("Zoom in, also with Ctrl and the wheel"),
                 lambda *_: self.canvas.zoom(STEP**2),
             ),
             ("out", "−", tr("Zoom out"), lambda *_: self.canvas.zoom(STEP**-2)),
             (
                 "whole",
                 tr("Whole"),
-                tr("Show all there is; so does a double click"),
+                tr("Show everything, also with a double click"),
                 lambda *_: self.canvas.whole(),
             ),
             (
@@ -246,7 +249,7 @@ class PlotsDock(Follower):
             self._show(None, tr("There is nothing to plot yet: make a toolpath or a joint path."))
             return
         if made_from(obj)[0].Status == STALE:
-            self.note.setText(tr("Made from an earlier state; recompute the document."))
+            self.note.setText(tr("The plot shows an earlier state; recompute the document."))
         self._layers(obj)
         try:
             key, make = key_of(obj), maker_of(obj)

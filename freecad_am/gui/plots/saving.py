@@ -67,7 +67,7 @@ def _write(content: Callable[[str], bytes], path: str, kind: str) -> None:
     def written(worker: Worker) -> None:
         _writing.remove(writing)
         try:
-            _say(tr("{} is written.").format(worker.result()), App.Console.PrintMessage)
+            _say(tr("{} was saved.").format(worker.result()), App.Console.PrintMessage)
         except OSError as error:
             _say(
                 tr("{} cannot be written: {}").format(path, error.strerror or error),

@@ -61,7 +61,7 @@ WORDS = (
     marked("condition"),
     marked("layer height"),
     marked("a toolpath has no joints yet; choose a joint path"),
-    marked("there is nothing to be seen in these layers"),
+    marked("these layers have nothing to show"),
     marked("this machine has no condition"),
     marked("no limit known: the machine file has no max_speed"),
     marked("no limit known: the machine file has no max_acceleration"),
@@ -73,8 +73,8 @@ WORDS = (
     marked("part"),
     marked("deposited"),
     marked("bead"),
-    marked("only solids in plane layers have sections and volumes of layers"),
-    marked("none of these layers lies on another"),
+    marked("only solids in planar layers have sections and volumes of layers"),
+    marked("none of these layers rests on another"),
     marked("no bead model sets the speeds (process.bead_model)"),
 )
 

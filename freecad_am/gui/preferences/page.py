@@ -30,8 +30,8 @@ class PreferencesPage:
         self.column = QtGui.QVBoxLayout(self.form)
         note = QtGui.QLabel(
             tr(
-                "These are proposals of the window for what is made from now on, and its looks. Existing documents, jobs and "
-                "macros never depend on them."
+                "Defaults and appearance of the window for new objects. Existing documents, jobs "
+                "and macros do not depend on them."
             )
         )
         note.setWordWrap(True)
@@ -55,7 +55,7 @@ class PreferencesPage:
         choices.offer(self.machine, choices.machines())
         self.post = QtGui.QComboBox()
         self.post.setObjectName("post")
-        self.post.addItem(tr("what the machine's controller reads"), "")
+        self.post.addItem(tr("from the controller of the machine"), "")
         for name in catalogue.NAMES:
             self.post.addItem(name, name)
         rows.addRow(tr("Machine"), self.machine)
@@ -79,16 +79,15 @@ class PreferencesPage:
             "machineFolder",
             tr("Machine files"),
             tr(
-                "A further folder of machine files, such as one that is shared; your own are in {} as well"
+                "Additional folder of machine files, such as a shared one; your own are in {} as "
+                "well"
             ).format(os.path.join("RoboticAM", "machines")),
         )
         self.programs = self._folder(
             rows,
             "programsFolder",
             tr("Programs"),
-            tr(
-                "Where programs are written first; empty for the folder of last time, or next to the document"
-            ),
+            tr("Default folder for programs; empty for the last folder, or next to the document"),
         )
 
     def _folder(self, rows: Any, name: str, label: str, help: str) -> Any:
@@ -116,12 +115,14 @@ class PreferencesPage:
         rows = self._group(tr("Looks"))
         self.unit, self.ramp = QtGui.QComboBox(), QtGui.QComboBox()
         self.unit.setObjectName("speedUnit")
-        self.unit.setToolTip(tr("Of speeds in fields and read-outs; what is typed may have any"))
+        self.unit.setToolTip(
+            tr("For speeds in fields and read-outs; typed values may use any unit")
+        )
         self.unit.addItem(tr("as FreeCAD shows speeds"), "")
         for unit in preferences.SPEED_UNITS:
             self.unit.addItem(unit, unit)
         self.ramp.setObjectName("ramp")
-        self.ramp.setToolTip(tr("Of paths, from the least to the greatest"))
+        self.ramp.setToolTip(tr("For paths, from the smallest to the largest value"))
         names = (tr("blue to yellow"), tr("violet to orange"), tr("grey"))
         for key, text in zip(preferences.RAMPS, names, strict=True):
             self.ramp.addItem(text, key)
@@ -149,7 +150,7 @@ class PreferencesPage:
         for name, edit in (("MachineFolder", self.machines), ("ProgramsFolder", self.programs)):
             folder = edit.text().strip()
             if folder and not os.path.isdir(folder):
-                _warn(tr("there is no folder {}").format(folder))
+                _warn(tr("the folder {} does not exist").format(folder))
             else:
                 preferences.keep(name, folder)
         self._keep_machine()  # it may be in the folder

@@ -52,7 +52,7 @@ class Located:
         motion = self.motion
         place = tr("layer {} bead {}").format(int(motion.layer[row]), int(motion.bead[row]))
         if not motion.deposit[row]:
-            return tr("{}: on the way there").format(place)
+            return tr("{}: on the approach").format(place)
         return tr("{} point {}").format(place, int(motion.point[row]))
 
     def show(self, path: Any, row: int) -> None:

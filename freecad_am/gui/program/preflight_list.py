@@ -28,7 +28,8 @@ class PreflightList:
         self.widget.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
         self.widget.setMinimumHeight(HIGH * self.widget.fontMetrics().lineSpacing())
         help = tr(
-            "What is promised of this program, how it was checked and where it is worst; a click goes there"
+            "Checks of this program, how they were made and their worst points; click one to "
+            "show it"
         )
         self.widget.setToolTip(help)
         self.widget.setWhatsThis(help)
@@ -48,7 +49,7 @@ class PreflightList:
 def summary(promises: Sequence[Promise]) -> str:
     """How many promises are kept, broken and not checked."""
     kept, broken = (sum(one.ok is ok for one in promises) for ok in (True, False))
-    return tr("Preflight: {} kept, {} broken, {} not checked").format(
+    return tr("Preflight: {} passed, {} failed, {} not checked").format(
         kept, broken, len(promises) - kept - broken
     )
 

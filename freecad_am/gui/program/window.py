@@ -50,7 +50,7 @@ class ProgramWindow:
         self.choice.setObjectName("file")
         self.text = listing("text")
         self.text.setToolTip(
-            tr("A click shows the point of a line in the path; a click on the path marks its line")
+            tr("Click a line to show its point on the path; click the path to mark its line")
         )
         self.text.cursorPositionChanged.connect(self._at_line)
         self.place = QtGui.QLabel()
@@ -86,7 +86,9 @@ class ProgramWindow:
             self._refused() or tr("Writes all files of the program into a folder")
         )
         fits = self.obj.Status == UP_TO_DATE
-        warning = "" if fits or not names else tr("This text is of an earlier plan; do not run it.")
+        warning = (
+            "" if fits or not names else tr("This text belongs to an earlier plan; do not run it.")
+        )
         status = tr("Status: {}.").format(translated(self.obj.Status))
         self.state.setText(
             " ".join(filter(None, (warning, status, translated(message_of(self.obj)))))

@@ -80,15 +80,16 @@ class Consequences:
         self.form.buttons["use"].setEnabled(edited)
         if sums.lost:
             text, wrong = (
-                tr("{} of the points tried do not serve: they are red").format(sums.lost),
+                tr("{} of the tested points fail: they are red").format(sums.lost),
                 True,
             )
         elif edited and sums.ratio > 1.0:
             asked = tr(
-                "A joint would have to be at {:.0f} % of its speed: the planner will slow it, or refuse"
+                "A joint would need {:.0f} % of its speed: the planner will slow it down, or "
+                "reject the curve"
             )
             text, wrong = asked.format(100.0 * sums.ratio), True
         else:
-            text, wrong = self.status() if not edited else (tr("All points serve"), False)
+            text, wrong = self.status() if not edited else (tr("All points are feasible"), False)
         certificate = certified(self.draft.source.planned.optimality)
         self.form.tell("\n".join(filter(None, (text, certificate if not edited else ""))), wrong)

@@ -39,21 +39,22 @@ class Controls(QtGui.QWidget):
         self.grid.setContentsMargins(4, 2, 4, 2)
         self.grid.setVerticalSpacing(3)
         self.layer = self._box(
-            "layer", tr("Layer"), tr("The layer that is shown; -1 for all of them"), chosen
+            "layer", tr("Layer"), tr("The layer shown; -1 for all layers"), chosen
         )
         self.layer.setSpecialValueText(tr("all"))
         self.branch = self._combo(
             "branch",
             tr("Branch"),
-            tr(
-                "Shoulder, elbow and wrist; behind it the share of the map that it reaches within its limits"
-            ),
+            tr("Shoulder, elbow and wrist, with the share of the map within reach and limits"),
             chosen,
         )
-        self.kind = self._combo("colours", tr("Colours"), tr("What the colours show"), chosen)
+        self.kind = self._combo(
+            "colours", tr("Colours"), tr("Quantity shown by the colours"), chosen
+        )
         self.kind.addItems([tr(kind) for kind in KINDS])
         help = tr(
-            "RZ as in Chalvin 2020, the true rotation about the tool axis, or another external axis than across"
+            "RZ as in Chalvin 2020, the true tool rotation, or an external axis that is not on "
+            "the other axis of the map"
         )
         self.axis = self._combo("axis", tr("Vertical axis"), help, chosen)
         self.across = self._add_across()
@@ -64,14 +65,14 @@ class Controls(QtGui.QWidget):
         self.bead = self._box(
             "bead",
             tr("Bead"),
-            tr("The bead whose polynomial is shown; a click on the map chooses one"),
+            tr("The bead whose polynomial is shown; click the map to choose one"),
             curve,
         )
         self.degree = self._box("degree", tr("Degree"), tr("Degree of the polynomials"), curve)
         self.degree.setRange(0, HIGHEST)
         self.together = QtGui.QCheckBox(tr("All beads together"))
         self.together.setObjectName("together")
-        self.together.setToolTip(tr("What is changed of one bead is changed of all"))
+        self.together.setToolTip(tr("Change all beads together"))
         self.together.setChecked(True)
         self.grid.addWidget(self.together, self.grid.rowCount(), 0, 1, 2)
         self.coefficients, self.names = [], []
@@ -109,7 +110,8 @@ class Controls(QtGui.QWidget):
 
     def _add_across(self) -> Any:
         help = tr(
-            "The path, or an external axis at the point that was clicked last, the other axes as planned there"
+            "The path, or an external axis at the point clicked last, with the other axes as "
+            "planned there"
         )
         return self._combo("across", tr("Horizontal axis"), help, self.chosen)
 

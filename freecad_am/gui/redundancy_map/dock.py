@@ -297,7 +297,7 @@ class RedundancyMapDock:
             recorded.change(self.obj, arguments)
         except (AmError, Cancelled, ReferenceError) as error:
             self.form.tell(
-                translated_error(error) or tr("Cancelled: the document is as it was."), True
+                translated_error(error) or tr("Cancelled: the document is unchanged."), True
             )
             return
         self.renewing.timer.stop()

@@ -30,11 +30,11 @@ class Figures(QtGui.QTableWidget):
         )
         helps = (
             tr("Shown on the map"),
-            tr("Points that are unreachable, past a limit, near a singularity or not allowed"),
-            tr("The least share of half a joint's range that is left to a limit"),
-            tr("The least sigma_min / sigma_max of the Jacobian"),
-            tr("The largest share of a joint's greatest speed at the travel speed"),
-            tr("The displacement of the joints (Chalvin 2020, eq. 17), and times that of the plan"),
+            tr("Points that are unreachable, beyond a limit, near a singularity or not allowed"),
+            tr("The smallest distance to a limit, as a share of half the range of the joint"),
+            tr("The smallest inverse condition number of the Jacobian, sigma_min / sigma_max"),
+            tr("The largest joint speed at the travel speed, as a share of its maximum"),
+            tr("The displacement of the joints (Chalvin 2020, eq. 17), and its ratio to the plan"),
         )
         for number, help in enumerate(helps):
             self.horizontalHeaderItem(number).setToolTip(help)
@@ -92,7 +92,7 @@ class Figures(QtGui.QTableWidget):
             mark.setIcon(QtGui.QIcon(image))
         mark.setToolTip(help)
         wound = tr(
-            "{} of them past a limit only because an axis runs out of turns along its bead"
+            "{} exceed a limit only because an axis runs out of turns along its bead"
         ).format(sums.wound)
         self.item(row, 1).setToolTip(wound if sums.wound else "")
         for column, wrong in ((1, sums.lost > 0), (4, sums.ratio > 1.0)):

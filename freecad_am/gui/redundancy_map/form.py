@@ -39,9 +39,7 @@ class Form(QtGui.QWidget):
         self.joints.setObjectName("joints")
         self.joints.setWordWrap(True)
         self.joints.setTextFormat(QtCore.Qt.RichText)
-        self.joints.setToolTip(
-            tr("From where to where each joint goes on this curve; red past a limit")
-        )
+        self.joints.setToolTip(tr("Range of each joint on this curve; red beyond a limit"))
         right.addWidget(figures, 1)
         right.addWidget(self.joints)
         right.addWidget(self.verdict)
@@ -52,19 +50,20 @@ class Form(QtGui.QWidget):
                 (
                     "use",
                     tr("Use this"),
-                    tr("Make the curve that of the joint path, and plan it again"),
+                    tr("Use the curve for the joint path, and plan it again"),
                 ),
                 (
                     "free",
                     tr("Let the planner choose"),
-                    tr("Plan the joint path again layer by layer, without a curve that is given"),
+                    tr("Plan the joint path again layer by layer, without a given curve"),
                 ),
-                ("again", tr("Back"), tr("Start again from what was planned")),
+                ("again", tr("Back"), tr("Reset to the planned curve")),
                 (
                     "compare",
                     tr("Compare methods"),
                     tr(
-                        "Plan constant, point-by-point and layer-by-layer on this branch, to look at"
+                        "Plan constant, point-by-point and layer-by-layer in this configuration, "
+                        "for comparison"
                     ),
                 ),
                 ("save", tr("Save…"), tr("Save as an image (PNG, SVG, PDF), or the values (CSV)")),

@@ -26,7 +26,7 @@ def readout(cell: Cell, machine: Machine) -> str:
     turned = f"RZ {np.degrees(cell.rz):.1f}°   " + tr("rotation") + f" {np.degrees(cell.phi):.1f}°"
     notes = []
     if not np.isfinite(cell.joints).all():
-        return f"{where}   {turned}\n" + tr("out of reach with this branch")
+        return f"{where}   {turned}\n" + tr("out of reach in this configuration")
     if cell.margin < 0.0:
         notes.append(tr("beyond a limit"))
     if cell.condition < cell.threshold:

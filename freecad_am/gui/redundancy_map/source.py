@@ -88,9 +88,7 @@ def source_of(obj: Any) -> Source:
         raise InputError(
             "NO_MAP",
             obj.Label,
-            "its machine has two rotary axes, which leave no rotation about the tool to choose; open "
-            "the map "
-            "of a robot",
+            "its machine has two rotary axes and no tool redundancy; open the map of a robot",
         )
     return Source(
         document=obj.Document.Name,

@@ -36,8 +36,8 @@ class JointBars(QtGui.QWidget):
         self.setMinimumHeight(self.row * (len(names) + 1) + 2)
         self.setToolTip(
             tr(
-                "Each joint in its range, how far it is from the nearer limit, and the share of its largest "
-                "speed that is asked of it"
+                "Range of each joint, its distance to the nearer limit, and its speed as a share "
+                "of the maximum"
             )
         )
 

@@ -53,7 +53,7 @@ class Fields(QtGui.QWidget):
         column.setContentsMargins(8, 6, 8, 6)
         if run.stale:
             stale = _label(
-                "stale", tr("This is an earlier plan; recompute the document for the present one.")
+                "stale", tr("This is an earlier plan; recompute the document to update it.")
             )
             stale.setWordWrap(True)
             set_role(stale, WRONG)
@@ -104,7 +104,7 @@ class Fields(QtGui.QWidget):
         self.show_icons()
         self.factor = QtGui.QComboBox()
         self.factor.setObjectName("factor")
-        self.factor.setToolTip(tr("How many seconds of the job pass in one"))
+        self.factor.setToolTip(tr("Playback speed, in seconds of the job per second"))
         self.factor.addItems([f"{factor:g} ×" for factor in FACTORS])
         self.factor.setCurrentIndex(FACTORS.index(self.player.factor))
         self.factor.currentIndexChanged.connect(

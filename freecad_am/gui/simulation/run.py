@@ -63,7 +63,7 @@ def prepared(obj: Any) -> Callable[[], Run]:
     stage = stage_of(obj)
     if stage is None or stage.kind not in ("joint path", "program"):
         raise InputError(
-            "NOT_TO_PLAY", obj.Label, "it is neither a joint path nor a program; select one of them"
+            "NOT_TO_PLAY", obj.Label, "it is neither a joint path nor a program; select one"
         )
     path = obj if stage.kind == "joint path" else obj.JointPath
     planned, toolpath, looks = planned_of(path, obj.Label)

@@ -64,9 +64,10 @@ def nothing(run: Run) -> str:
     """That there are no findings, and among what."""
     if run.watch.arm_known:
         return tr(
-            "No findings: no limit, singularity or speed comes near, and no link of the robot touches anything"
+            "No findings: no limit, singularity or speed is near, and no link of the robot "
+            "touches anything"
         )
-    return tr("No findings: no limit, singularity or speed comes near")
+    return tr("No findings: no limit, singularity or speed is near")
 
 
 def place(run: Run, moment: Moment) -> str:
@@ -207,7 +208,7 @@ def totals(run: Run) -> list[tuple[str, str]]:
             1,
             (
                 tr("Longer by"),
-                tr("{time} where speeds are not kept").format(time=clock(run.feed.lost)),
+                tr("{time} at reduced speed").format(time=clock(run.feed.lost)),
             ),
         )
     return rows

@@ -21,68 +21,62 @@ TOOLS = {
     "OpenPart": Tool(
         "open_part",
         marked("Open Part…"),
-        marked(
-            "Opens a part or mesh from a file, which may be damaged: it is read in a process of its own"
-        ),
+        marked("Opens a part or mesh from a file in a separate process, even if it is damaged"),
         openers.open_part,
         needs.nothing,
     ),
     "NewJob": Tool(
         "new_job",
         marked("New Job…"),
-        marked("Makes all stages for the selected shape, from cell to program"),
+        marked("Creates all stages for the selected shape, from cell to program"),
         openers.new_job,
         needs.part,
     ),
     "Cell": Tool(
         "cell",
         marked("Cell…"),
-        marked("Adds a cell: machine, set-up, platform and nozzle"),
+        marked("Adds a cell: machine, setup, platform and nozzle"),
         openers.cell,
     ),
     "Feature": Tool(
         "feature",
         marked("Feature…"),
-        marked("Takes the selected shape of revolution to be deposited"),
+        marked("Deposits the selected shape of revolution"),
         openers.feature,
         needs.faces,
     ),
     "WallOnPart": Tool(
         "wall_on_part",
         marked("Wall on Part…"),
-        marked(
-            "Takes the selected faces as a wall to be deposited on the other object that is selected"
-        ),
+        marked("Deposits the selected faces as a wall on the other selected object"),
         openers.wall,
         needs.faces,
     ),
     "Solid": Tool(
         "solid",
         marked("Solid…"),
-        marked("Takes the selected solids to be deposited in plane layers"),
+        marked("Deposits the selected solids in planar layers"),
         openers.solid,
         needs.part,
     ),
     "SolidsOnHub": Tool(
         "solids_on_hub",
         marked("Solids on Hub…"),
-        marked(
-            "Takes the selected solids to be deposited on the cylinder or cone that is selected last"
-        ),
+        marked("Deposits the selected solids on the cylinder or cone that is selected last"),
         openers.hub,
         needs.part,
     ),
     "Curves": Tool(
         "curves",
         marked("Curves…"),
-        marked("Takes the selected edges, wires, sketches or tables to be laid as beads"),
+        marked("Deposits the selected edges, wires, sketches or tables as beads"),
         openers.curves,
         needs.document,
     ),
     "Cladding": Tool(
         "cladding",
         marked("Cladding…"),
-        marked("Takes the selected faces to be covered with layers of beads"),
+        marked("Covers the selected faces with layers of beads"),
         openers.cladding,
         needs.faces,
     ),
@@ -103,9 +97,7 @@ TOOLS = {
     "SpinMap": Tool(
         "spin_map",
         marked("Free Rotation Map…"),
-        marked(
-            "Shows the path against the rotation about the tool; the curve can be drawn by hand"
-        ),
+        marked("Shows the path and the tool rotation as a map; the curve can be edited by hand"),
         openers.redundancy_map,
         needs.joint_path,
         True,
@@ -114,7 +106,8 @@ TOOLS = {
         "placement",
         marked("Placement…"),
         marked(
-            "Tries where the part, its positioner or the deposition point can stand, and shows the robot's reach"
+            "Searches for positions of the part, its positioner or the deposition point, and "
+            "shows the workspace of the robot"
         ),
         openers.placement,
         needs.toolpath_and_cell,
@@ -140,7 +133,8 @@ TOOLS = {
         "export_path",
         marked("Export Path…"),
         marked(
-            "Writes a path as STEP or DXF wires, a table or a report, or makes a CAM path or Robot trajectory of it"
+            "Writes a path as STEP or DXF wires, a table or a report, or converts it to a CAM "
+            "path or Robot trajectory"
         ),
         openers.export_path,
         needs.path,
@@ -148,7 +142,7 @@ TOOLS = {
     "Program": Tool(
         "program",
         marked("Program…"),
-        marked("Writes the controller's program of a joint path"),
+        marked("Writes the controller program for a joint path"),
         openers.program,
         needs.feasible,
     ),
@@ -156,7 +150,8 @@ TOOLS = {
         "new_machine",
         marked("New Machine…"),
         marked(
-            "Makes a machine file from a URDF, a Denavit-Hartenberg table or OPW figures, checked against poses"
+            "Creates a machine file from a URDF, a Denavit-Hartenberg table or OPW dimensions, "
+            "checked against poses"
         ),
         openers.new_machine,
         needs.nothing,
@@ -165,7 +160,7 @@ TOOLS = {
     "Inspect": Tool(
         "inspect",
         marked("Inspect…"),
-        marked("Compares measured points with what was planned"),
+        marked("Compares measured points with the plan"),
         openers.inspect,
         needs.part,
     ),

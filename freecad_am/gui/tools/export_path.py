@@ -51,7 +51,7 @@ class ExportPanel:
         self.path = self._combo("Path", tr("The toolpath, joint path or program to export"))
         self.path.addItems([obj.Label for obj in self.paths])
         self.path.setCurrentIndex(self._first())
-        self.kind = self._combo("Kind", tr("What is made of the path"))
+        self.kind = self._combo("Kind", tr("Format of the export"))
         for key, text in (
             (STEP, tr("STEP file of wires")),
             (DXF, tr("DXF file of polylines")),
@@ -65,7 +65,7 @@ class ExportPanel:
         self.file = QtGui.QLineEdit()
         self.file.setObjectName("File")
         self.file.setMinimumWidth(70)
-        self._help(self.file, tr("The file to write; its ending follows the kind"))
+        self._help(self.file, tr("The file to write; its extension follows the format"))
         self.browse = QtGui.QPushButton("…")
         self.browse.setObjectName("browse")
         self.browse.setMaximumWidth(32)
@@ -74,21 +74,19 @@ class ExportPanel:
         self.rapids.setObjectName("Rapids")
         self._help(
             self.rapids,
-            tr(
-                "Write the moves between beads as well, on a layer of their own; toolpaths have none"
-            ),
+            tr("Also write the moves between beads, on their own layer; toolpaths have none"),
         )
         self.tolerance = QuantityField(0.1, "mm", tr("Tolerance"))
         self.tolerance.box.setObjectName("Tolerance")
         self._help(
             self.tolerance.box,
-            tr("Points are left out as long as the path stays within this distance"),
+            tr("Points are omitted while the path stays within this distance"),
         )
         self.turn = QuantityField(2.0, "deg", tr("Turn"))
         self.turn.box.setObjectName("Turn")
         self._help(
             self.turn.box,
-            tr("Points are left out as long as the tool axis stays within this angle"),
+            tr("Points are omitted while the tool axis stays within this angle"),
         )
         self._lay_out()
         self._follow()

@@ -25,7 +25,7 @@ def nothing(doc: Any) -> str:
 
 def document(doc: Any) -> str:
     """A document."""
-    return tr("First open a part, or make a document.") if doc is None else ""
+    return tr("First open a part, or create a document.") if doc is None else ""
 
 
 def part(doc: Any) -> str:
@@ -51,7 +51,8 @@ def feature(doc: Any) -> str:
     if document(doc) or _some(doc, "feature"):
         return document(doc)
     return tr(
-        "First make a feature: Feature…, Wall on Part…, Solid…, Solids on Hub…, Curves… and Cladding… do so."
+        "First make a feature with Feature…, Wall on Part…, Solid…, Solids on Hub…, Curves… or "
+        "Cladding…."
     )
 
 
@@ -90,7 +91,7 @@ def feasible(doc: Any) -> str:
     if lacking or any(obj.Status != INFEASIBLE for obj in _stages(doc, "joint path")):
         return lacking
     last = list(_stages(doc, "joint path"))[-1]
-    return tr("{} cannot be carried out: {}").format(last.Label, translated(message_of(last)))
+    return tr("{} is infeasible: {}").format(last.Label, translated(message_of(last)))
 
 
 def _stages(doc: Any, kind: str) -> Iterator[Any]:

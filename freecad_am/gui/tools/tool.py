@@ -70,7 +70,7 @@ class Tool:
                 return tr("First close the task panel that is open.")
             return self.need(App.ActiveDocument)
         except (ReferenceError, RuntimeError):  # the document is being closed
-            return tr("First open a part, or make a document.")
+            return tr("First open a part, or create a document.")
 
     def _explain(self, text: str) -> bool:
         """Tell the tool's name in its tooltip, and what is missing, which FreeCAD sets once; False while there is no button

@@ -30,7 +30,7 @@ class HubView(StageView):
         "ShowBases": (
             "App::PropertyBool",
             True,
-            "Tint the cylinders and cones that solids stand on.",
+            "Tint the cylinders and cones below solids.",
         ),
     }
 

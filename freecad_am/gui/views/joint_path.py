@@ -185,7 +185,7 @@ def _linked(obj: Any) -> Any:
         raise InputError(
             "NO_INPUT",
             obj.Label,
-            "its toolpath is gone; choose another, or delete the joint path too",
+            "its toolpath was deleted; choose another, or delete the joint path too",
         )
     return obj.Toolpath
 
@@ -212,7 +212,7 @@ def _of_machine(obj: Any, seen: Seen, kind: str) -> Array:
     """(n,) the smallest share left to a limit, or the largest share used of a joint speed, of all rows. InputError of the
     machine."""
     if obj.Cell is None:
-        raise InputError("NO_INPUT", obj.Label, "its cell is gone; choose a cell for it")
+        raise InputError("NO_INPUT", obj.Label, "its cell was deleted; choose another cell")
     folders, settings = (
         tuple(user_machines.folders()),
         obj.Cell.Proxy.parameters(obj.Cell, CellParameters),
@@ -229,7 +229,7 @@ def _of_machine(obj: Any, seen: Seen, kind: str) -> Array:
         raise InputError(
             "BAD_INPUT",
             obj.Label,
-            "{} has other axes than the joint path; recompute the joint path",
+            "{} and the joint path have different axes; recompute the joint path",
             machine.title,
         )
     if kind == MARGIN:

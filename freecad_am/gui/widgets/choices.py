@@ -24,7 +24,7 @@ WORDS = {  # of keys that are not words by themselves; `tr` gives them in the la
     "constant-distance": marked("constant distance"),
     "iso-parameter": marked("lines of the surface"),
     "geodesic": marked("through the part, without support"),
-    "offset": marked("parallel to where it stands"),
+    "offset": marked("parallel to its base"),
     "along": marked("normal to a guide curve"),
     "around-axis": marked("around the axis"),
     "symmetry-plane": marked("plane of symmetry"),

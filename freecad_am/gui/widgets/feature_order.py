@@ -42,7 +42,7 @@ class FeatureOrder(Input):
             (
                 "AddFeature",
                 tr("Add"),
-                tr("Adds the features selected, else the next one of the document"),
+                tr("Adds the selected features, or the next one in the document"),
                 self.add,
             ),
             (
@@ -60,7 +60,7 @@ class FeatureOrder(Input):
             (
                 "RemoveFeature",
                 tr("Remove"),
-                tr("Takes the chosen feature out of this toolpath"),
+                tr("Removes the selected feature from this toolpath"),
                 self.remove,
             ),
         )
@@ -77,7 +77,10 @@ class FeatureOrder(Input):
         self.sequence = QtGui.QComboBox()
         self.sequence.setObjectName("Sequence")
         self.sequence.setToolTip(
-            tr("Several features: one after the other, or of all layers the lowest first")
+            tr(
+                "Order of several features: one after the other, or the lowest layer of any "
+                "feature first"
+            )
         )
         for value, name in NAMES.items():
             self.sequence.addItem(translated(name), value)
@@ -100,9 +103,7 @@ class FeatureOrder(Input):
         wanted = self._selected() or [self.document.getObject(name) for name in left[:1]]
         for obj in wanted:
             self._put(obj)
-        self.tell(
-            "" if wanted else tr("There is no other feature in this document; make it first.")
-        )
+        self.tell("" if wanted else tr("This document has no other feature; create it first."))
         self._show()
 
     def move(self, by: int) -> None:

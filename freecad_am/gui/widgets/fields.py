@@ -252,7 +252,7 @@ def _number(text: str, name: str) -> float | str:
         return float(text)
     except ValueError:
         raise InputError(
-            "BAD_VALUE", name, "{!r} is not a number; give one such as 0.1", text
+            "BAD_VALUE", name, "{!r} is not a number; enter one such as 0.1", text
         ) from None
 
 

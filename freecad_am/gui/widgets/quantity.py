@@ -208,7 +208,10 @@ class QuantityField:
             )
         if not text.strip():
             raise InputError(
-                "BAD_VALUE", self.name, "it is empty; give a quantity in {}", self.shown_unit
+                "BAD_VALUE",
+                self.name,
+                "the field is empty; enter a quantity in {}",
+                self.shown_unit,
             )
         try:
             quantity = quantity_of(text.replace(point, "."))

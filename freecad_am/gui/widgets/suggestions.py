@@ -67,22 +67,24 @@ def no_post(name: str, setup: str = "") -> str:
         return ""
     if posts and any(writers(loaded, posts, each.setup) for each in loaded.arrangements):
         return tr(
-            "Programs for this machine's controller need the tool on the robot. With the part on it all is planned, "
-            "checked and simulated, but no program is written."
+            "Programs for this controller need the tool on the robot. With the part on the robot "
+            "the job is planned, checked and simulated, but no program is written."
         )
     if posts:
         return tr(
-            "Programs for this machine's controller are of positions, and what it calls the configurations of this "
-            "wrist is not known: all is planned, checked and simulated, but no program is written."
+            "Programs for this controller contain positions, but the names of the wrist "
+            "configurations are unknown: the job is planned, checked and simulated, but no "
+            "program is written."
         )
     if loaded.posts:
         return tr(
-            "Programs for this machine need what only its controller knows, its pulses per degree, in a machine file "
-            "of your own. All is planned, checked and simulated without; Export Path… writes its points as a table."
+            "Programs for this machine need the pulses per degree, which only its controller "
+            "knows, in your own machine file. Without it the job is planned, checked and "
+            "simulated; Export Path… writes its points as a table."
         )
     return tr(
-        "There is no post for this machine's controller yet: all is planned, checked and simulated, but no program is "
-        "written. Export Path… writes its points as a table."
+        "There is no post for this controller yet: the job is planned, checked and simulated, "
+        "but no program is written. Export Path… writes its points as a table."
     )
 
 

@@ -119,8 +119,9 @@ def _platform_issue(cell: Cell, collision: Collision, level: str) -> Issue:
         level,
         PLATFORM_COLLISION,
         Text(
-            "{} reaches into the platform, a plate of {:.4g} mm below the origin of the frame that sits on it; set "
-            "cell.platform to where the part is held and cell.platform_diameter to what there is (0 for none)",
+            "{} extends into the platform, a plate {:.4g} mm below the origin of the platform "
+            "frame; set cell.platform to the real clamping position and cell.platform_diameter "
+            "to the real size (0 for none)",
             collision.what,
             cell.platform_diameter,
         ),
@@ -157,9 +158,10 @@ def _arm_issue(collision: Collision, motion: Motion, rows: Index, sample_count: 
             WARNING,
             ARM_NEAR,
             Text(
-                "link {} of the arm, as drawn, has {} in the inner half of its radius on {:.3g} % of the motion, first with the "
-                "nozzle at {}; unless the robot is slimmer or hollow there, it collides: look at it in Simulate, give the "
-                "links the shapes of the manufacturer, or set cell.arm_clearance",
+                "link {} of the arm, as drawn, has {} within half its radius on {:.3g} % of the "
+                "motion, first with the nozzle at {}; it collides unless the robot is slimmer or "
+                "hollow there: check it in Simulate, give the links the shapes of the "
+                "manufacturer, or set cell.arm_clearance",
                 collision.link,
                 collision.what,
                 share,
@@ -171,8 +173,9 @@ def _arm_issue(collision: Collision, motion: Motion, rows: Index, sample_count: 
         NOTE,
         ARM_NEAR,
         Text(
-            "link {} of the arm, as drawn, touches {} on {:.3g} % of the motion, first with the nozzle at {}; the inner half of "
-            "its radius stays clear, so look at it in Simulate, or set cell.arm_clearance",
+            "link {} of the arm, as drawn, touches {} on {:.3g} % of the motion, first with the "
+            "nozzle at {}; the inner half of its radius stays clear: check it in Simulate, or "
+            "set cell.arm_clearance",
             collision.link,
             collision.what,
             share,

@@ -41,8 +41,8 @@ def check_controller(machine: Machine, post: str) -> None:
         raise InputError(
             "WRONG_CONTROLLER",
             "program.post",
-            "{} is a URDF, which does not say what the controller shows; "
-            "plan without a program, or make a machine file of it with New Machine…",
+            "{} is a URDF, which does not define the display of the controller; plan without a "
+            "program, or convert it with New Machine…",
             machine.title,
         )
     readable = (
@@ -99,19 +99,20 @@ def size_issues(toolpath: Toolpath, parameters: ProgramParameters) -> list[Issue
         return []
     room = (
         Text(
-            "a controller of this kind was known to have room for about {:g} MB in all",
+            "known controllers of this type store about {:g} MB in total",
             kind.memory_mb,
         )
         if kind.memory_mb
-        else Text("how much the controller takes is not known here; look it up")
+        else Text("the memory of the controller is unknown; look it up")
     )
     return [
         Issue(
             WARNING if is_too_large else NOTE,
             "PROGRAM_SIZE",
             Text(
-                "the program of {} will have about {} points in {} files, {:.2g} MB: {}. A larger strategy.chord_error or "
-                "strategy.layer_height makes it smaller; program.max_points sets the size of a file",
+                "the program of {} will have about {} points in {} files, {:.2g} MB: {}. A "
+                "larger strategy.chord_error or strategy.layer_height makes it smaller; "
+                "program.max_points limits the size of a file",
                 parameters.post,
                 count(points),
                 files,
@@ -137,9 +138,10 @@ def base_issues(machine: Machine, parameters: ProgramParameters) -> list[Issue]:
             WARNING,
             "BASE_NOT_KNOWN",
             Text(
-                "where the base frame of {} lies is not known: positions of the program count from its base_link. Compare "
-                "the pose of a known point on the controller before the program is run, set base in a copy of the machine "
-                "file, or use program.motion: joint",
+                "the base frame of {} is unknown: positions of the program refer to its "
+                "base_link. Compare the pose of a known point on the controller before running "
+                "the program, set base in a copy of the machine file, or use program.motion: "
+                "joint",
                 machine.title,
             ),
         )
@@ -199,8 +201,8 @@ def check_wrist(machine: Machine, motion: str, post: str) -> None:
         raise InputError(
             "NOT_FOR_WRIST",
             "program.motion",
-            "{} has no spherical wrist, and what its controller calls the configurations "
-            "of cartesian positions is not known; use joint",
+            "{} has no spherical wrist, and the configuration names of its controller are "
+            "unknown for Cartesian positions; use joint",
             machine.title,
         )
 
@@ -213,17 +215,17 @@ def check_pulses(machine: Machine, motion: str, post: str) -> None:
         raise InputError(
             "NO_PULSES",
             "cell.machine",
-            "how many pulses {} counts to a degree of each axis is not known, and no two "
-            "models are alike; make a machine file of your own of it, with controller.pulses_per_degree as the pendant "
-            "shows them (a position in pulses over the same in degrees), or plan without a program",
+            "the pulses per degree of {} are unknown, and differ between models; make your own "
+            "machine file with controller.pulses_per_degree as shown on the pendant (a position "
+            "in pulses divided by the same in degrees), or plan without a program",
             machine.title,
         )
     if controller(post).pulses and motion == "cartesian" and not machine.speed_unit:
         raise InputError(
             "NO_SPEED_UNIT",
             "cell.machine",
-            "the unit of V is a setting of the controller of {}, and another one is "
-            "another speed; give controller.speed_unit in a machine file of your own, or use `motion: joint`",
+            "the unit of V is a setting of the controller of {}, and a wrong one changes the "
+            "speed; set controller.speed_unit in your own machine file, or use `motion: joint`",
             machine.title,
         )
 

@@ -26,7 +26,7 @@ def check_on_part(toolpath: CoreToolpath, inputs: Given, sources: Sequence[Taken
     kind = family_of(inputs.strategy).kind
     if kind == "curves" and inputs.wall.edges is None:  # the table itself is the part
         return toolpath
-    progress.report(LOOKED, "looking whether the deposit lies on the part")
+    progress.report(LOOKED, "checking whether the deposit is on the part")
     positions = on_part.sample_places(toolpath)
     if kind == "curves":
         return _check_on_edges(toolpath, inputs, sources[0], positions)

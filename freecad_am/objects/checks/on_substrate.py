@@ -51,8 +51,9 @@ def gap_issues(
                     WARNING,
                     ABOVE_SUBSTRATE,
                     Text(
-                        "{} does not touch its substrate {}: it is {:.4g} mm away at ({:.4g}, {:.4g}, {:.4g}), where it comes "
-                        "nearest; move it onto the substrate, or leave the substrate out",
+                        "{} does not touch its substrate {}: the smallest gap is {:.4g} mm, at "
+                        "({:.4g}, {:.4g}, {:.4g}); move it onto the substrate, or remove the "
+                        "substrate",
                         label,
                         substrate.label,
                         gap,

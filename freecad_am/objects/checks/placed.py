@@ -50,7 +50,9 @@ def placing_of(path: Any, cell: Any = None, joints: JointParameters | None = Non
     stage = stage_of(path)
     if stage is None or stage.kind not in ("joint path", "toolpath"):
         label = getattr(path, "Label", repr(path))
-        raise InputError("BAD_INPUT", label, "it is neither a toolpath nor a joint path; give one")
+        raise InputError(
+            "BAD_INPUT", label, "it is neither a toolpath nor a joint path; choose one"
+        )
     toolpath = path.Toolpath if stage.kind == "joint path" else path
     carried = cell if cell is not None else path.Cell
     for stage_object, what in ((toolpath, "toolpath"), (carried, "cell")):
@@ -81,7 +83,7 @@ def change_parameters(
         raise InputError(
             "BAD_INPUT",
             "parameters",
-            "{} is none of the parameters that it takes; give {}",
+            "{} is not a valid parameter; use {}",
             type(parameters).__name__,
             PlaceParameters.__name__,
         )
@@ -106,7 +108,7 @@ def change_parameters(
         changed: PlaceParameters = rows.build(PlaceParameters, inner)
     except ReferenceError:
         raise InputError(
-            "BAD_INPUT", "place", "a value is an object that was deleted; give a number or a text"
+            "BAD_INPUT", "place", "the value is a deleted object; give a number or a text"
         ) from None
     return changed
 

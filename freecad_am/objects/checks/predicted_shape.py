@@ -39,10 +39,8 @@ from ..work import progress
 DEFLECTION = 0.05  # mm, of the triangles of faces
 NOTHING = "NO_PREDICTION"
 _OF_SOLIDS = "Give strategy.margin {} mm more than it has, or wider beads"
-_OF_WALLS = (
-    "Use beads {} mm wider on either side, by process.bead_width, or leave less of it to machine"
-)
-_OF_CLADDING = "Lay one more layer, or leave less of it to machine"
+_OF_WALLS = "Use beads {} mm wider on either side, by process.bead_width, or a smaller allowance"
+_OF_CLADDING = "Add one layer, or use a smaller allowance"
 
 Report = Callable[[float, str], None]
 
@@ -106,16 +104,13 @@ def predicted(
     processes: list[ProcessParameters] = [target.inputs.process for target in targets]
     parts = feature_parts(toolpath, processes)
     if any(feature_part.toolpath.bead_width is None for feature_part in parts):
-        raise InputError(
-            NOTHING, "toolpath", "it is not known how wide its beads count; plan it again"
-        )
+        raise InputError(NOTHING, "toolpath", "the effective bead width is unknown; plan it again")
     target_faces = [_faces(target) for target in targets if target.kind != "curves"]
     if not target_faces:
         raise InputError(
             NOTHING,
             "toolpath",
-            "curves have no faces that a deposit could be held against; leave out "
-            "process.machining_allowance",
+            "curves have no faces to compare a deposit with; remove process.machining_allowance",
         )
     deposit = predicted_deposit(
         parts, lambda share, text: report(0.8 * share, Text("predicting the deposit, {}", text))
@@ -126,7 +121,7 @@ def predicted(
         raise InputError(
             NOTHING,
             "toolpath",
-            "the part has no faces above where the deposit begins; choose another part",
+            "the part has no faces above the start of the deposit; choose another part",
         )
     return deposit, comparison
 
@@ -204,7 +199,7 @@ def _source_faces(source: Taken, names: Sequence[str]) -> Faces:
         raise InputError(
             NOTHING,
             "toolpath",
-            "{} has no faces that a deposit could be held against; choose another object",
+            "{} has no faces to compare a deposit with; choose another object",
             source.label,
         )
     side = OUTSIDE if shape.Solids else BOTH

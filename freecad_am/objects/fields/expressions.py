@@ -73,7 +73,8 @@ def broken(obj: Any) -> str:
             obj.evalExpression(text)
         except Exception:  # FreeCAD's own errors share no base
             return Text(
-                "{} follows the expression {}, which gives nothing any more; give {} a value or another one",
+                "{} follows the expression {}, which no longer gives a value; give {} a value or "
+                "another expression",
                 name,
                 text,
                 name,

@@ -54,7 +54,7 @@ def six(words: Sequence[str], where: str) -> Pose:
     controller = named(words)
     pendant = catalogue.load(controller).PENDANT
     assert pendant is not None
-    form = Text("write such as: {} X Y Z {}", controller, " ".join(pendant.letters))
+    form = Text("use the form: {} X Y Z {}", controller, " ".join(pendant.letters))
     try:
         numbers = [float(word) for word in words if word.lower() != controller]
     except ValueError:
@@ -72,15 +72,15 @@ def _rotation(pendant: Pendant, numbers: Array, where: str) -> Array:
         raise InputError(
             "BAD_VALUE",
             where,
-            "q1 to q4 are together {:.4g} long, a quaternion is 1; look at the digits",
+            "the quaternion q1 to q4 has length {:.4g} instead of 1; check the digits",
             size,
         )
     if pendant.orientation is ROTATION_VECTOR and size > MAX_ROTATION_RAD:
         raise InputError(
             "BAD_VALUE",
             where,
-            "the rotation vector is {:.4g} rad long, more than a turn; give RX RY RZ in "
-            "rad, as the pendant shows them",
+            "the rotation vector has a length of {:.4g} rad, more than a turn; enter RX RY RZ in "
+            "rad, as shown on the pendant",
             size,
         )
     numbers = np.radians(numbers) if pendant.orientation.degrees else numbers

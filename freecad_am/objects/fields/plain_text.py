@@ -20,9 +20,7 @@ def is_text(value: Any) -> bool:
 def checked_words(words: Any, where: str) -> list[str]:
     """A list of texts. InputError BAD_VALUE naming `where` for anything else."""
     if not isinstance(words, (list, tuple)) or not all(map(is_text, words)):
-        raise InputError(
-            "BAD_VALUE", where, "{} is not a text; give one in quotes", safe_repr(words)
-        )
+        raise InputError("BAD_VALUE", where, "{} is not a text; put it in quotes", safe_repr(words))
     return list(words)
 
 
@@ -31,4 +29,4 @@ def safe_repr(value: Any) -> str:
     try:
         return repr(value)
     except ReferenceError:
-        return Text("what was deleted")
+        return Text("the deleted object")

@@ -42,10 +42,10 @@ _LABELS = {  # of parameters whose keys do not say it in words
     "degree": "Degree of the polynomials",
     "parameter": "Polynomials give",
     "min_condition": "Least condition",
-    "lock": "Axis that stands still",
-    "lock_at": "It stands at",
+    "lock": "Locked axis",
+    "lock_at": "Locked at",
     "max_residual": "Largest direction error",
-    "own_branch": "Branch of this path",
+    "own_branch": "Branch of the path",
     "compare": "Compare with",
     "rx": "RX",
     "ry": "RY",
@@ -257,7 +257,7 @@ def split(text: str, where: str) -> list[str]:
     if _TWO_WAYS.search(text.strip()):
         remedy = "write decimals with a point and one kind of separator, as in 10.5 20.5"
         raise InputError(
-            "BAD_VALUE", where, "{!r} may be read in two ways; {}", plain_blanks(text), Word(remedy)
+            "BAD_VALUE", where, "{!r} is ambiguous; {}", plain_blanks(text), Word(remedy)
         )
     return text.replace(",", " ").split()
 
@@ -302,7 +302,9 @@ def _number(spec: f.Spec, value: Any, where: str) -> Any:
     expected = Text.joined(" or ", (example, *spec.words))
     quantity_value = _quantity(value, where, expected)
     if quantity_value.Unit != unit and quantity_value.Unit != App.Units.Unit():
-        raise InputError("BAD_UNIT", where, "{!s} has another dimension; give {}", value, expected)
+        raise InputError(
+            "BAD_UNIT", where, "{!s} has the wrong dimension; give {}", value, expected
+        )
     return (
         math.radians(quantity_value.Value)
         if spec.kind in (f.ANGLE, f.TURN_RATE)
@@ -332,7 +334,7 @@ def _quantity(value: Any, where: str, example: str) -> Any:
             raise InputError(
                 "BAD_VALUE",
                 where,
-                "{} has a comma; write decimals with a point, such as {}",
+                "{} has a comma; use a decimal point, as in {}",
                 repr(plain),
                 plain.replace(",", "."),
             ) from None

@@ -35,7 +35,7 @@ def set_parameters(
         raise InputError(
             "BAD_INPUT",
             obj.Label,
-            "{} is none of the parameters that it takes; give {}",
+            "{} is not a valid parameter; use {}",
             cls.__name__,
             expected,
         )
@@ -43,7 +43,7 @@ def set_parameters(
         checked = _checked(obj, stage, by_class, values)
     except ReferenceError:  # an object that is gone cannot even be named
         raise InputError(
-            "BAD_INPUT", obj.Label, "a value is an object that was deleted; give a number or a text"
+            "BAD_INPUT", obj.Label, "the value is a deleted object; give a number or a text"
         ) from None
     for parameters in checked:
         properties.write(obj, parameters)
@@ -78,6 +78,6 @@ def _plain(obj: Any, row: rows.Row, value: Any, where: str) -> Any:
         return value
     if row.form not in expressions.FOLLOW:
         raise InputError(
-            "BAD_EXPRESSION", where, "it cannot follow an expression; give a plain value"
+            "BAD_EXPRESSION", where, "it cannot follow an expression; enter a plain value"
         )
     return expressions.evaluated(value, obj, where)

@@ -26,7 +26,7 @@ def proxy_of(kind: str) -> type[Any]:
         raise InputError(
             "BAD_VALUE",
             "kind",
-            "{!r} is none of {}; use one of these",
+            "{!r} is not one of {}; choose one",
             kind,
             Text.joined(", ", KINDS),
         )

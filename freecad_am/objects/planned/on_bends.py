@@ -30,7 +30,7 @@ def bend_hint(shape: Any) -> str:
     with contextlib.suppress(*kernel.FAULTS):
         if name := carrier(shape.Solids):
             return Text(
-                " (others stand on the bend of {}: as the substrate it gives them layers of its shape)",
+                " (others are on the bend of {}: as the substrate it shapes their layers)",
                 name,
             )
     return ""

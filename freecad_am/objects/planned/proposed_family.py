@@ -105,21 +105,21 @@ def proposed(
     shape = source.shape
     if shape is not None and (not shape.Faces or any(name.startswith("Edge") for name in names)):
         what = (
-            Text("edges of {} are chosen", source.label)
+            Text("edges of {} are selected", source.label)
             if names
-            else Text("{} has edges and no faces", source.label)
+            else Text("{} has edges but no faces", source.label)
         )
-        return Proposal("curves", "", Text("{}, which are laid as beads", Word(what)))
+        return Proposal("curves", "", Text("{}, to be deposited as beads", Word(what)))
     if not names and substrate is not None and stands_on_hub(source, substrate, base):
         return Proposal(
             "developable",
             "",
-            Text("{} stands on a cylinder or cone of {}", source.label, substrate.label),
+            Text("{} is on a cylinder or cone of {}", source.label, substrate.label),
         )
     if shape is None:
         return _propose_for_mesh(source, substrate, edges, tilts, planes)
     if edges:
-        return Proposal("surface", "", Text("{} names the edges that it starts from", source.label))
+        return Proposal("surface", "", Text("{} names its start edges", source.label))
     if substrate is not None and (names or not shape.Solids):
         return Proposal(
             "surface", "", Text("{} is a thin wall that grows on {}", source.label, substrate.label)
@@ -127,12 +127,12 @@ def proposed(
     if len(shape.Solids) > 1 and not names:
         if clicked and substrate is None and _own_hub(source, clicked):
             why = Text(
-                "{} of {} is chosen, which most solids of it stand on",
+                "{} of {} is selected, the base of most of its solids",
                 ", ".join(clicked),
                 source.label,
             )
             return Proposal("developable", "", why)
-        hint = "; to deposit on one of them, name it as the substrate" if _own_hub(source) else ""
+        hint = "; to deposit on one, name it as the substrate" if _own_hub(source) else ""
         return _solid(
             source,
             Text(
@@ -150,24 +150,25 @@ def proposed(
     if wall is not None:
         if names:
             return Proposal(
-                "revolution", "", Text("the faces chosen of {} turn about one axis", source.label)
+                "revolution",
+                "",
+                Text("the selected faces of {} share one axis of revolution", source.label),
             )
         if not shape.Solids:
-            return Proposal(
-                "revolution", "", Text("{} is a skin that turns about one axis", source.label)
-            )
+            return Proposal("revolution", "", Text("{} is a surface of revolution", source.label))
         deep = part_depths.revolved_depths(shape, wall, source.label)
         balance = None if deep is None else wall_balance(deep, width)
         out = 0.0 if balance is None else balance.left_out or 0.0
         if balance is None or out <= NEGLIGIBLE * (balance.part_volume or 0.0):
             why = Text(
-                "{} turns about one axis, and its wall is one bead of {:.4g} mm",
+                "{} is a solid of revolution, and its wall is one bead of {:.4g} mm",
                 source.label,
                 width,
             )
             return Proposal("revolution", "", why)
         omission = Text(
-            "; it turns about one axis, but a wall of one bead would leave out {:.3g} of its {:.3g} cm3",
+            "; it is a solid of revolution, but a wall of one bead would leave out {:.3g} of its "
+            "{:.3g} cm3",
             out / MM3,
             (balance.part_volume or 0.0) / MM3,
         )
@@ -176,8 +177,8 @@ def proposed(
             "cladding",
             "",
             Text(
-                "faces of {} are chosen, which do not turn about one axis, and it is thicker there than a "
-                "bead of {:.4g} mm, so they are covered",
+                "the selected faces of {} share no axis of revolution, and the part is thicker "
+                "there than a bead of {:.4g} mm, so they are covered",
                 source.label,
                 width,
             ),
@@ -187,8 +188,8 @@ def proposed(
             "surface",
             "",
             Text(
-                "faces of {} are chosen, which do not turn about one axis, so they are a wall that starts "
-                "on the platform where nothing carries it",
+                "the selected faces of {} share no axis of revolution, so they are a wall that "
+                "starts on the platform if nothing else supports it",
                 source.label,
             ),
             stands=True,
@@ -198,8 +199,8 @@ def proposed(
             "surface",
             "",
             Text(
-                "faces of {} are chosen, which do not turn about one axis, so they are a wall; it needs a "
-                "substrate, or edges to start from",
+                "the selected faces of {} share no axis of revolution, so they are a wall; it "
+                "needs a substrate, or start edges",
                 source.label,
             ),
         )
@@ -210,7 +211,7 @@ def proposed(
             "developable",
             "",
             Text(
-                "{} of {} is chosen, which the rest of it stands on",
+                "{} of {} is selected, the base of the rest",
                 ", ".join(clicked),
                 source.label,
             ),
@@ -239,7 +240,7 @@ def _propose_for_mesh(
     open_ = find_holes(separate_vertices(mesh.vertices, mesh.triangles))
     opening = max((hole.size for hole in open_), default=0.0)
     if opening <= MAX_HOLE_SHARE * float(np.linalg.norm(np.ptp(body.vertices, axis=0))):
-        return _solid(source, Text("{} is a mesh, which is filled", source.label), tilts, planes)
+        return _solid(source, Text("{} is a mesh, to be filled", source.label), tilts, planes)
     crossed = find_crossings(mesh.vertices, mesh.triangles, WELDS_MM[-1])
     sheet = mesh.vertices, mesh.triangles
     if (
@@ -250,8 +251,9 @@ def _propose_for_mesh(
         position = place(crossed.positions[crossed.length.argmax()])
         size = at_least(opening)
         why = Text(
-            "{} is an open mesh that cuts itself at {} pairs of its triangles, as at {}, so it is not a wall of one bead: "
-            "it is filled, with its {} holes of up to {:.4g} mm closed",
+            "{} is an open mesh that intersects itself at {} pairs of triangles, as at {}, so it "
+            "is not a wall of one bead: it is filled, with its {} holes of up to {:.4g} mm "
+            "closed",
             source.label,
             len(crossed.pairs),
             position,
@@ -265,8 +267,8 @@ def _propose_for_mesh(
             "cladding",
             "",
             Text(
-                "{} is an open mesh that lies rather than stands, {:.0%} of it at less than 45 deg to the "
-                "platform, so it is a face that is covered",
+                "{} is a flat rather than upright open mesh, {:.0%} at less than 45 deg to the "
+                "platform, so it is a face to cover",
                 source.label,
                 lies,
             ),
@@ -288,8 +290,8 @@ def _propose_for_skin(source: Taken) -> Proposal:
             "cladding",
             "",
             Text(
-                "{} is an open skin that lies rather than stands, {:.0%} of it at less than 45 deg to the "
-                "platform, so it is a face that is covered",
+                "{} is a flat rather than upright open surface, {:.0%} at less than 45 deg to "
+                "the platform, so it is a face to cover",
                 source.label,
                 lies,
             ),
@@ -299,8 +301,8 @@ def _propose_for_skin(source: Taken) -> Proposal:
             "surface",
             "",
             Text(
-                "{} is an open skin and not of revolution, so it is a thin wall, which starts on the "
-                "platform where nothing carries it",
+                "{} is an open surface without an axis of revolution, so it is a thin wall, "
+                "which starts on the platform if nothing else supports it",
                 source.label,
             ),
             stands=True,
@@ -309,8 +311,9 @@ def _propose_for_skin(source: Taken) -> Proposal:
         "surface",
         "",
         Text(
-            "{} is an open skin and not of revolution, and nothing else serves it; it needs a substrate, or "
-            "edges to start from, and what does not grow from there is left out",
+            "{} is an open surface without an axis of revolution, and no other strategy applies; "
+            "it needs a substrate or start edges, and regions that do not grow from there are "
+            "omitted",
             source.label,
         ),
     )
@@ -333,7 +336,7 @@ def _solid(source: Taken, reason: str, tilts: bool, planes: _Planes) -> Proposal
         return Proposal(
             "solid",
             GEODESIC,
-            Text("{}, and layers have the bend of {} where it stands", reason, planes.ground.label),
+            Text("{}, and layers follow the bend of {} at its base", reason, planes.ground.label),
         )
     bodies = [source.body()]
     best_direction = rank_directions(
@@ -355,13 +358,13 @@ def _solid(source: Taken, reason: str, tilts: bool, planes: _Planes) -> Proposal
             "solid",
             PLANES,
             Text(
-                "{}, and less than 1% of its surface hangs over by more than 45 deg{}",
+                "{}, and less than 1% of its surface overhangs by more than 45 deg{}",
                 reason,
                 Word(along),
             ),
         )
     why = Text(
-        "{}, and {:.0%} of its surface hangs over by more than 45 deg{}", reason, over, Word(along)
+        "{}, and {:.0%} of its surface overhangs by more than 45 deg{}", reason, over, Word(along)
     )
     if over <= OVER:
         return Proposal("solid", PLANES, why)
@@ -378,7 +381,7 @@ def _solid(source: Taken, reason: str, tilts: bool, planes: _Planes) -> Proposal
             "solid",
             PLANES,
             Text(
-                "{}; curved layers need a flat face that it stands on, which it has not{}",
+                "{}; curved layers need a flat base face, which it lacks{}",
                 Word(why),
                 Word(hint),
             ),
@@ -387,9 +390,9 @@ def _solid(source: Taken, reason: str, tilts: bool, planes: _Planes) -> Proposal
         return Proposal(
             "solid",
             GEODESIC,
-            Text("{}, which layers along the way through it carry{}", Word(why), Word(hint)),
+            Text("{}, which layers along the path through it support{}", Word(why), Word(hint)),
         )
-    what = Text("a machine that tilts could lay layers: {}, which need no support", GEODESIC)
+    what = Text("a machine that tilts can use layers: {}, which need no support", GEODESIC)
     return Proposal("solid", PLANES, Text("{}; {}{}", Word(why), Word(what), Word(hint)))
 
 

@@ -38,7 +38,7 @@ def fit_of(obj: Any, parameters: ScanParameters) -> Fit | None:
         raise InputError(
             "BAD_INPUT",
             where,
-            "{} compares with {}; choose an inspection of the part that is deposited on",
+            "{} compares with {}; choose an inspection of the deposited part",
             scan.Label,
             scan.Planned.Label,
         )

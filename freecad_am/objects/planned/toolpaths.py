@@ -147,8 +147,9 @@ def layers_of(inputs: Given) -> CoreToolpath:
         raise InputError(
             "NOT_FOR_FAMILY",
             "process.wire.feed_mode",
-            "without a bead model or a ramp the travel speed does not vary, and "
-            "the wire has nothing to follow; use constant, a process.bead_model, or process.start.ramp or process.end.ramp",
+            "without a bead model or a ramp the travel speed is constant, so the wire feed has "
+            "nothing to follow; use constant, a process.bead_model, or process.start.ramp or "
+            "process.end.ramp",
         )
     classes.refuse_speeds(process)
     family = family_of(inputs.strategy)

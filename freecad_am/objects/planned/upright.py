@@ -42,7 +42,7 @@ def try_remedy(toolpath: Toolpath, fixed: Fixed | None) -> Toolpath:
         return toolpath
     from ...core.planning.remedies import NO_REMEDY, REMEDY
 
-    progress.report(1.0, Text("looking for what would clear the nozzle: {}", fixed.remedy))
+    progress.report(1.0, Text("searching for a change that clears the nozzle: {}", fixed.remedy))
     try:
         clear = not has_errors(list(fixed.make().issues))
     except AmError:  # what cannot be asked for is not a remedy
@@ -52,7 +52,8 @@ def try_remedy(toolpath: Toolpath, fixed: Fixed | None) -> Toolpath:
             NOTE,
             REMEDY,
             Text(
-                "with {} the nozzle is clear; the toolpath was planned so, joints were not",
+                "with {} the nozzle is clear; the toolpath was planned with it, the joint path "
+                "was not",
                 fixed.remedy,
             ),
         )
@@ -60,7 +61,7 @@ def try_remedy(toolpath: Toolpath, fixed: Fixed | None) -> Toolpath:
         else Issue(
             NOTE,
             NO_REMEDY,
-            Text("the nozzle is not clear with {} either, which was tried", fixed.remedy),
+            Text("the nozzle is not clear with {} either (tested)", fixed.remedy),
         )
     )
     return dataclasses.replace(toolpath, issues=(note, *toolpath.issues))

@@ -53,7 +53,7 @@ class Stored:
 
 def _check_made(obj: Any) -> None:
     if not obj.Key:
-        raise InputError("NO_RESULT", obj.Label, "there is no result yet; recompute it")
+        raise InputError("NO_RESULT", obj.Label, "the result is missing; recompute it")
 
 
 def _values_at(paths: Sequence[store.Place], value: Any) -> Any:

@@ -97,7 +97,9 @@ def object_of(array: Any, index: int) -> Any:
     """
     count = max(element_count(array), len(elements_of(array)))
     if not count:
-        raise InputError("BAD_INPUT", array.Label, "it is not a link array; give the object itself")
+        raise InputError(
+            "BAD_INPUT", array.Label, "it is not a link array; choose the object itself"
+        )
     if not 0 <= index < count:
         raise InputError(
             "BAD_INPUT",

@@ -81,7 +81,7 @@ def shape_of(source: Any, path: str = "") -> Any:
             raise InputError(
                 "NO_SHAPE",
                 source.Label,
-                "{} of it has no shape; choose an object with a shape",
+                "{} in it has no shape; choose an object with a shape",
                 path,
             )
         return shape

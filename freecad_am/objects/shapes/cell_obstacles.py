@@ -142,7 +142,7 @@ def _refuse_at_start(cell: Cell, toolpath: Toolpath) -> None:
             raise InputError(
                 CODE,
                 f"{WHERE} {obstacle.name}",
-                "it touches the nozzle at the first point of the job already, "
-                "however the arm stands; its pose is that in the maker's base frame, and files are in mm: "
-                "move it, or the deposition point",
+                "it already touches the nozzle at the first point of the job, in every arm "
+                "configuration; its pose is in the manufacturer's base frame, and its file in "
+                "mm: move it, or the deposition point",
             )

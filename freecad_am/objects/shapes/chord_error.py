@@ -59,8 +59,8 @@ def notes(obj: Any) -> tuple[Issue, ...]:
     if chord_error <= LEAST or chord_error != suited(obj):
         return ()
     text = Text(
-        "beads are straight within {:g} mm, as suits a part {:.0f} mm large and its beads; set strategy.chord_error for "
-        "another value",
+        "the chord error is {:g} mm, suitable for a part of {:.0f} mm and its beads; set "
+        "strategy.chord_error to change it",
         chord_error,
         extent(obj),
     )

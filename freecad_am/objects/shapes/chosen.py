@@ -74,14 +74,14 @@ class FeatureStage(Stage):
                 raise InputError(
                     "BAD_EDGES",
                     where,
-                    "{} is not there any more since the part changed; choose the edges again",
+                    "{} no longer exists after a change of the part; choose the edges again",
                     names,
                 )
             if lost_names:
                 raise InputError(
                     "BAD_FACES",
                     where,
-                    "{} is not there any more since the part changed; choose the faces again",
+                    "{} no longer exists after a change of the part; choose the faces again",
                     names,
                 )
         return super().linked(obj)
@@ -326,16 +326,18 @@ def _elsewhere(name: str, label: str, new_name: str) -> Issue:
     return _issue(
         name,
         Text(
-            "{} of {} is not the face that was chosen: that face is {} now, as FreeCAD renumbers faces when a part changes; "
-            "choose the faces again, or confirm them: OK in the panel with nothing else entered",
+            "{} of {} is not the selected face: that face is {} now, as FreeCAD renumbers faces "
+            "when a part changes; choose the faces again, or confirm them: OK in the panel "
+            "without other changes",
             name,
             label,
             new_name,
         )
         if _kind(name) == FACE
         else Text(
-            "{} of {} is not the edge that was chosen: that edge is {} now, as FreeCAD renumbers edges when a part changes; "
-            "choose the edges again, or confirm them: OK in the panel with nothing else entered",
+            "{} of {} is not the selected edge: that edge is {} now, as FreeCAD renumbers edges "
+            "when a part changes; choose the edges again, or confirm them: OK in the panel "
+            "without other changes",
             name,
             label,
             new_name,
@@ -348,15 +350,17 @@ def _changed(mark: Mark, now: Mark, label: str) -> Issue:
         return _issue(
             mark.name,
             Text(
-                "{} of {} lies another way than when it was chosen, so it may be another face, as FreeCAD renumbers faces "
-                "when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered",
+                "{} of {} has changed its position since its selection and may be another face, "
+                "as FreeCAD renumbers faces when a part changes; choose the faces again, or "
+                "confirm them: OK in the panel without other changes",
                 mark.name,
                 label,
             )
             if _kind(mark.name) == FACE
             else Text(
-                "{} of {} lies another way than when it was chosen, so it may be another edge, as FreeCAD renumbers edges "
-                "when a part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered",
+                "{} of {} has changed its position since its selection and may be another edge, "
+                "as FreeCAD renumbers edges when a part changes; choose the edges again, or "
+                "confirm them: OK in the panel without other changes",
                 mark.name,
                 label,
             ),
@@ -366,8 +370,9 @@ def _changed(mark: Mark, now: Mark, label: str) -> Issue:
     return _issue(
         mark.name,
         Text(
-            "{} of {} was {} when it was chosen and is {} now, so it may be another face, as FreeCAD renumbers faces when a "
-            "part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered",
+            "{} of {} was {} when selected and is {} now, so it may be another face, as FreeCAD "
+            "renumbers faces when a part changes; choose the faces again, or confirm them: OK in "
+            "the panel without other changes",
             mark.name,
             label,
             was,
@@ -375,8 +380,9 @@ def _changed(mark: Mark, now: Mark, label: str) -> Issue:
         )
         if kind == FACE
         else Text(
-            "{} of {} was {} when it was chosen and is {} now, so it may be another edge, as FreeCAD renumbers edges when a "
-            "part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered",
+            "{} of {} was {} when selected and is {} now, so it may be another edge, as FreeCAD "
+            "renumbers edges when a part changes; choose the edges again, or confirm them: OK in "
+            "the panel without other changes",
             mark.name,
             label,
             was,

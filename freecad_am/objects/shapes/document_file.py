@@ -82,7 +82,8 @@ def _refuse_doctype(archive: zipfile.ZipFile, name: str, where: str) -> None:
 
     def refused(*_: object) -> None:
         message = Text(
-            "{} in it has a document type, which no document of FreeCAD has, and is not read; save it again",
+            "{} in it has a document type, which FreeCAD documents never have, and is not read; "
+            "save it again",
             name,
         )
         raise InputError("BAD_FILE", where, message)

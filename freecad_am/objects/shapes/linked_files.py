@@ -44,7 +44,7 @@ def no_linked_file(where: str, label: str, file: str) -> InputError:
     return InputError(
         "NO_LINKED_FILE",
         where,
-        "{} links to {}, which is not there; put the file there, or change the link in FreeCAD",
+        "{} links to {}, which does not exist; restore the file, or change the link in FreeCAD",
         label,
         file,
     )

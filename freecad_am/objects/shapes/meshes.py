@@ -56,7 +56,8 @@ def refuse_mixed(source: Any) -> None:
         raise InputError(
             "MIXED",
             source.Label,
-            "it holds shapes and meshes, and only one kind can be used at a time; choose the objects in it one by one",
+            "it contains shapes and meshes, which cannot be used together; choose its objects "
+            "one by one",
         )
 
 

@@ -105,7 +105,7 @@ def resolved(obj: Any, names: Sequence[str], where: str) -> tuple[Any, list[str]
         raise InputError(
             _code(names[0]),
             where,
-            "{} names faces or edges of several objects ({}, {}); choose those of one",
+            "{} names faces or edges of several objects ({}, {}); choose from one object",
             ", ".join(names),
             owners[0][0].Label,
             other_labels[0],
@@ -124,8 +124,8 @@ def refuse_paths(obj: Any, names: Sequence[str], where: str) -> None:
         raise InputError(
             _code(plain[0]),
             where,
-            "{} of {} is not certain: FreeCAD has what is in a group of it "
-            "twice, and numbers both; choose it of the object that it belongs to",
+            "{} of {} is ambiguous: FreeCAD lists the contents of its group twice and numbers "
+            "both; choose it on the original object",
             plain[0],
             obj.Label,
         )
@@ -138,7 +138,7 @@ def refuse_paths(obj: Any, names: Sequence[str], where: str) -> None:
             raise InputError(
                 _code(name),
                 where,
-                "{} of {} is {} of {}; choose it of that object",
+                "{} of {} is {} of {}; choose it on the latter",
                 name,
                 obj.Label,
                 own_name or element,
@@ -161,7 +161,7 @@ def _resolve(obj: Any, name: str, where: str) -> tuple[Any, str]:
         raise InputError(
             _code(name),
             where,
-            "{} is not there in {}; choose it in the 3D view, or by the object that it belongs to",
+            "{} does not exist in {}; choose it in the 3D view, or on the original object",
             name,
             obj.Label,
         )

@@ -71,7 +71,7 @@ def _refuse_other(path: str, extension: str) -> None:
 
 def _document_content(path: str, object_name: str, stem: str) -> tuple[Any, str, tuple[Issue, ...]]:
     if not is_there(path):
-        raise InputError("NO_FILE", path, "there is no such file; check the path")
+        raise InputError("NO_FILE", path, "the file does not exist; check the path")
     for document in App.listDocuments().values():
         if document.FileName and os.path.realpath(document.FileName) == os.path.realpath(path):
             return _shape_in(
@@ -158,7 +158,8 @@ def _refuse_without_add_on(changed: Any, needs: Dependencies, where: str) -> Non
             raise InputError(
                 "NO_ADD_ON",
                 where,
-                "{} cannot be computed: the add-on that made it is not there; install it, or leave the value out",
+                "{} cannot be computed: the add-on that created it is missing; install it, or "
+                "remove the value",
                 obj.Label,
             )
 
@@ -171,7 +172,7 @@ def _notes(
     labels = ", ".join(dict.fromkeys(obj.Label for obj in renewed if obj in decisive))
     if labels:
         text = Text(
-            "{} was computed anew for {}: a document that it links to changed after this one was saved",
+            "{} was recomputed for {}: a linked document changed after this one was saved",
             labels,
             source.Label,
         )
@@ -179,7 +180,7 @@ def _notes(
     for obj in dict.fromkeys(changed):
         if obj not in decisive:
             text = Text(
-                "a value of {} is set, but {} is not made from it; check the names",
+                "a value of {} is set, but {} does not depend on it; check the names",
                 obj.Label,
                 source.Label,
             )
@@ -232,7 +233,7 @@ def _no_single_object(
         message = "{} objects have a shape of their own ({}); name the part with part.object"
         return InputError("NO_OBJECT", path, message, len(candidates), names)
     if candidates:
-        message = "{} objects are called {!r}; give one of them another label"
+        message = "{} objects have the label {!r}; change one label"
         return InputError("NO_OBJECT", path, message, len(candidates), object_name)
     message = "no object with a shape is called {!r}; name one of {}"
     return InputError("NO_OBJECT", path, message, object_name, names)
@@ -246,8 +247,8 @@ def _content_of(source: Any, path: str) -> tuple[Any, str]:
             raise InputError(
                 "NO_OBJECT",
                 path,
-                "{} has what is in a group of it twice, so that numbers of its faces are "
-                "not certain; name an object in it, or take that out of the group",
+                "{} lists the contents of a group twice, so its face numbers are ambiguous; name "
+                "an object in it, or remove the contents from the group",
                 source.Label,
             )
         shape = global_shape(source).copy()

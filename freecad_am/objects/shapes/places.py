@@ -65,7 +65,8 @@ def _container_of(obj: Any) -> Any:
         raise InputError(
             "SEVERAL_PLACES",
             obj.Label,
-            "it is shown by several link groups ({}), each at a place of its own; choose one of these, or make a link to it",
+            "several link groups show it ({}), each in its own place; choose one group, or make "
+            "a link to the object",
             ", ".join(candidate.Label for candidate in linking),
         )
     return linking[0] if linking else obj.getParentGroup()

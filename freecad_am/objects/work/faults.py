@@ -20,8 +20,8 @@ def memory(label: str) -> Iterator[None]:
         raise InputError(
             "NO_MEMORY",
             label,
-            "there is not enough memory to compute it; give larger steps, such as layer height "
-            "and chord error, or a smaller part",
+            "the computation needs more memory than available; use larger steps, such as layer "
+            "height and chord error, or a smaller part",
         ) from None
 
 

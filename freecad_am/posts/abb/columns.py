@@ -147,7 +147,7 @@ class Run:
         if not self.time_or_speed or self.moving or move.zone != "fine":
             return False
         if self.external and self.external[-1] != self._used_of(move.axes.split(",")):
-            raise unreadable(where, "external axes would move where it stands")
+            raise unreadable(where, "external axes would move although it is fixed")
         if self.placed[-1]:
             return (self.positions[-1], self.turns[-1]) == move.values
         self._framed(move.frames, where)

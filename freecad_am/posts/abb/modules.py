@@ -103,7 +103,8 @@ def modules(files: dict[str, bytes]) -> dict[str, Module]:
             raise unreadable(
                 file,
                 Text(
-                    "its module is called {}, and the file is not, or another one is too",
+                    "its module is called {}, but the file has another name, or another file has "
+                    "the same one",
                     module.name,
                 ),
             )

@@ -111,7 +111,8 @@ def _times(moves: Moves) -> Array:
         raise InputError(
             "MOVE_TIME",
             place(moves),
-            "a move takes {:.3g} s, less than the {:g} s that can be written; use a larger chord error or a lower speed",
+            "a move takes {:.3g} s, below the minimum of {:g} s; use a larger chord error or a "
+            "lower speed",
             seconds.min(),
             SHORTEST_MOVE_S,
         )

@@ -62,9 +62,7 @@ def refuse(request: Asked) -> None:
     if request.weave and not arc:
         raise weave_refused("a weave is an argument of ArcL, which program.schedule.by: arc writes")
     if request.weave and request.part_held:
-        raise weave_refused(
-            "that a robot swings the part under a torch that stands was not confirmed"
-        )
+        raise weave_refused("weaving by moving the part below a fixed torch was not confirmed")
     if not request.wire:
         return
     if arc:
@@ -221,9 +219,8 @@ class Process:
             raise InputError(
                 "TRIGGER",
                 place(aboard_run.moves),
-                "the tip moves at {:.2g} mm/s on the move at the end of which the deposit is switched, and the lead is "
-                "programmed as a distance before that place; give a retract distance, or leave program.trigger.lead "
-                "out",
+                "at the switching point the tip moves at {:.2g} mm/s, too slowly to program the "
+                "lead as a distance; set a retract distance, or remove program.trigger.lead",
                 speed,
             )
         return [
@@ -252,8 +249,8 @@ class Process:
                 raise InputError(
                     "MOVE_SPEED",
                     "program.max_points",
-                    "a module would have more than {} speeds, each of which is data of "
-                    "its own here; use fewer speeds, or a smaller program.max_points",
+                    "a module would need more than {} speeddata items; use fewer speeds, or a "
+                    "smaller program.max_points",
                     MOST_NAMES,
                 )
         speeds = [

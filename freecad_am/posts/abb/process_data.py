@@ -64,7 +64,8 @@ class ProcessData:
             if taken_weld[1] not in module.welds or taken_weld[1] in self.welds:
                 raise unreadable(
                     where,
-                    "what is taken of the controller is not weld data of the module, or taken twice",
+                    "the data taken from the controller is not weld data of the module, or is "
+                    "taken twice",
                 )
             self.welds[taken_weld[1]] = Weld(int(taken_weld[2]))
         elif speed := _SPEED.match(line):

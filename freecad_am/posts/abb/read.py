@@ -82,13 +82,13 @@ def _follow(module: Module, run: Run) -> None:
         elif line.startswith("!") or line == r"SingArea\Off;":
             continue
         elif run.moving:
-            raise unreadable(where, Text("{!r} is reached before the move before it ends", line))
+            raise unreadable(where, Text("{!r} runs before the previous move ends", line))
         elif load := _LOAD.match(line):
             _load(module, load[1], lines, run, where)
         elif not run.process_data.understood(line, module, where):
             _other(line, run, where)
     if activated[1] == len(run.time_or_speed):
-        raise unreadable(activated[0], Text("{} is activated, and no move follows", run.active))
+        raise unreadable(activated[0], Text("{} is activated, but no move follows", run.active))
 
 
 def _load(
@@ -115,7 +115,7 @@ def _load(
         raise unreadable(
             where,
             Text(
-                "{} is not there, has no routine {}, is run already, or loaded while depositing",
+                "{} is missing, has no routine {}, has already run, or is loaded while depositing",
                 part_name,
                 name[1],
             ),
@@ -142,7 +142,7 @@ def _other(line: str, run: Run, where: str) -> None:
         ):
             raise unreadable(
                 where,
-                Text("{} is a module or a routine of this program and is not loaded", call[1]),
+                Text("{} names a module or routine of the program that is not loaded", call[1]),
             )
         run.happens("call", call[1].upper())
     else:
@@ -156,7 +156,8 @@ def _move(module: Module, move: re.Match[str], run: Run, where: str) -> None:
         raise unreadable(
             where,
             Text(
-                "{} is not a speed of the module, or the speed is given otherwise than by \\T or \\V",
+                "{} is not a speed of the module, or the speed is set by an argument other than "
+                "\\T or \\V",
                 speed,
             ),
         )

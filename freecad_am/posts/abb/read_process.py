@@ -136,9 +136,7 @@ def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
     move = Move(True, (position, turn), axes, weld.speed, weld.half, zone, frames)
     if kind == "Start":
         if run.on or not run.nearest or not run.stands_at(move, where):
-            raise unreadable(
-                where, "the arc burns already, or is struck where the robot does not stand"
-            )
+            raise unreadable(where, "the arc is already on, or is struck while the robot moves")
         run.keep_switch(seam, True, ARC, where)
         run.seam, run.weave, run.struck, run.last_weld = int(seam), 0, woven, (weld_name, woven)
         return

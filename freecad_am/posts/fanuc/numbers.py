@@ -48,7 +48,8 @@ def time_words(moves: Moves) -> list[str]:
         raise InputError(
             "MOVE_TIME",
             place(moves),
-            "{} moves take {:.4g} s in all and cannot be shorter than 1 ms each; use a larger chord error or a lower speed",
+            "{} moves take {:.4g} s in total, but each needs at least 1 ms; use a larger chord "
+            "error or a lower speed",
             n,
             seconds.sum(),
         )
@@ -97,8 +98,8 @@ def configurations(moves: Moves, continuous: tuple[bool, ...]) -> list[str]:
         raise InputError(
             "ARM_BACKWARDS",
             place(moves),
-            "Cartesian positions are written only of an arm reaching forwards; use `branch: [front, ...]` or"
-            " `motion: joint`",
+            "Cartesian positions need an arm that reaches forwards; use `branch: [front, ...]` "
+            "or `motion: joint`",
         )
     degrees = np.degrees(moves.joints)
     turns = np.sign(degrees) * np.floor((np.abs(degrees) + 180.0 + _TURN_TOLERANCE) / 360.0)
@@ -111,8 +112,8 @@ def configurations(moves: Moves, continuous: tuple[bool, ...]) -> list[str]:
         raise InputError(
             "TURN_NUMBER",
             place(moves),
-            "axis {} stands at {:.1f} deg and its turn number cannot be given reliably in a Cartesian position; use "
-            "`motion: joint`",
+            "axis {} is at {:.1f} deg, where a Cartesian position has no reliable turn number; "
+            "use `motion: joint`",
             axis + 1,
             degrees[point, axis],
         )

@@ -158,8 +158,8 @@ def refuse_setup(
         raise InputError(
             "REMOTE_TCP",
             "program.motion",
-            "Cartesian motion with the part on the robot means remote TCP, and what the position records of such moves"
-            " (RX RY RZ RW RP RR) stand for is not understood well enough to write them; use `motion: joint`",
+            "Cartesian motion with the part on the robot needs remote TCP, whose position "
+            "records (RX RY RZ RW RP RR) are not documented well enough; use `motion: joint`",
         )
     if setup not in ("part-on-robot", "tool-on-robot"):
         raise InputError(
@@ -221,7 +221,8 @@ def _refuse(program: Program) -> None:
             raise InputError(
                 "ANALOGUE_INPUT",
                 "process.cooling",
-                "analogue inputs are whole numbers, not {:.9g}; change below, gain or zero so that it is one",
+                "analogue inputs are whole numbers, not {:.9g}; change below, gain or zero "
+                "accordingly",
                 block.below,
             )
     _refuse_continuous_steps(program)
@@ -240,8 +241,8 @@ def _refuse_continuous_steps(program: Program) -> None:
         raise InputError(
             "ENDLESS_STEP",
             Text("layer {} bead {}", run.layer, run.bead),
-            "axis {} turns {:.1f} deg in one move; an axis of continuous turn goes less than 180 deg per move: add points, "
-            "or limit the axis",
+            "axis {} turns {:.1f} deg in one move; a continuous axis moves less than 180 deg per "
+            "move: add points, or limit the axis",
             axes[axis] + 1,
             turn,
         )

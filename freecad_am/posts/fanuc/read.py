@@ -51,7 +51,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     main = [name for name in named if name not in called]
     if len(main) != 1:
         raise unreadable(
-            "program", Text("{} programs are called by none of the others, expected one", len(main))
+            "program", Text("{} programs are called by no other program, expected one", len(main))
         )
     run = Run()
     _follow(main[0], {name: (file, files[file]) for name, file in named.items()}, run, ())
@@ -223,7 +223,7 @@ def _select(listing: Listing, row: int, run: Run, number: int) -> None:
             raise unreadable(
                 _line_name(listing, number),
                 Text(
-                    "P[{}] is recorded in another U{} than the one selected",
+                    "P[{}] is recorded in another U{} than the selected one",
                     listing.records.point[row],
                     word,
                 ),

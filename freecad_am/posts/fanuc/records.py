@@ -119,7 +119,7 @@ def _check_groups(file: str, lines: list[str], records: Records) -> None:
         raise unreadable(
             f"{file} line {number}",
             Text(
-                "its header moves groups {}, and its positions are of groups {}",
+                "its header moves groups {}, but its positions have groups {}",
                 ", ".join(sorted(moved)),
                 ", ".join(sorted({"1", records.group or "1"})),
             ),
@@ -165,7 +165,8 @@ def _joint_records_of_groups(file: str, text: str, positions: int) -> Records:
             raise unreadable(
                 _place(file, text, positions, int(point)),
                 Text(
-                    "P[{}] has other motion groups, or axes of them, than P[{}]; record all positions alike",
+                    "P[{}] and P[{}] have different motion groups or axes; record all positions "
+                    "alike",
                     point,
                     points[0],
                 ),

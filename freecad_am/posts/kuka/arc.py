@@ -47,9 +47,9 @@ def refuse_post_flow(program: Program) -> None:
             raise InputError(
                 "SCHEDULE",
                 "process.lead_off",
-                "ArcTech ends the arc with the last move of a bead and stays there for the "
-                "crater time of its weld data; use lead_off 0 and set the crater time of {}, or another "
-                "program.schedule.by",
+                "ArcTech ends the arc with the last move of a bead and waits there for the "
+                "crater time of its weld data; use lead_off 0 and set the crater time of {}, or "
+                "another program.schedule.by",
                 f"{END_DATA}{block.schedule}",
             )
 

@@ -50,7 +50,7 @@ from .read import read
 
 __all__ = ["read", "write"]
 
-NO_ANALOGUE = "whether WAIT FOR looks at $ANIN until it changes was not found documented"
+NO_ANALOGUE = "the documentation does not say whether WAIT FOR polls $ANIN"
 # why the speed of the wire cannot follow the torch speed
 CONTROLLER = Controller(
     point_bytes=75, memory_mb=4.0, external=True, positioner="2", arc_moves=True
@@ -234,15 +234,16 @@ def refuse_setup(
         raise InputError(
             "REMOTE_TCP",
             "cell.setup",
-            "with the part on the robot linear moves of KRL have a fixed tool ($IPO_MODE #TCP), and whether points are then"
-            " the nozzle seen from the part or the part seen from the nozzle was not confirmed; use `setup: tool-on-robot`",
+            "with the part on the robot linear moves of KRL use a fixed tool ($IPO_MODE #TCP), "
+            "and the reference of the points, nozzle or part, was not confirmed; use `setup: "
+            "tool-on-robot`",
         )
     if motion == "joint":
         raise InputError(
             "JOINT_DEPOSIT",
             "program.motion",
-            "joint moves of KRL run at whole percents of the axes' speeds, so the speed along a bead would not be the one"
-            " asked for; use `motion: cartesian`",
+            "joint moves of KRL use whole percents of the axis speeds, which changes the speed "
+            "along a bead; use `motion: cartesian`",
         )
 
 
@@ -265,7 +266,7 @@ def _refuse(program: Program) -> None:
             raise InputError(
                 "UNSUPPORTED_FRAME",
                 f"program.{what}",
-                "the controller has numbers up to {}, not {}; use one of these",
+                "the number must be at most {}, not {}; use a smaller number",
                 highest,
                 number,
             )
@@ -285,8 +286,8 @@ def _refuse_schedules(program: Program) -> None:
         raise InputError(
             "SCHEDULE",
             "program.schedule.output",
-            "$OUT[{}] to $OUT[{}] carry the schedule, and one of them switches the "
-            "deposit; use other ones, or another program.deposit_output",
+            "$OUT[{}] to $OUT[{}] carry the schedule, but the range includes the output of the "
+            "deposit; use other outputs, or another program.deposit_output",
             schedule_outputs[0],
             schedule_outputs[-1],
         )

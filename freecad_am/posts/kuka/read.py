@@ -70,7 +70,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     main = [name for name in by_name if name not in called]
     if len(main) != 1:
         raise not_read(
-            "program", Text("{} programs are called by none of the others, expected one", len(main))
+            "program", Text("{} programs are called by no other program, expected one", len(main))
         )
     run = Run(by_name)
     _go(main[0], run)
@@ -94,15 +94,15 @@ def _routine(file: str, lines: list[str]) -> str:
         raise not_read(
             file,
             Text(
-                "it is not a module with one routine of the file's name, that begins with &ACCESS RVP, &REL 1 and DEF and ends "
-                "with END: {}",
+                "it is not a module with one routine named like the file, that begins with "
+                "&ACCESS RVP, &REL 1 and DEF and ends with END: {}",
                 had,
             ),
         )
     if f"{title[1]}.src".lower() != file.lower():
         raise not_read(
             file,
-            Text("its routine is {}, which is not the file's name; rename one of them", heads[0]),
+            Text("its routine {} and the file have different names; rename one", heads[0]),
         )
     return title[1]
 
@@ -194,7 +194,7 @@ def _set(outputs: tuple[int, int], number: int, run: Run, where: str) -> None:
 def _arc(line: str, run: Run, where: str) -> None:
     """A line of ArcTech: what moves count on may have been set by it."""
     if run.trigger:
-        raise not_read(where, "it stands among the lines of another instruction")
+        raise not_read(where, "it interrupts the lines of another instruction")
     switched = run.arc.called(line)
     if switched is None:
         raise not_read(
@@ -215,7 +215,7 @@ def _arc(line: str, run: Run, where: str) -> None:
 def _trigger(trigger: re.Match[str], run: Run, where: str) -> None:
     """The next move is to switch an output."""
     if run.trigger or run.arc.is_open:
-        raise not_read(where, "it stands among the lines of another instruction")
+        raise not_read(where, "it interrupts the lines of another instruction")
     _one_output(trigger[2], run, where)
     run.trigger = -0.001 * int(trigger[1]), trigger[2], trigger[3] == "TRUE"
 
@@ -236,14 +236,14 @@ def _follow_instruction(line: str, run: Run, where: str) -> None:
             raise not_read(
                 where,
                 Text(
-                    "the instruction {!r} is not understood: of a TRIGGER, which is read ahead of the motion, only one with "
-                    "DISTANCE=1 and a DELAY of at most 0 is",
+                    "the instruction {!r} is not understood: a TRIGGER, which is read ahead of "
+                    "the motion, is only supported with DISTANCE=1 and a DELAY of at most 0",
                     line,
                 ),
             )
         raise not_read(where, Text("the instruction {!r} is not understood", line))
     if run.arc.is_open or run.trigger:
-        raise not_read(where, Text("{!r} stands among the lines of another instruction", line))
+        raise not_read(where, Text("{!r} interrupts the lines of another instruction", line))
     if pause := _PAUSE.match(line):
         run.standing = _stopped(run, where)
         run.happens(
@@ -254,7 +254,7 @@ def _follow_instruction(line: str, run: Run, where: str) -> None:
         run.happens("input", float(awaited[1]))
     elif not run.standing:
         raise not_read(
-            where, Text("{!r} is read ahead of the motion: no wait stands before it", line)
+            where, Text("{!r} is read ahead of the motion, as no wait precedes it", line)
         )
     elif switched := _SWITCHED.match(line):
         _one_output(switched[1], run, where)
@@ -264,7 +264,9 @@ def _follow_instruction(line: str, run: Run, where: str) -> None:
         if call[1].lower() not in run.files:
             run.happens("call", call[1].upper())
         elif call[1].lower() in run.followed or run.on:
-            raise not_read(where, Text("{} is run already, or called while depositing", call[1]))
+            raise not_read(
+                where, Text("{} has already run, or is called while depositing", call[1])
+            )
         else:
             _go(call[1].lower(), run)
 
@@ -292,7 +294,7 @@ def _follow_move(line: str, run: Run, where: str) -> None:
         raise not_read(where, "the module does not set all that the move counts on")
     if not straight and not 1.0 <= state["percent"] <= 100.0:
         raise not_read(
-            where, Text("{:.0f} % of the joint speeds is none of 1 to 100", state["percent"])
+            where, Text("{:.0f} % of the joint speeds is not in 1 to 100", state["percent"])
         )
     match = straight or _TO_AXES.match(line)
     assert match is not None
@@ -352,7 +354,7 @@ def _external_axes(numbers: tuple[int, ...], share: float, run: Run, where: str)
     ):
         raise not_read(
             where,
-            "the external axes are not given in order, or BASE is not coupled to what they move",
+            "the external axes are out of order, or BASE is not coupled to the part they move",
         )
     if any(run.state.get(f"E{number}") != share for number in numbers):
         raise not_read(where, Text("external axes do not run at {:.0f} % of their speeds", share))

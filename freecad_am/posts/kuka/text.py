@@ -160,8 +160,8 @@ class Lines:
             raise InputError(
                 "JOINT_SPEED",
                 place(moves),
-                "a rapid would need {:.3g} % of the largest joint speed, and KRL takes whole percentages from {} to 100; "
-                "use another rapid speed",
+                "a rapid would need {:.3g} % of the largest joint speed, but KRL uses whole "
+                "percentages from {} to 100; use another rapid speed",
                 percent[wrong][0],
                 LEAST_PERCENT,
             )

@@ -171,14 +171,15 @@ def _refuse(program: Program) -> None:
         raise InputError(
             "SCHEDULE",
             "program.schedule.output",
-            "analogue output {} carries the speed of the wire; use another one for schedules",
+            "analogue output {} carries the wire feed; use another one for schedules",
             program.schedule_output,
         )
     if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_PIN:
         raise InputError(
             "DEPOSIT_OUTPUT",
             "program.deposit_output",
-            "digital outputs are 1 to {} (motion.digital-out-00 is number 1), not {}; use one of these",
+            "digital outputs are 1 to {} (motion.digital-out-00 is number 1), not {}; choose one "
+            "in this range",
             LAST_PIN,
             program.deposit_output,
         )
@@ -187,7 +188,8 @@ def _refuse(program: Program) -> None:
             raise InputError(
                 "DEPOSIT_INPUT",
                 "process.between_layers.input",
-                "digital inputs are 1 to {} (motion.digital-in-00 is number 1), not {}; use one of these",
+                "digital inputs are 1 to {} (motion.digital-in-00 is number 1), not {}; choose "
+                "one in this range",
                 LAST_PIN,
                 block.number,
             )
@@ -201,14 +203,15 @@ def _refuse_cartesian(program: Program) -> None:
         raise InputError(
             "NO_TIP_KINEMATICS",
             "program.nc.switch_kinematics",
-            "positions on the part need the kinematics that M428 chooses; set it to true, or use `motion: joint`",
+            "positions on the part need the kinematics that M428 selects; set it to true, or use "
+            "`motion: joint`",
         )
     if not 1 <= program.user_frame <= len(OFFSETS):
         raise InputError(
             "UNSUPPORTED_FRAME",
             "program.user_frame",
-            "work offset {} is not there for the part; use 1 to {} (G54 to G59.2; the ninth, {}, is set to zero for moves "
-            "of the axes)",
+            "work offset {} is not available for the part; use 1 to {} (G54 to G59.2; the ninth, "
+            "{}, is set to zero for moves of the axes)",
             program.user_frame,
             len(OFFSETS),
             MACHINE_OFFSET,
@@ -224,8 +227,9 @@ def _refuse_tilt(carried: tuple[float, ...]) -> None:
         raise InputError(
             "UNSUPPORTED_FRAME",
             "program.origin",
-            "a work offset of LinuxCNC turns about Z only, and the part leans on the table by RX {:.4g} and RY {:.4g} deg; "
-            "enter an upright origin, as cell.platform: [{:.6g}, {:.6g}, {:.6g}, 0, 0, {:.6g}], or use `motion: joint`",
+            "a work offset of LinuxCNC rotates only about Z, but the part is tilted on the table "
+            "by RX {:.4g} and RY {:.4g} deg; enter an upright origin, as cell.platform: [{:.6g}, "
+            "{:.6g}, {:.6g}, 0, 0, {:.6g}], or use `motion: joint`",
             rx,
             ry,
             x,

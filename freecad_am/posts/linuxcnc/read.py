@@ -101,9 +101,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         if not _is_sub(name, lines[:-1]):
             main.append(name)
     if len(main) != 1:
-        raise unreadable(
-            "program", Text("there are {} programs that are not subs, expected one", len(main))
-        )
+        raise unreadable("program", Text("{} programs are not subs, expected one", len(main)))
     state = _State(programs)
     _follow(main[0], programs[main[0]], state, ())
     if state.track.on or state.loop[0]:
@@ -118,7 +116,7 @@ def _is_sub(name: str, lines: list[tuple[str, str]]) -> bool:
         return False
     for (where, text), expected in ((lines[0], begin), (lines[-1], end)):
         if text != expected:
-            raise unreadable(where, Text("{!r} stands outside of the sub {}", text, name))
+            raise unreadable(where, Text("{!r} is outside the sub {}", text, name))
     return True
 
 
@@ -230,7 +228,7 @@ def _cooled(where: str, text: str, state: _State) -> bool:
         state.loop = "", ""
     elif loop or (state.loop[0] and not _DWELL.match(text)):
         raise unreadable(
-            where, Text("{!r} in or about a loop that waits for an analogue input", text)
+            where, Text("{!r} is in or around a loop that waits for an analogue input", text)
         )
     else:
         return bool(state.loop[0])
@@ -265,7 +263,7 @@ def _line(where: str, text: str, state: _State) -> None:
     for token in text.split():
         if word := _WORD.match(token):
             if word[1] in words:
-                raise unreadable(where, Text("{} stands there twice", word[1]))
+                raise unreadable(where, Text("{} is duplicated", word[1]))
             words[word[1]] = word[2]
         elif token == "G1":
             state.linear = True
@@ -296,7 +294,7 @@ def _move(where: str, words: dict[str, str], state: _State) -> None:
         state.track.add(TIP, words, where)
         return
     if state.offset != "G59.3" or not set(words) - {"F"} <= state.zeroed:
-        raise unreadable(where, "axes are moved in another frame than that of the machine")
+        raise unreadable(where, "axes move in a frame other than the machine frame")
     state.track.add(TIME if state.feed == "G93" else AXES, words, where)
 
 

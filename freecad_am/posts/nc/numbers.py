@@ -167,7 +167,8 @@ def _inverse_times(moves: Moves) -> Array:
         raise InputError(
             "MOVE_TIME",
             place(moves),
-            "a move of {:.4g} s cannot be written; moves take {:.2g} to {:.0f} s: use another speed or a larger chord error",
+            "a move of {:.4g} s cannot be written; the range is {:.2g} to {:.0f} s: use another "
+            "speed or a larger chord error",
             moves.duration[wrong][0],
             60.0 / FASTEST,
             60.0 / SLOWEST,

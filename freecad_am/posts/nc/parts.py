@@ -77,7 +77,7 @@ def refuse_words(program: Program, reserved: frozenset[str]) -> None:
             raise InputError(
                 "DEPOSIT_WORD",
                 key,
-                "{} means something else to the controller; use another word",
+                "{} has another meaning on the controller; use another word",
                 word,
             )
     if program.nc.deposit_on == program.nc.deposit_off:
@@ -94,7 +94,8 @@ def refuse_wire_output(program: Program, highest: int) -> None:
         raise InputError(
             "WIRE_OUTPUT",
             "program.nc.wire_output",
-            "the controller's program sets analogue outputs 1 to {}, not {}; use one of these",
+            "the controller program sets analogue outputs 1 to {}, not {}; choose one in this "
+            "range",
             highest,
             program.nc.wire_output,
         )

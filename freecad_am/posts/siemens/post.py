@@ -225,7 +225,7 @@ def _refuse(program: Program) -> None:
             raise InputError(
                 "DEPOSIT_INPUT",
                 "process.between_layers.input",
-                "the controller's program reads inputs 1 to {}, not {}; use one of these",
+                "the controller program reads inputs 1 to {}, not {}; choose one in this range",
                 LAST_INPUT,
                 block.number,
             )
@@ -258,8 +258,8 @@ def _refuse_continuous_steps(program: Program) -> None:
         raise InputError(
             "ENDLESS_STEP",
             place(program.moves[run_numbers[move + 1]]),
-            "axis {} turns {:.1f} deg in one move; an axis without end goes less than 180 deg per move: add points, or "
-            "limit the axis",
+            "axis {} turns {:.1f} deg in one move; a continuous axis moves less than 180 deg per "
+            "move: add points, or limit the axis",
             program.axis_names[axes[axis]],
             steps[move, axis],
         )

@@ -77,7 +77,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     main = [name for name in files if name.upper().endswith(".MPF")]
     if len(main) != 1 or any(not name.upper().endswith((".MPF", ".SPF")) for name in files):
         raise unreadable(
-            "program", Text("there are {} main programs, expected one with its parts", len(main))
+            "program", Text("{} main programs, expected one with its parts", len(main))
         )
     programs = {
         name.upper().rpartition(".")[0]: _blocks(name, content) for name, content in files.items()
@@ -161,7 +161,7 @@ def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> No
         if match := _WORD.match(token) or shorter:
             address, value = (group for group in match.groups() if group is not None)
             if address in words:
-                raise unreadable(where, Text("{} stands there twice", address))
+                raise unreadable(where, Text("{} is duplicated", address))
             words[address] = value
         elif token == "G1":
             state.linear = True
@@ -227,7 +227,7 @@ def _move(where: str, words: dict[str, str], state: _State, stops: bool) -> None
         state.track.add(TIP, words, where, stops)
         return
     if state.offset != "G500":
-        raise unreadable(where, "axes are moved in another frame than that of the machine")
+        raise unreadable(where, "axes move in a frame other than the machine frame")
     if state.feed == "G94":
         if not state.group:
             raise unreadable(where, "it is not said which axes the feed is the speed of")

@@ -97,7 +97,7 @@ def _statements(name: str, file: str, files: dict[str, bytes]) -> list[tuple[int
     program = _parsed(file, files).find(f"{PROGRAM}Program")
     code = None if program is None else program.findtext(f"{PROGRAM}Code")
     if program is None or code is None or program.get("name") != name:
-        raise unreadable(file, Text("it does not hold the code of a program {}", name))
+        raise unreadable(file, Text("it does not contain the code of a program {}", name))
     lines = [(number, line.strip()) for number, line in enumerate(code.split("\n"), 1)]
     lines = [
         (number, line)
@@ -123,7 +123,7 @@ def _data(file: str, files: dict[str, bytes]) -> dict[str, Data]:
             or element.get("size") != str(len(values))
         ):
             raise unreadable(
-                file, Text("the values of {} are not those from 0 to its size, each once", name)
+                file, Text("the values of {} do not run from 0 to its size, each once", name)
             )
         data[name] = Data(str(element.get("type")), tuple(values))
     return data

@@ -78,9 +78,7 @@ class _Values:
                 value.get(word, f"{word[0]}same") != f"{word[0]}same"
                 for word in ("shoulder", "elbow", "wrist")
             ):
-                raise unreadable(
-                    where, Text("a point of {} asks for another configuration of the arm", name)
-                )
+                raise unreadable(where, Text("a point of {} needs another arm configuration", name))
         return self._one(
             app,
             name,
@@ -112,7 +110,7 @@ class _Values:
             raise unreadable(
                 where,
                 Text(
-                    "{} that stands {}",
+                    "{} placed {}",
                     otherwise,
                     Word("in the world" if kind == "frame" else "on the flange"),
                 ),

@@ -89,8 +89,8 @@ class Descriptors:
             raise InputError(
                 "JOINT_SPEED",
                 place(moves),
-                "a move would need {:.4g} % of the largest joint speed, which cannot be written; use another speed, so that "
-                "it is {} to 100 %",
+                "a move would need {:.4g} % of the largest joint speed, which cannot be written; "
+                "use a speed that gives {} to 100 %",
                 percent[wrong][0],
                 LEAST_PERCENT,
             )

@@ -199,7 +199,7 @@ def _refuse(program: Program) -> None:
             raise InputError(
                 "PROGRAM_NAME",
                 block.where,
-                "{!r} may be a program of this very job; call one of another name",
+                "{!r} may be a program of the job; use another name",
                 block.program,
             )
 

@@ -65,7 +65,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     ]
     if len(outer) != 1:
         raise unreadable(
-            "program", Text("there are {} applications, expected one with its parts", len(outer))
+            "program", Text("{} applications, expected one with its parts", len(outer))
         )
     run = _Run(by_folder)
     _follow(by_folder[outer[0]], "start", run, ())
@@ -105,7 +105,9 @@ def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, st
     """Carry out the statements of a program in order, and of programs it calls."""
     caller = (app.folder, name)
     if name not in app.programs or caller in callers:
-        raise unreadable(app.folder, Text("{} is not a program of it, or calls itself", name))
+        raise unreadable(
+            app.folder, Text("{} is not a program of the application, or calls itself", name)
+        )
     statements = iter(app.programs[name])
     for number, line in statements:
         where = Text("{}/{}.pgx line {}", app.folder, name, number)
@@ -125,7 +127,7 @@ def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, st
         elif not any(form.match(line) for form in (_LOAD, _CALL, _OUTPUT, _DELAY, _WAIT)):
             raise unreadable(where, Text("the instruction {!r} is not understood", line))
         elif run.moving:
-            raise unreadable(where, Text("{!r} does not wait for the moves before it", line))
+            raise unreadable(where, Text("{!r} does not wait for the previous moves", line))
         elif load := _LOAD.match(line):
             _load(app, load[1], load[2], statements, run, where)
         elif call := _CALL.match(line):
@@ -156,7 +158,7 @@ def _load(
         raise unreadable(
             where,
             Text(
-                "{} is loaded while depositing, is not there, or {} is not a library",
+                "{} is loaded while depositing or is missing, or {} is not a library",
                 part_name,
                 alias,
             ),
@@ -231,7 +233,7 @@ def _move(app: Application, line: str, counter: Integers, run: _Run, where: str)
         ):
             raise unreadable(
                 where,
-                Text("{} is not {} data of the project, or has not so many values", name, kind),
+                Text("{} is not {} data of the project, or has too few values", name, kind),
             )
         rows.append(indices)
     run.moving = True

@@ -87,9 +87,9 @@ def _radii(program: Program, tip_steps: Array) -> Array:
         raise InputError(
             "BLEND_RADIUS",
             place(run),
-            "the tool goes {:.3g} mm past a point that is not stopped at, too little for a blend radius, and the robot "
-            "would stop there with the deposit on; use a larger strategy.chord_error, or `program.blend: 0` to stop at "
-            "every point",
+            "the tool passes a point by {:.3g} mm without a stop, too little for a blend radius, "
+            "so the robot would stop there with the deposit on; use a larger "
+            "strategy.chord_error, or `program.blend: 0` to stop at every point",
             adjacent[shortest_row],
         )
     return radii
@@ -102,8 +102,8 @@ def _times(moves: Moves) -> Array:
         raise InputError(
             "MOVE_TIME",
             place(moves),
-            "a move takes {:.3g} ms, less than the {:.0f} ms in which the controller steps; use a larger "
-            "strategy.chord_error or a lower process.travel_speed",
+            "a move takes {:.3g} ms, less than the {:.0f} ms cycle of the controller; use a "
+            "larger strategy.chord_error or a lower process.travel_speed",
             1000.0 * seconds.min(),
             1000.0 * CYCLE,
         )

@@ -217,9 +217,9 @@ def refuse_setup(
         raise InputError(
             "REMOTE_TCP",
             "program.motion",
-            "URScript moves a tool that the flange carries, at its speed; with the part on the robot the tool stands and the"
-            " speed at the deposition point is another one at every point of the part, which no documented instruction of"
-            " URScript holds; use `motion: joint`",
+            "URScript programs the speed of a tool on the flange; with the part on the robot the "
+            "tool is fixed and the speed at the deposition point varies from point to point, "
+            "which no documented instruction controls; use `motion: joint`",
         )
     if setup not in ("part-on-robot", "tool-on-robot"):
         raise InputError(
@@ -243,15 +243,14 @@ def _refuse(program: Program) -> None:
         raise InputError(
             "NO_POSITIONS",
             "program",
-            "the program does not say where the flange is, which blends depend on; "
-            "plan the joint path again",
+            "the program lacks the flange poses, which blends depend on; plan the joint path again",
         )
     if not program.dry_run and program.deposit_output > LAST_PIN:
         raise InputError(
             "DEPOSIT_OUTPUT",
             "program.deposit_output",
-            "digital outputs are 1 to {} (1 to 8 are digital_out[0] to [7], 9 to {} the configurable ones), not {}; use one "
-            "of these",
+            "digital outputs are 1 to {} (1 to 8 are digital_out[0] to [7], 9 to {} the "
+            "configurable ones), not {}; choose one in this range",
             LAST_PIN,
             LAST_PIN,
             program.deposit_output,
@@ -261,8 +260,8 @@ def _refuse(program: Program) -> None:
             raise InputError(
                 "DEPOSIT_INPUT",
                 "process.between_layers.input",
-                "digital inputs are 1 to {} (1 to 8 are digital_in[0] to [7], 9 to {} the configurable ones), not {}; use "
-                "one of these",
+                "digital inputs are 1 to {} (1 to 8 are digital_in[0] to [7], 9 to {} the "
+                "configurable ones), not {}; choose one in this range",
                 LAST_PIN,
                 LAST_PIN,
                 block.number,

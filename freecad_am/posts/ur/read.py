@@ -97,7 +97,7 @@ def unreadable(where: str, why: str) -> InputError:
 def read(files: dict[str, bytes]) -> ReadMoves:
     """All moves of the script in the order of execution. Raises InputError UNREADABLE_PROGRAM, naming file and line."""
     if len(files) != 1:
-        raise unreadable("program", Text("there are {} files, expected one script", len(files)))
+        raise unreadable("program", Text("{} files, expected one script", len(files)))
     ((file, content),) = files.items()
     name, main = _parsed(file, content)
     if not re.fullmatch(rf"(?:.*/)?{name}\.script", file):
@@ -127,7 +127,7 @@ def _parsed(file: str, content: bytes) -> tuple[str, _Function]:
             if depth == 2 and line == "  end":
                 current_function, depth = main, 1
                 continue
-            raise unreadable(where, Text("{!r} stands outside of its function", line))
+            raise unreadable(where, Text("{!r} is outside its function", line))
         inner = _DEF.match(text)
         if inner is None:
             current_function.lines.append(_Line(number, text))

@@ -157,8 +157,9 @@ def refuse_setup(
         raise InputError(
             "REMOTE_TCP",
             "program.motion",
-            "linear moves at the speed of a fixed nozzle over a part on the robot need the controller's external reference"
-            " point, whose instruction is not documented well enough to write it; use `motion: joint`",
+            "linear moves at the speed of a fixed nozzle over a part on the robot need the "
+            "external reference point of the controller, whose instruction is not documented "
+            "well enough; use `motion: joint`",
         )
     if setup not in ("part-on-robot", "tool-on-robot"):
         raise InputError(
@@ -206,8 +207,8 @@ def _refuse(program: Program) -> None:
             raise InputError(
                 "UNSUPPORTED_AXES",
                 "program.axes.first",
-                "a position of a station or of base axes has a value "
-                "for each of them from the first one on; use 1, not {}",
+                "a position of a station or of base axes has one value per axis, from the first "
+                "axis on; use 1, not {}",
                 program.first_external,
             )
     refuse_wire(program, NO_WIRE)
@@ -231,7 +232,7 @@ def _refuse(program: Program) -> None:
         raise InputError(
             "DEPOSIT_OUTPUT",
             "program.deposit_output",
-            "digital outputs are 1 to {}, not {}; use one of these",
+            "digital outputs are 1 to {}, not {}; choose one in this range",
             OUTPUTS,
             program.deposit_output,
         )
@@ -305,8 +306,8 @@ def _percent(program: Program, moves: Moves, steps: Array, is_first: bool) -> Ar
         raise InputError(
             "JOINT_SPEED",
             place(moves),
-            "a move would need {:.4g} % of the largest joint speed, which is programmed in steps of {} %; use another "
-            "speed, so that it is {} to 100 %",
+            "a move would need {:.4g} % of the largest joint speed, which is programmed in steps "
+            "of {} %; use a speed that gives {} to 100 %",
             percent[wrong][0],
             STEP_PERCENT,
             LEAST_PERCENT,

@@ -119,7 +119,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     main = [name for name in jobs if name not in called]
     if len(main) != 1:
         raise unreadable(
-            "program", Text("{} jobs are called by none of the others, expected one", len(main))
+            "program", Text("{} jobs are called by no other job, expected one", len(main))
         )
     run = _Run()
     _follow(main[0], jobs, run, ())
@@ -203,7 +203,7 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
         if external not in (0, points):
             raise unreadable(
                 f"{file} line 4",
-                "not every position has one of the external axes, or these are alone",
+                "some positions lack the external axes, or have only these",
             )
         values = (
             np.hstack(
@@ -230,7 +230,9 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
     group = _GROUP.match(lines[first_index - 2])
     track, station = (bool(group[1]), group[2] or "") if group else (False, "")
     if points and (track, bool(station)) != (counts["BC"] > 0, counts["EC"] > 0):
-        raise unreadable(f"{file} line {first_index - 1}", "its group is not that of its positions")
+        raise unreadable(
+            f"{file} line {first_index - 1}", "its group differs from the group of its positions"
+        )
     return name[1], _Job(file, tool, values, lines[first_index:-2], first_index + 1, track, station)
 
 
@@ -335,7 +337,7 @@ def _remark(text: str, run: _Run, where: str) -> None:
             or float(ratio[2]) == 0.0
         ):
             raise unreadable(
-                where, Text("the pulses per {} of {} differ, or are none", unit_name, axis)
+                where, Text("the pulses per {} of {} differ, or are missing", unit_name, axis)
             )
         run.slides |= {axis} if unit_name == "mm" else set()
     elif unit := _UNIT.match(text):
@@ -358,11 +360,11 @@ def _move(job: _Job, text: str, run: _Run, where: str) -> None:
         or _numbers(move) != (move[1] if job.track else None, move[1] if job.station else None)
     ):
         raise unreadable(
-            where, Text("the move {!r} is not understood, or its position is not there", text)
+            where, Text("the move {!r} is not understood, or its position is missing", text)
         )
     value = float(move[4])
     if value <= 0.0 or (joint and value > 100.0):
-        raise unreadable(where, Text("the speed {} is none", move[4]))
+        raise unreadable(where, Text("the speed {} is not valid", move[4]))
     external = job.track, job.station
     if run.external not in (None, external) or run.axes not in (0, job.points.shape[1]):
         raise unreadable(where, "moves with another track or station than before are mixed")

@@ -134,7 +134,7 @@ def test_seven_axes_are_refused():
     again = [0, 1, 2, 3, 4, 5, 0]
     seven = Chain(of.origins[again], of.directions[again], of.flange)
     with pytest.raises(
-        InputError, match="it has 7 axes, 0 prismatic; choose a robot with six that turn"
+        InputError, match="it has 7 axes, 0 prismatic; choose a robot with six revolute axes"
     ):
         recognition.arm_of(seven)
 
@@ -150,7 +150,7 @@ def test_a_sliding_axis_before_six_that_turn_is_a_track_and_five_axis_machines_a
         recognition.arm_of(rail)
     last = Chain(of.origins[again], of.directions[again], of.flange, np.arange(7) == 6)
     with pytest.raises(
-        InputError, match="it has 7 axes, 1 prismatic; choose a robot with six that turn"
+        InputError, match="it has 7 axes, 1 prismatic; choose a robot with six revolute axes"
     ):
         recognition.arm_of(last)
     for count, sliding in itertools.product(range(1, 9), repeat=2):

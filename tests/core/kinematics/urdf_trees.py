@@ -107,7 +107,7 @@ def is_so(text, axes, message):
         return f"it has {len(axes)} axes, {slide} prismatic" in message
     # six that turn: the end that is named lies beside axis 6
     name = re.search(r"from \S+ to (\S+):", message)
-    told = name is not None and "the flange's origin does not lie on axis 6" in message
+    told = name is not None and "the flange origin is not on axis 6" in message
     return told and beside(text, axes[-1], name[1]) > 0.01
 
 

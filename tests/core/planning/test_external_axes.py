@@ -337,7 +337,7 @@ def test_two_mechanisms_of_one_name(hemisphere, skew, tmp_path):
             external=f"{other} at {at} carries part; {skew} at 1400 0 300 0 0 0 carries part",
         )
     twice = f"{other} at {at} carries part"
-    with pytest.raises(InputError, match="'skew' stands there twice"):
+    with pytest.raises(InputError, match="'skew' is listed twice"):
         cell_for(hemisphere, external=f"{twice}; {twice}")
     # two of a kind, one on the other, are no mistake
     assert (

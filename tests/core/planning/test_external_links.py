@@ -152,4 +152,4 @@ def test_what_is_not_known_of_the_shapes_is_said_on_the_preflight(hemisphere):
     blank = dataclasses.replace(far, external_links=())
     touches = arm_touches(motion, ArmContact(blank, [[] for _ in range(7)]))
     (none,) = clearance.external_links(motion, blank, touches, True, ())
-    assert none.ok is None and "no file says what Yaskawa MotoPos D500 is made of" in none.how
+    assert none.ok is None and "no file describes the shape of Yaskawa MotoPos D500" in none.how

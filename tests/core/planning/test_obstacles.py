@@ -232,7 +232,7 @@ def test_texts_of_obstacles_say_what_they_are():
     ("table.step at 0 0 zero 0 0 0", "are not 6 numbers"),
     ("box 1 2 at 0 0 0 0 0 0", "'1 2' are not 3 numbers"),
     ("box 1 2 0 at 0 0 0 0 0 0", "1 2 0 mm is not a box"),
-    ("a.stl at 0 0 0 0 0 0; b/a.stl at 0 0 0 0 0 0", "2 of them are called 'a'"),
+    ("a.stl at 0 0 0 0 0 0; b/a.stl at 0 0 0 0 0 0", "2 obstacles are called 'a'"),
 ])  # fmt: skip
 def test_texts_that_say_nothing_are_refused(text, told):
     with pytest.raises(InputError, match=r"cell\.obstacles") as error:
@@ -244,7 +244,7 @@ def test_texts_that_say_nothing_are_refused(text, told):
 
 def test_an_obstacle_is_a_file_or_a_box():
     for more in ({}, {"file": "a.step", "size": (1.0, 1.0, 1.0)}):
-        with pytest.raises(InputError, match="neither a file nor a box"):
+        with pytest.raises(InputError, match="either a file or a box"):
             Obstacle("a", (0.0,) * 6, **more)
 
 

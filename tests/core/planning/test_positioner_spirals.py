@@ -54,7 +54,7 @@ def test_a_spiral_is_cut_where_the_axis_rewinds(spiral, cell_with, turn, pieces)
     assert min(back, default=np.pi) > np.radians(90.0) and len(back) == pieces - 1, np.degrees(back)
     told = sum(way > 1.5 * np.pi for way in back)
     assert told == (pieces - 1 if turn > 135.0 else 0) and len(rewinds) == (told > 0)
-    assert not told or f"turns back {told} times between beads" in rewinds[0]
+    assert not told or f"rewinds {told} times between beads" in rewinds[0]
     deposit, moves = of_text(cell, spiral, planned)
     most = np.r_[cell.robot.limits("maker").upper, np.radians([134.0, turn])]
     least = np.r_[cell.robot.limits("maker").lower, -np.radians([134.0, turn])]

@@ -173,7 +173,7 @@ def test_layers_that_are_not_one_layer_height_apart(sound):
                 issues=(issue,),
             )
         )
-        assert set(found) == {"Layers lie one layer height apart"}
+        assert set(found) == {"Layers are one layer height apart"}
         (entry,) = found.values()
         below, above = (np.vstack([bead.points for bead in layers[k].beads]) for k in (2, 3))
         away = cKDTree(below).query(above)[0]
@@ -186,13 +186,13 @@ def test_layers_that_are_not_one_layer_height_apart(sound):
 @pytest.mark.parametrize(
     ("promise", "change"),
     [
-        ("What is deposited lies on the part", lambda e: {"toolpath": dataclasses.replace(
+        ("The deposit is on the part", lambda e: {"toolpath": dataclasses.replace(
             e.toolpath, on_part=(500.0, 0.21, 0.2))}),
         ("All of the part is deposited", lambda e: {"balance": Balance("Part", 1e5, 3e3, 1e5, 0.0)}),
         ("Nothing is deposited outside the part", lambda e: {"balance": Balance("Part", 1e5, 0.0, 1e5, 3e4)}),
         ("Little is deposited twice", lambda e: {"balance": Balance("Part", 1e5, 0.0, 1e5, 0.0, filled=True, twice=1.1e4)}),
         ("Little is deposited twice", lambda e: {"balance": Balance("Part", None, None, 1e5, twice=1.1e4)}),
-        ("Every bead is carried by what lies below it", lambda e: {"toolpath": dataclasses.replace(
+        ("Every bead is supported from below", lambda e: {"toolpath": dataclasses.replace(
             e.toolpath, unsupported=2.0)}),
         ("The wire feeds what the beads take", lambda e: {"toolpath": dataclasses.replace(
             e.toolpath, wire_feed=1.1 * e.toolpath.wire_feed)}),
@@ -239,7 +239,7 @@ def test_a_text_that_was_read_back_with_errors_breaks_both_promises_of_it(sound)
         ("All of the part is deposited", "warning", ("NOT_DEPOSITED",)),
         ("Nothing is deposited outside the part", "warning", ("DEPOSITED_BESIDE",)),
         ("Little is deposited twice", "warning", ("DEPOSITED_TWICE",)),
-        ("Every bead is carried by what lies below it", "warning", ("UNSUPPORTED",)),
+        ("Every bead is supported from below", "warning", ("UNSUPPORTED",)),
     ],
 )
 def test_what_planning_has_found_breaks_its_promise_whatever_the_figures_say(
@@ -263,7 +263,7 @@ def without(evidence, **parts):
 @pytest.mark.parametrize(
     ("promise", "change"),
     [
-        ("What is deposited lies on the part", lambda e: without(e, toolpath={"on_part": None})),
+        ("The deposit is on the part", lambda e: without(e, toolpath={"on_part": None})),
         ("All of the part is deposited", lambda e: {"balance": None}),
         ("Nothing is deposited outside the part", lambda e: {"balance": None}),
         ("Nothing is deposited outside the part", lambda e: without(e, balance={"outside": None})),
@@ -273,7 +273,7 @@ def without(evidence, **parts):
         ),
         ("Little is deposited twice", lambda e: without(e, balance={"twice": None})),
         (
-            "Every bead is carried by what lies below it",
+            "Every bead is supported from below",
             lambda e: without(e, toolpath={"unsupported": None}),
         ),
         ("The wire feeds what the beads take", lambda e: without(e, toolpath={"wire_feed": None})),

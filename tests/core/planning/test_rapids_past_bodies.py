@@ -104,7 +104,7 @@ def test_the_tool_is_withdrawn_further_to_pass_a_body_or_it_says_so(planned):
     wall = [spike(tip[200] + height * axis[200], 100.0, "wall") for height in range(15, 4000, 60)]
     _, issues = assemble(joint_path, cell, ProcessParameters(), wall)
     met = [issue for issue in issues if issue.code == "RAPID_COLLISION"]
-    assert met and all("would meet " in issue.message and issue.layer is not None for issue in met)
+    assert met and all("would hit " in issue.message and issue.layer is not None for issue in met)
 
 
 def test_what_is_above_the_nozzle_counts_where_it_is_withdrawn_further_than_it_is_long(planned):

@@ -241,7 +241,7 @@ def test_a_limited_axis_unwinds_between_beads():
         for a, b in zip(path.beads, path.beads[1:])
     ]
     assert any(back) and [issue.message for issue in path.issues] == [
-        f"axis c turns back {sum(back)} times between beads, first before layer {1 + back.index(True)}"
+        f"axis c rewinds {sum(back)} times between beads, first before layer {1 + back.index(True)}"
     ]
 
 
@@ -312,7 +312,7 @@ def test_a_limit_that_cannot_be_kept_is_told_with_axis_and_place():
     assert not path.feasible
     limit = next(issue for issue in path.issues if issue.code == "LIMIT")
     assert (
-        "mm, its limit is" in limit.message
+        "mm, beyond its limit of" in limit.message
         and limit.message[:2] in ("mx", "my", "mz")
         and limit.point is not None
     )
@@ -331,7 +331,7 @@ def test_four_axes(lock_at):
     if lock_at == "auto":
         assert (
             abs(math.degrees(tilt[0])) == pytest.approx(73.3, abs=0.02)
-            and "axis a stands" in note.message
+            and "axis a is locked" in note.message
         )
         missed = np.arccos(
             np.clip((path.beads[0].bead.tool * path.beads[0].bead.build).sum(axis=1), -1, 1)

@@ -109,7 +109,7 @@ def test_rapids_are_led_round_a_wall_that_no_retract_gets_over(dome, monkeypatch
     told = [issue for issue in planned(job, cell)[1] if issue.level == "error"]
     assert {(issue.layer, issue.bead) for issue in told} == {(0, 1)}
     assert any(
-        "the nozzle would meet" in issue.message and "wall" in issue.message for issue in told
+        "the nozzle would hit" in issue.message and "wall" in issue.message for issue in told
     )
 
 
@@ -136,7 +136,7 @@ def test_what_cannot_be_led_round_is_refused_by_name(dome, monkeypatch):
     _, issues = planned(job, cell)
     (told,) = [issue for issue in issues if issue.level == "error"]
     assert told.code == "RAPID_COLLISION" and (told.layer, told.bead) == (0, 1)
-    assert "south" in told.message and "no way round was found" in told.message
+    assert "south" in told.message and "no detour was found" in told.message
 
 
 @pytest.mark.long

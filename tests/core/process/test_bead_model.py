@@ -125,7 +125,7 @@ def test_tables_that_are_none(rows, code):
         ),
         (
             TABLE[:-1] + [(90, -300, 7.46, 2.14)],
-            "travel speed -300 mm/min is not a positive number; mend the row, or leave",
+            "travel speed -300 mm/min is not a positive number; correct or remove",
         ),
         (TABLE[:-1] + [(-90, 300, 7.46, 2.14)], "radius -90 mm is not"),
         (TABLE[:-1] + [(90, 300, 7.46, -2.5)], "height -2.5 mm is not"),
@@ -173,7 +173,7 @@ HEAD = "radius_mm,travel_speed_mm_min,width_mm,height_mm,wire_feed_m_min\n"
         ),
         (
             HEAD + "30,300,12,3,6.5\n30,300,12,5,3,6.5\n",
-            r"row 2 \(line 3\): it has more values than there are columns",
+            r"row 2 \(line 3\): the row has more values than columns",
         ),
         (
             HEAD + "30,300,12,3,6.5\n30,300,12,3,-6.5\n",
@@ -205,7 +205,7 @@ def test_a_table_of_the_users_own(tmp_path):
         bead_table.load("other.csv", tmp_path)
     assert caught.value.code == "NO_FILE"
     (tmp_path / "bin.csv").write_bytes(bytes(range(256)))
-    with pytest.raises(InputError, match="not text in UTF-8") as caught:
+    with pytest.raises(InputError, match="not UTF-8 text") as caught:
         bead_table.load("bin.csv", tmp_path)
     assert caught.value.code == "BAD_TABLE" and caught.value.where == "bin.csv"
 
@@ -215,7 +215,7 @@ def test_beads_that_all_get_the_same_wire_to_a_millimetre_are_no_table(tmp_path)
         f"inf,{100 * feed},{w},{h},{feed}\n" for feed, (_, _, w, h) in enumerate(TABLE, 5)
     )
     (tmp_path / "mine.csv").write_text(HEAD + rows, encoding="utf-8")
-    with pytest.raises(InputError, match="the same length of wire to each millimetre") as caught:
+    with pytest.raises(InputError, match="the same wire length per millimetre") as caught:
         bead_table.load("mine.csv", tmp_path)
     assert caught.value.code == "COLLINEAR_TABLE"
 
@@ -267,7 +267,7 @@ def test_speeds_a_machine_can_follow():
     ("head", "words"),
     [
         (HEAD.replace("\n", ",posture_deg\n"), "'posture_deg' is not known"),
-        (HEAD.replace("\n", ",width_mm\n"), "'width_mm' stands twice"),
+        (HEAD.replace("\n", ",width_mm\n"), "'width_mm' appears twice"),
         (HEAD.replace("radius_mm", "radius_in"), "'radius_in' is not known"),
     ],
 )
@@ -332,7 +332,7 @@ def test_a_table_that_contradicting_rows_spoil_is_refused_for_these(tmp_path):
     assert "row 1 (line 2) and row 2 (line 3) (width 4 and 10 mm)" in message
     wider = ["inf,300,6,3,6.5", "inf,300,6.1,3,6.5", "inf,600,7.5,2.5,6.5", "inf,900,8,2,6.5"]
     code, message = refused_table(tmp_path, wider)
-    assert code == "NO_MODEL" and "wider with speed" in message
+    assert code == "NO_MODEL" and "increase with speed" in message
 
 
 def test_a_table_of_one_speed_names_its_contradicting_rows_too(tmp_path):

@@ -350,7 +350,7 @@ def test_where_the_part_sticks_out_is_told():
     assert (
         issue.code == compare.CODE
         and 1 <= issue.layer <= 5
-        and "the part sticks out by 6" in issue.message
+        and "the part protrudes by 6" in issue.message
     )
     assert shape.worst[1] > 36.0 and 25.9 < shape.worst[0] < 34.1
     area = both.faces.areas

@@ -123,7 +123,7 @@ def test_the_free_end_of_a_bead_is_told_by_its_length():
     """The bead below ends at 70 mm and is half a width longer than its points."""
     length, (issue,) = told(toolpath([rod(0, 70)], [rod(0, 100, 0.0, HEIGHT)]))
     assert length == pytest.approx(30.0 - 0.5 * WIDTH, abs=0.2 * WIDTH)
-    assert f"{length:.4g} mm of beads lie over nothing" in issue.message
+    assert f"{length:.4g} mm of bead are unsupported" in issue.message
     assert told(toolpath([rod(0, 94)], [rod(0, 100, 0.0, HEIGHT)]))[0] == 0.0
     assert told(toolpath([rod(0, 89)], [rod(0, 100, 0.0, HEIGHT)]))[0] == pytest.approx(
         11.0 - 0.5 * WIDTH, abs=0.2 * WIDTH
@@ -451,7 +451,7 @@ def test_the_frame_of_the_feature_is_a_remedy_where_it_does():
         (30.0, middle, (flush,), True),
     ):
         (issue,) = support.over_edge(path, np.eye(4), 2.0 * radius, bodies, frame)
-        assert ("put the part on its middle by cell.mount: feature" in issue.message) == mended, (
+        assert ("centre the part by cell.mount: feature" in issue.message) == mended, (
             radius,
             frame,
         )

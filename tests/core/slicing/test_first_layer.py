@@ -45,7 +45,7 @@ def test_between_the_nodes_too_the_curve_lies_on_wall_and_substrate(substrate, w
 
 
 def test_a_wall_that_misses_the_substrate_is_refused():
-    with pytest.raises(InputError, match="come out of the substrate") as refused:
+    with pytest.raises(InputError, match="rise out of the substrate") as refused:
         intersect_implicit(cylinder(40.0), PIPE, (-50.0, 50.0), even_grid(TORUS, 90))
     assert refused.value.code == "NO_INTERSECTION"
 

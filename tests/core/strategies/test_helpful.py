@@ -33,7 +33,7 @@ def test_the_half_angle_that_is_named_clears_the_nozzle(half, angle):
     path = toolpath(bead(ALONG))
     told = message(keep_clear(path, slot(half), NOZZLE, dataclasses.replace(LOCAL, max_tilt=np.pi)))
     assert (
-        f"with `cell.nozzle.half_angle: {angle} deg` the nozzle is clear, which was tried" in told
+        f"with `cell.nozzle.half_angle: {angle} deg` the nozzle is clear (tested)" in told
     )
     assert OTHER not in told and "slimmer" not in told
     slim = NozzleParameters(half_angle=np.radians(angle))
@@ -49,7 +49,7 @@ def test_a_slimmer_nozzle_that_does_not_help_is_not_named():
             dataclasses.replace(LOCAL, max_tilt=np.pi),
         )
     )
-    assert told.endswith("; with left, right out of the way the nozzle is clear, which was tried")
+    assert told.endswith("; with left, right out of the way the nozzle is clear (tested)")
 
 
 def test_a_larger_tilt_is_named_where_that_clears_it():
@@ -87,4 +87,4 @@ def test_what_gives_room_at_the_points_and_not_to_the_bead_is_not_named(monkeypa
     )
     assert asked and "the nozzle is clear" not in told
     tried = "`cell.nozzle.half_angle: 5 deg`, left, right out of the way"
-    assert f"; it still does with {tried}, each of which was tried; {OTHER}" in told
+    assert f"; it still does with {tried} (all tested); {OTHER}" in told

@@ -148,7 +148,7 @@ def test_layers_that_are_too_many_are_refused_at_once_with_what_is_enough(name):
     error = caught.value
     assert (error.code, error.where) == ("TOO_MANY", "strategy.layer_height")
     told = re.fullmatch(
-        r"0.000001 mm makes about ([\d,]+) layers, and more than 20,000 cannot be worked with; give at least ([\d.e-]+) mm",
+        r"0.000001 mm gives about ([\d,]+) layers, above the limit of 20,000; use at least ([\d.e-]+) mm",
         error.message,
     )
     assert told, error.message
@@ -178,9 +178,9 @@ def test_points_that_are_too_many_are_told_by_what_makes_them(family, values, ke
     error = caught.value
     assert (error.code, error.where) == ("TOO_MANY", key)
     value = getattr(strategy, key.split(".")[1])
-    told, rest = error.message.split(" mm makes about ", 1)
+    told, rest = error.message.split(" mm gives about ", 1)
     assert float(told) == value and "e" not in told  # without an exponent
-    assert rest.startswith("200,000,000 points, and more than 50,000,000 cannot")
+    assert rest.startswith("200,000,000 points, above the limit of 50,000,000")
     enough = float(error.message.split("at least ")[1].split()[0])
     assert (
         enough == pytest.approx(value * (16.0 if key.endswith("error") else 4.0), rel=0.1)
@@ -211,7 +211,7 @@ def test_beads_by_overlap_are_told_by_their_width():
     )
     strategy = DevelopableParameters(layer_height=3.0, bead_overlap=0.3)
     size.refuse_absurd(size.solids_size(made, strategy), strategy)  # the feature knows no width yet
-    with pytest.raises(InputError, match=r"0.00001 mm makes about [\d,]+ points") as caught:
+    with pytest.raises(InputError, match=r"0.00001 mm gives about [\d,]+ points") as caught:
         plan_solids(made, strategy, BuildDirectionParameters(), thin, None)
     assert (caught.value.code, caught.value.where) == ("TOO_MANY", "process.bead_width")
 
@@ -232,13 +232,13 @@ def test_large_jobs_are_not_refused():
     ("family", "points", "told"),
     [
         (RevolutionParameters, 200_000, None),
-        (RevolutionParameters, 1_000_000, "0.92 min of the processor and 1.5 GB"),
+        (RevolutionParameters, 1_000_000, "0.92 min of processor time and 1.5 GB"),
         (SurfaceParameters, 10_000, None),
-        (SurfaceParameters, 60_000, "2 min of the processor and 0.09 GB"),
+        (SurfaceParameters, 60_000, "2 min of processor time and 0.09 GB"),
         (CladdingParameters, 19_000, None),
-        (CladdingParameters, 76_000, "1.9 min of the processor and 0.12 GB"),
+        (CladdingParameters, 76_000, "1.9 min of processor time and 0.12 GB"),
         (DevelopableParameters, 100_000, None),
-        (DevelopableParameters, 370_000, "1.6 min of the processor and 0.56 GB"),
+        (DevelopableParameters, 370_000, "1.6 min of processor time and 0.56 GB"),
     ],
 )
 def test_large_jobs_are_told(family, points, told):
@@ -248,7 +248,7 @@ def test_large_jobs_are_told(family, points, told):
     )
     if told:
         assert found[0].message.startswith(
-            f"about {points:,} points in 180 layers are planned, which takes about {told} of"
+            f"planning about {points:,} points in 180 layers takes about {told} of"
         )
 
 
@@ -257,7 +257,7 @@ def test_many_layers_of_few_points_are_told():
     assert size.size_issues(size.Size(500.0, 12_500.0), RevolutionParameters()) == ()
     (issue,) = size.size_issues(size.Size(6_000.0, 150_000.0), RevolutionParameters())
     assert issue.code == "LARGE" and "150,000 points in 6,000 layers" in issue.message
-    assert "takes about 5 min of the processor" in issue.message
+    assert "takes about 5 min of processor time" in issue.message
 
 
 def test_what_is_absurd_is_refused_and_not_told():
@@ -269,7 +269,7 @@ def test_tilts_that_take_long_to_find_are_told():
     assert size.tilting_issues(3_000) == ()
     (issue,) = size.tilting_issues(6_812)  # 60 s of the processor for the first tilts, 174 s in all
     assert (issue.level, issue.code) == ("note", "LARGE") and "6,800 points" in issue.message
-    assert "takes about 1.1 min of the processor" in issue.message
+    assert "takes about 1.1 min of processor time" in issue.message
     # a wall all of whose beads turn too fast: 6 s for its first tilts, 70 s for slower ones
     assert size.tilting_issues(1_065) == size.tilting_issues(500, 6) == ()
     (issue,) = size.tilting_issues(1_065, 6)
@@ -302,7 +302,7 @@ def test_remedies_that_take_long_to_find_are_told():
 
 
 @pytest.mark.parametrize(
-    ("height", "told"), [(1.0, "1,500,000 nodes, which takes about 1.3 min"), (2.0, None)]
+    ("height", "told"), [(1.0, "1,500,000 nodes takes about 1.3 min"), (2.0, None)]
 )
 def test_curved_layers_are_told_by_their_grid(height, told):
     """A plate of 96 cm3 whose layers of 1 mm took 105 s of the processor, which its 60,000 points do not tell."""
@@ -349,7 +349,9 @@ def bellows(high):
     return np.vstack(rings), np.vstack([band + 72 * k for k in range(len(rings) - 1)])
 
 
-@pytest.mark.parametrize(("high", "told"), [(1, None), (8, "takes about 1.5 min of the processor")])
+@pytest.mark.parametrize(
+    ("high", "told"), [(1, None), (8, "takes about 1.5 min of processor time")]
+)
 def test_folds_of_a_mesh_are_told_by_their_length(high, told):
     """Layers of a real mesh of 40,000 vertices took 90 s of the processor without a word, for its beads have few points.
     This one takes 36 s."""

@@ -19,7 +19,7 @@ from freecad_am.core.strategies.walls import plan as surface
 @pytest.mark.parametrize(
     "band, level, words",
     [
-        (0.05, WARNING, ("band of 5 %", "does not suffice", "more than 6 deg/mm")),
+        (0.05, WARNING, ("band of 5 %", "is too narrow", "more than 6 deg/mm")),
         (0.2, NOTE, ("no layer has a corner",)),
     ],
 )

@@ -287,7 +287,9 @@ def test_beads_deposit_the_volume_of_the_part_where_they_crowd(part, fill):
     others = [bead for bead in beads if np.abs(bead.speed[1:] / 20.0 - 1.0).max() > 0.01]
     count, every, slow, fast, usual, thin, wide = (
         float(number)
-        for number in re.findall(r"(?<![a-z])\d+\.?\d*", told.message.split("; for one speed")[0])
+        for number in re.findall(
+            r"(?<![a-z])\d+\.?\d*", told.message.split("; for a constant speed")[0]
+        )
     )
     assert (count, every, usual) == (len(others), len(beads), 20.0)
     for said, exact in (
@@ -325,7 +327,7 @@ def test_beads_deposit_the_volume_of_the_part_where_they_crowd(part, fill):
 def test_what_is_told_to_give_one_speed_does(asked, remedy):
     part = box((0, 0, 0), (60, 9.6, 4))
     (told,) = [issue for issue in planned(part, **asked).issues if issue.code == "SPEED_VARIES"]
-    assert told.message.endswith(f"; for one speed give {remedy}")
+    assert told.message.endswith(f"; for a constant speed set {remedy}")
     meant = {
         "strategy.narrowest: 100 %": {"narrowest": 1.0},
         "strategy.fill: contours": {"fill": "contours"},
@@ -527,7 +529,7 @@ def test_the_best_direction_is_the_one_that_needs_no_support():
     )
     np.testing.assert_allclose(solids.groups[0].base.frame[:3, 2], [0.0, 1.0, 0.0], atol=1e-12)
     (issue,) = [issue for issue in solids.issues if issue.code == "DIRECTION"]
-    assert "20 mm high" in issue.message and "1400 mm^2" in issue.message
+    assert "the height is 20 mm" in issue.message and "1400 mm^2" in issue.message
 
 
 def test_faces_where_touching_solids_meet_lean_over_nothing():
@@ -547,7 +549,7 @@ def test_faces_where_touching_solids_meet_lean_over_nothing():
     plate = box((-40, -10, 30), (40, 10, 40))
     for stem in (box((-5, -10, 0), (5, 10, 30)), box((-5, -10, 0), (5, 10, 31))):
         way, message = told(stem, plate)
-        assert abs(way[1]) == 1.0 and "20 mm high" in message
+        assert abs(way[1]) == 1.0 and "the height is 20 mm" in message
         assert along_z(message) == pytest.approx(1400.0, rel=0.02)
     assert along_z(told(stem, plate, fuse="none")[1]) == pytest.approx(1600.0)
     # a foot that the stem stands on does not count either: none of its area is over nothing
@@ -729,7 +731,7 @@ def test_layers_without_beads_keep_their_number_and_are_named():
     told = named["LAYER_WITHOUT_BEAD"]
     assert told.layer == 0 and "7 layer(s)" in told.message and " 0-6; " in told.message
     area = 7 * 4 * 24.0 * math.sin(math.pi / 24.0) * 0.5**2
-    found = float(re.search(r"all of them are ([\d.]+) mm\^2", str(told.message))[1])
+    found = float(re.search(r"the total is ([\d.]+) mm\^2", str(told.message))[1])
     assert found == pytest.approx(area, rel=0.01)
 
 

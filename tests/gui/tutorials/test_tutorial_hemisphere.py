@@ -16,7 +16,7 @@ def test_the_hemisphere(person, hand, lesson, tmp_path):
     hand.click_face(part, "Face1")
     lesson.tool("NewJob")
     panel = person.panel("RoboticAM_NewJob")
-    assert "turn about one axis" in panel_text(person, panel)
+    assert "share one axis of revolution" in panel_text(person, panel)
     lesson.picture("hemisphere-new-job")
     steps = document.UndoCount
     lesson.ok()

@@ -19,7 +19,7 @@ BY_COUNT = {3: COLUMNS[:3], 4: (*COLUMNS[:3], "bead"), 6: COLUMNS[:6], 7: COLUMN
 CODE = "BAD_TABLE"
 MIN_STEP_MM = 1e-6  # mm; points no farther apart are one
 MAX_MM = 1e7  # mm; farther away is a slip of the pen
-FORM = "give a table of the columns x,y,z, then i,j,k where directions are given, then bead where there are several"
+FORM = "give a table with the columns x,y,z, then i,j,k for directions, then bead for several beads"
 
 
 def curves_of(text: str, where: str) -> tuple[BeadCurve, ...]:

@@ -92,7 +92,7 @@ REFUSED = {
     "M579": "it scales axes; leave it out",
     "SET_GCODE_OFFSET": "it shifts the origin; leave it out, or use G92",
     "SET_KINEMATIC_POSITION": "it shifts the origin; leave it out, or use G92",
-    "FORCE_MOVE": "it moves a motor alone; leave it out",
+    "FORCE_MOVE": "it moves a single motor; remove it",
     "EXCLUDE_OBJECT": "it drops an object while the program runs; let the slicer leave the object out",
 }
 # codes that makers of printers give a meaning of their own: probing, levelling, states of the machine
@@ -625,8 +625,8 @@ class _Reader:
         stored = self.pushed.pop() if self.pushed else self.state.modes
         if stored != self.state.modes:
             raise self._error(
-                "M121 restores the modes before M120 on RepRapFirmware, and keeps those of now on Marlin; write G90 or G91, "
-                "M82 or M83 in its place"
+                "M121 restores the modes before M120 on RepRapFirmware, but keeps the current "
+                "ones on Marlin; write G90 or G91, M82 or M83 instead"
             )
 
     def _numbers(self, command: Command) -> dict[str, float]:

@@ -76,7 +76,7 @@ def recognise(chain: Chain) -> OpwArm:
             )
         raise refused(
             Text("it has {} axes, {} prismatic", chain.axes, slides),
-            "choose a robot with six that turn; those beside it are `cell.external`",
+            "choose a robot with six revolute axes; further axes belong in `cell.external`",
         )
     at_rest = chain.frames(np.zeros(6))
     centre = _wrist_centre(at_rest)
@@ -187,7 +187,7 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
     to_wrist = centre - p[2]
     length = float(to_wrist @ z[3])
     if abs(length) < NEAR_MM:
-        raise refused("the wrist centre lies above axis 3, without a forearm along axis 4")
+        raise refused("the wrist centre is above axis 3, without a forearm along axis 4")
     sign4 = 1 if length > 0.0 else -1
     forearm = z[3] * sign4
     turn23 = math.atan2(float(forearm @ x), float(forearm @ up))
@@ -195,16 +195,16 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
     out = flange[:3, 2]
     if np.linalg.norm(np.cross(out, z[5])) > PARALLEL_TOLERANCE:
         raise refused(
-            "the Z of the flange does not lie along axis 6",
+            "the Z of the flange is not parallel to axis 6",
             "take the frame tool0 of a URDF, or turn the flange",
             FLANGE,
         )
     offset = flange[:3, 3] - centre
     if np.linalg.norm(offset - out * float(offset @ out)) > NEAR_MM:
-        raise refused("the flange's origin does not lie on axis 6", TOOL_FRAME, FLANGE)
+        raise refused("the flange origin is not on axis 6", TOOL_FRAME, FLANGE)
     if float(offset @ out) < -NEAR_MM and float(out @ forearm) < 0.0:
         raise refused(
-            "the Z of the flange points back into the wrist, not out of it",
+            "the Z of the flange points into the wrist instead of outwards",
             "take another link of a URDF, such as tool0 or fanuc_flange, or turn the flange",
             FLANGE,
         )

@@ -365,7 +365,9 @@ def _parse(top: Node) -> Machine:
     if MAKER not in machine.limit_sets:
         raise top["limits"].bad(Text("the set {!r} is missing; add it", MAKER))
     if abs(np.linalg.det(machine.controller_matrix)) < 1e-9:
-        raise controller["matrix"].bad("the matrix has no inverse; give that of the controller")
+        raise controller["matrix"].bad(
+            "the matrix has no inverse; copy the matrix of the controller"
+        )
     for array in (
         machine.base,
         machine.max_speed,

@@ -162,7 +162,8 @@ def centre_line(bodies: Sequence[Body], start: Array, direction: Array, depth: f
     first_section = solid.section(start + depth * direction, direction, None)
     if first_section is None or len(bodies) > 1:
         raise _not_found(
-            name, "it is several solids" if len(bodies) > 1 else "no section lies where it stands"
+            name,
+            "it is several solids" if len(bodies) > 1 else "it has no cross-section at its base",
         )
     sections = _trace_sections(solid, first_section, direction)
     if len(sections) < 3:

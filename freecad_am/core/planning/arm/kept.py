@@ -132,7 +132,7 @@ def clearance_issue(
         else Text("link {}", link)
     )
     remedy = (
-        "move one of them in cell.external or the part"
+        "move one in cell.external or the part"
         if stands
         else "move the part or cell.deposition_point"
     )

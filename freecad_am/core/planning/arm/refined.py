@@ -27,7 +27,7 @@ GAP_RANGE_MM = 50.0  # mm; pairs with more than this extra clearance are no cons
 EXTRA_GAP_MM = 0.01  # mm of extra clearance, so that the result is clear
 REACH = 0.3  # rad that a polynomial may change by from the first look to the second
 UNCHANGED = 1e-4  # rad, and share of the objective, less than which is no change
-STOPPED = "the way to what is better comes too near"
+STOPPED = "the path to a better solution comes too near"
 
 
 def refined_clear(

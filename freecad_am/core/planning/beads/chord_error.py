@@ -56,7 +56,8 @@ def refined_to_chord_error(
         Issue(
             ERROR,
             "NOT_STRAIGHT",
-            "joint motion leaves the bead between two points however many are added: near a singularity",
+            "joint motion deviates from the bead between two points, no matter how many are "
+            "added: it is near a singularity",
             path.layer,
             path.index,
             worst,

@@ -53,8 +53,8 @@ def phased(cell: Cell, path: BeadPath, condition_at: Condition) -> tuple[BeadPat
                 ERROR,
                 CODE,
                 Text(
-                    "start and end take {:.4g} mm of this bead of {:.4g} mm; make process.start and process.end "
-                    "shorter, or those of its class",
+                    "start and end take {:.4g} mm of a bead of {:.4g} mm; shorten process.start "
+                    "and process.end, or those of its class",
                     used,
                     along[-1],
                 ),

@@ -49,7 +49,8 @@ def rings_slowed(
             WARNING,
             SLOWED,
             Text(
-                "{} bead(s) where the wall closes are run at down to {:.3g} mm/s: the axes turn no faster",
+                "{} bead(s) where the wall closes are slowed down to {:.3g} mm/s, the limit of "
+                "the axes",
                 len(slowed),
                 slowest,
             ),
@@ -98,8 +99,8 @@ def corners_slowed(
             WARNING,
             SLOWED,
             Text(
-                "at {} short places, {:.3g} mm in all, the deposit is slowed, here to {:.3g} mm/s, for the axes go no faster; "
-                "up to {:.2g} mm of the bead more than meant lie there{}",
+                "the deposit is slowed at {} short places, {:.3g} mm in total, here to {:.3g} "
+                "mm/s, the limit of the axes; over-deposition is up to {:.2g} mm of bead{}",
                 len(slow_sections),
                 sum(section.length for section in slow_sections),
                 worst.speed,
@@ -193,14 +194,14 @@ def _growth(sections: Sequence[_Place], worst: _Place, law: SpeedLaw | None) -> 
         return ""
     higher = max(section.higher for section in sections)
     beyond = (
-        Text("; slower than {:.3g} mm/s nothing was measured", law.slowest)
+        Text("; below {:.3g} mm/s there are no measurements", law.slowest)
         if worst.speed < law.slowest * JUST
         else ""
     )
     return Text(
-        ": it is up to {:.2g} mm wider there{}, by the bead model{}",
+        ": the bead model predicts up to {:.2g} mm more width{}{}",
         wider,
-        Word(Text(" and {:.2g} mm higher", higher) if higher > 0.0 else ""),
+        Word(Text(" and {:.2g} mm more height", higher) if higher > 0.0 else ""),
         Word(beyond),
     )
 
@@ -256,7 +257,7 @@ def too_fast(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
                     ERROR,
                     "SPEED",
                     Text(
-                        "axis {} would move at {:.0f} {}/s, it can do {:.0f}; {}",
+                        "axis {} would move at {:.0f} {}/s, above its limit of {:.0f}; {}",
                         cell.machine.axes[axis],
                         speed[point, axis] / value,
                         unit,
@@ -275,9 +276,9 @@ def _advice(bead: Bead, point: int, able: float) -> str:
     if bead.height is None:
         return Text("lower the travel speed to {:.2f} mm/s", able)
     return Text(
-        "it could at {:.2f} mm/s, but the bead model asks for {:.3g} mm/s and too much would pile up: turn the torch more "
-        "slowly (build_direction.max_turn), lean it less, mount the part otherwise, or ask for a wider bead "
-        "(process.bead_width), which is laid more slowly",
+        "{:.2f} mm/s would work, but the bead model needs {:.3g} mm/s, and too much material "
+        "would pile up: turn the torch more slowly (build_direction.max_turn), tilt it less, "
+        "mount the part differently, or use a wider bead (process.bead_width), which is slower",
         able,
         bead.speed[point],
     )

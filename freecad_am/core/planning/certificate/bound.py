@@ -65,8 +65,8 @@ def summed(
             Issue(
                 NOTE,
                 "NO_BOUND",
-                "joints.certificate: several solutions of this arm bear the same configuration, so no lower "
-                "bound is known; leave it out",
+                "joints.certificate: the lower bound is undefined, as several solutions of the "
+                "arm share a configuration; remove it",
             )
         ]
     displacement = task.parameters.objective == "displacement"

@@ -125,8 +125,8 @@ def _not_level(turning: bool, tilt: Array, max_lean: float, bead_id: Place) -> l
                 "NOT_LEVEL",
                 Text(
                     "the tool axis would be {:.3g} deg from the vertical, "
-                    "build_direction.max_from_vertical allows {:.3g} deg, and nothing turns the part; put it on a positioner, "
-                    "or allow more",
+                    "build_direction.max_from_vertical allows {:.3g} deg, and nothing turns the "
+                    "part; put it on a positioner, or raise the limit",
                     leans,
                     allowed,
                 ),
@@ -139,8 +139,9 @@ def _not_level(turning: bool, tilt: Array, max_lean: float, bead_id: Place) -> l
             ERROR,
             "NOT_LEVEL",
             Text(
-                "the tool axis would be {:.3g} deg from the vertical, build_direction.max_from_vertical "
-                "allows {:.3g} deg; the positioner cannot turn the part so far: mount the part otherwise, or allow more",
+                "the tool axis would be {:.3g} deg from the vertical, "
+                "build_direction.max_from_vertical allows {:.3g} deg, and the positioner cannot "
+                "compensate; mount the part differently, or raise the limit",
                 leans,
                 allowed,
             ),

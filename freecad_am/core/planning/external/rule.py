@@ -30,7 +30,7 @@ def asked(parameters: JointParameters, cell: Cell) -> tuple[bool, list[Issue]]:
                 NOTE,
                 "NOT_USED",
                 Text(
-                    "joints.external_axes: {} is of no effect without cell.external; leave it out",
+                    "joints.external_axes: {} has no effect without cell.external; remove it",
                     parameters.external_axes,
                 ),
             )
@@ -39,8 +39,8 @@ def asked(parameters: JointParameters, cell: Cell) -> tuple[bool, list[Issue]]:
         raise InputError(
             "NOT_FOR_SETUP",
             "joints.external_axes",
-            "{} are polynomials per bead, the method {} has none; use method: {}, "
-            "or external_axes: {}",
+            "{} needs polynomials per bead, which the method {} lacks; use method: {}, or "
+            "external_axes: {}",
             parameters.external_axes,
             parameters.method,
             METHOD,

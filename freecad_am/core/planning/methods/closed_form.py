@@ -146,8 +146,8 @@ def _not_straight(point: int, distance: float, leans: float, layer: int, bead: i
         ERROR,
         "NOT_STRAIGHT",
         Text(
-            "the axes leave the bead by {:.3g} mm, its direction by {:.3g} deg between two points "
-            "however many are added: near a pole; tilt away from it",
+            "the axes deviate from the bead by {:.3g} mm and {:.3g} deg between two points, no "
+            "matter how many are added: it is near a pole; tilt away from it",
             distance,
             math.degrees(leans),
         ),

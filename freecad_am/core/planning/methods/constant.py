@@ -47,8 +47,8 @@ def plan(
                     NOTE,
                     "RZ_CONSTANT",
                     Text(
-                        "none of {} values of RZ keeps the links clear in the whole job; joints.method: "
-                        "layer-by-layer chooses one for each bead",
+                        "none of {} values of RZ clears the links in the whole job; "
+                        "joints.method: layer-by-layer uses one value per bead",
                         LOOKED,
                     ),
                 )
@@ -59,8 +59,8 @@ def plan(
                     NOTE,
                     "RZ_CONSTANT",
                     Text(
-                        "none of {} values of RZ serves for the whole job; the nearest to "
-                        "it is {:.1f} deg",
+                        "none of {} values of RZ works for the whole job; the best one is {:.1f} "
+                        "deg",
                         RZ_CANDIDATES,
                         np.degrees(rz),
                     ),

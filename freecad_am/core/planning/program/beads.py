@@ -35,13 +35,13 @@ def deposited(
         raise InputError(
             "NO_SCHEDULE",
             "process.schedule",
-            "beads of the class {} have no schedule, {}; give process.schedule, or one "
-            "in process.classes.{}",
-            name or "of an earlier version",
+            "beads of the class {} have no schedule, {}; set process.schedule, or one in "
+            "process.classes.{}",
+            name or "from an earlier version",
             Word(
-                "which arc instructions name"
+                "which arc instructions need"
                 if by == ARC
-                else "and would be laid by that of the bead before"
+                else "and would use the schedule of the previous bead"
             ),
             name,
         )
@@ -49,9 +49,8 @@ def deposited(
         raise InputError(
             "SCHEDULE",
             "program.schedule.by",
-            "within a bead only an output can change the schedule: calls stop the "
-            "machine, and that arc instructions do not was not confirmed; use output, or leave the schedules of start and "
-            "end out",
+            "only an output can change the schedule within a bead: calls stop the machine, and "
+            "arc instructions may; use output, or remove the schedules of start and end",
         )
     schedule = numbers[0] if by == ARC and not parameters.dry_run else None
     schedule_before, lead = _ahead(numbers[0], parameters), parameters.trigger.lead

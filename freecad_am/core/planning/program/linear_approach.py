@@ -105,8 +105,8 @@ def check(motion: Motion, cell: Cell, rows: Index, arriving: bool, arc: bool = T
         raise InputError(
             code,
             bead_name,
-            "the deposit begins with a linear move onto the bead, and the program begins at the bead itself; "
-            "give a retract distance, or another {}",
+            "the deposit needs a linear approach to the bead, but the program begins at the bead "
+            "itself; set a retract distance, or another {}",
             key,
         )
     off, tilt = linear_deviations(motion, cell, last_row)
@@ -114,8 +114,8 @@ def check(motion: Motion, cell: Cell, rows: Index, arriving: bool, arc: bool = T
         raise InputError(
             code,
             bead_name,
-            "the deposit begins with a linear move onto the bead, which would leave the checked way "
-            "by {:.2g} mm; give a shorter retract distance, or another {}",
+            "the linear approach to the bead would leave the checked path by {:.2g} mm; use a "
+            "shorter retract distance, or another {}",
             off[0],
             key,
         )

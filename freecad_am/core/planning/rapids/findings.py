@@ -32,8 +32,9 @@ def _collision(names: Sequence[str], layer: int, bead: int) -> Issue:
         ERROR,
         "RAPID_COLLISION",
         Text(
-            "on its way from the bead before the nozzle would meet {} at every retract distance and direction tried, and "
-            "no way round was found; move the seam or the part, or take a more slender nozzle",
+            "on the travel from the previous bead the nozzle would hit {} at every retract "
+            "distance and direction tried, and no detour was found; move the seam or the part, "
+            "or use a more slender nozzle",
             Text.joined(", ", names),
         ),
         layer,
@@ -66,8 +67,9 @@ def _failed(failure: Failure, path: BeadPath, cell: Cell) -> Issue:
             else ("deg", float(machine.unit_values[-1]))
         )
         text: str = Text(
-            "{} would be at {:.2f} {} on the retract before or after the bead, its limit is {:g} {}, and no other height, "
-            "direction or rotation keeps within limits; lower process.between_layers.lift or move the part in the cell",
+            "{} would be at {:.2f} {} on the retract before or after the bead, beyond its limit "
+            "of {:g} {}, and no other height, direction or rotation is within limits; lower "
+            "process.between_layers.lift or move the part in the cell",
             limits.labels[failure.label],
             failure.value / per,
             unit,
@@ -76,8 +78,9 @@ def _failed(failure: Failure, path: BeadPath, cell: Cell) -> Issue:
         )
     elif failure.kind == SINGULAR:
         text = Text(
-            "condition {:.4f} on a rapid move before or after the bead is below the {:g} allowed, and no other height, "
-            "direction or rotation is farther from a singularity; lower joints.min_condition or move the part in the cell",
+            "inverse condition number {:.4f} on a rapid before or after the bead is below {:g}, "
+            "and no other height, direction or rotation is farther from a singularity; lower "
+            "joints.min_condition or move the part in the cell",
             failure.value,
             failure.bound,
         )
@@ -107,8 +110,8 @@ def _raised(rapids: RapidWays) -> list[Issue]:
                 NOTE,
                 "RAPID_LIFTED",
                 Text(
-                    "before {} beads the tool is withdrawn by up to {:.3g} mm instead of {:g} mm to pass "
-                    "clear",
+                    "before {} beads the tool retracts up to {:.3g} mm instead of {:g} mm for "
+                    "clearance",
                     len(raised),
                     highest,
                     rapids.retract,
@@ -122,8 +125,8 @@ def _raised(rapids: RapidWays) -> list[Issue]:
                 NOTE,
                 "RAPID_ASIDE",
                 Text(
-                    "before {} beads the tool is retracted in another direction than along its axis, or "
-                    "turned on the way, to pass clear",
+                    "before {} beads the tool retracts off its axis, or turns on the way, for "
+                    "clearance",
                     len(aside),
                 ),
                 aside[0],
@@ -135,8 +138,8 @@ def _raised(rapids: RapidWays) -> list[Issue]:
                 NOTE,
                 "RAPID_ROUND",
                 Text(
-                    "before {} beads the rapid way is led round what is in the way of all retracts, by "
-                    "places between",
+                    "before {} beads the rapid takes a detour through intermediate points, as "
+                    "all direct retracts are blocked",
                     len(rapids.led.ways),
                 ),
                 rapids.place(rapids.led.ways[0]).layer,
@@ -166,9 +169,9 @@ def _others(rapids: RapidWays) -> list[Issue]:
             NOTE,
             "RAPID_OTHER",
             Text(
-                "at {} ends of beads the retract of {:g} mm would leave limits, reach or condition; it is "
-                "{:.3g} to {:.3g} mm there, {} times in another direction than along the tool axis and {} times with the tool "
-                "turned",
+                "at {} bead ends the retract of {:g} mm would violate limits, reach or the "
+                "condition; it is {:.3g} to {:.3g} mm there, {} times off the tool axis and {} "
+                "times with the tool turned",
                 len(changed_legs),
                 rapids.retract,
                 min(heights),

@@ -70,7 +70,7 @@ def not_used(parameters: JointParameters, bead_ids: Sequence[Place]) -> list[Iss
                 WARNING,
                 "GIVEN_NOT_USED",
                 Text(
-                    "joints.given is of no effect on the method {}; use {}, or take it out",
+                    "joints.given has no effect with the method {}; use {}, or remove it",
                     parameters.method,
                     METHOD,
                 ),
@@ -90,6 +90,6 @@ def not_used(parameters: JointParameters, bead_ids: Sequence[Place]) -> list[Iss
         Issue(
             WARNING,
             "GIVEN_NOT_USED",
-            Text("joints.given names beads that are not there: {}; take them out", named),
+            Text("joints.given names unknown beads: {}; remove them", named),
         )
     ]

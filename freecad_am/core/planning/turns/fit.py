@@ -75,8 +75,8 @@ def put_in(
                 Issue(
                     ERROR,
                     "SPIRAL_LIMITED",
-                    "a spiral turns an axis without end, and this set of limits ends it; use path: layers, or a limit set with "
-                    "an endless axis",
+                    "a spiral needs a continuous axis, but this set of limits bounds it; use "
+                    "path: layers, or a limit set with a continuous axis",
                     layer=path.layer,
                 )
             )

@@ -31,7 +31,7 @@ def lock_of(cell: Cell, parameters: JointParameters, toolpath: Toolpath) -> Lock
         raise InputError(
             "NOT_FOR_SETUP",
             "joints.lock",
-            "robots need all their axes; only machines with rotary axes can do with four; use none",
+            "robots need all their axes; only five-axis machines can work with four; use none",
         )
     axis = 0 if parameters.lock == "first" else 1
     if not isinstance(parameters.lock_at, str):
@@ -75,7 +75,7 @@ def _missed(cell: Cell, lock: Lock, worst: tuple[float, int, int, int], allowed:
     )
     stands, off, most = (math.degrees(angle) for angle in (lock.angle, missed, allowed))
     text = Text(
-        "axis {} stands at {:.4g} deg; the tool is up to {:.3g} deg off the direction asked for",
+        "axis {} is locked at {:.4g} deg; the tool is up to {:.3g} deg off the requested direction",
         name,
         stands,
         off,
@@ -86,8 +86,8 @@ def _missed(cell: Cell, lock: Lock, worst: tuple[float, int, int, int], allowed:
         ERROR,
         "FOUR_AXES",
         Text(
-            "{}, more than joints.max_residual allows ({:.3g} deg); lock the other axis, elsewhere or "
-            "none",
+            "{}, more than joints.max_residual allows ({:.3g} deg); lock the other axis, use "
+            "another position or none",
             Word(text),
             most,
         ),

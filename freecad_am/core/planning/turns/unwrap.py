@@ -55,7 +55,7 @@ def unwrapped(task: Task, paths: list[BeadPath]) -> tuple[list[BeadPath], list[I
             NOTE,
             "UNWIND",
             Text(
-                "axis {} turns back {} times between beads, first before layer {}",
+                "axis {} rewinds {} times between beads, first before layer {}",
                 names[axis],
                 len(layers),
                 layers[0],
@@ -178,7 +178,7 @@ def seam_note(layers: list[int]) -> Issue:
     return Issue(
         NOTE,
         "SEAM_MOVED",
-        Text("the seams of {} beads were moved to keep an axis within its limits", len(layers)),
+        Text("the seams of {} beads were moved to keep an axis within limits", len(layers)),
         layer=layers[0],
     )
 
@@ -188,8 +188,6 @@ def split_note(layers: list[int]) -> Issue:
     return Issue(
         WARNING,
         "BEAD_SPLIT",
-        Text(
-            "{} beads were split because an axis has not the stroke for a whole bead", len(layers)
-        ),
+        Text("{} beads were split, as an axis lacks the stroke for the whole bead", len(layers)),
         layer=layers[0],
     )

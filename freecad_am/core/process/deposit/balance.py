@@ -169,7 +169,7 @@ def issues(balance: Balance | None) -> tuple[Issue, ...]:
     share = left_out > NEGLIGIBLE * (balance.part_volume or 0.0) and left_out > 0.0
     if balance.solids or balance.faces or share:
         why = (
-            Text("a wall of one bead, {:.4g} mm wide, is planned", balance.width)
+            Text("the wall is planned as one bead, {:.4g} mm wide", balance.width)
             if balance.width
             else ("solids are built up on the hub, which is there before")
         )
@@ -183,8 +183,9 @@ def issues(balance: Balance | None) -> tuple[Issue, ...]:
                 WARNING,
                 OUTSIDE,
                 Text(
-                    "about {:.3g} of {:.3g} cm3 of beads lie outside {}, which is {:.2g} mm thick there, and "
-                    "beads are {:.4g} mm wide; give process.bead_width, or machine it off",
+                    "about {:.3g} of {:.3g} cm3 of beads are outside {}, which is {:.2g} mm "
+                    "thick, while beads are {:.4g} mm wide; set process.bead_width, or machine "
+                    "off the excess",
                     balance.outside / MM3,
                     balance.beads / MM3,
                     balance.label,
@@ -200,9 +201,9 @@ def issues(balance: Balance | None) -> tuple[Issue, ...]:
                 _much(twice, beads),
                 TWICE,
                 Text(
-                    "about {:.3g} cm3 of beads are laid over others of their layer, {:.2g} % of "
-                    "those of {}: they come nearer to each other than they are wide, or cross; layers get higher there. Use "
-                    "narrower beads, or leave out what is there twice",
+                    "over-deposition of about {:.3g} cm3, {:.2g} % of the beads of {}: beads "
+                    "cross, or are closer to each other than their width, and layers get higher "
+                    "there; use narrower beads, or remove duplicates",
                     twice / MM3,
                     100.0 * twice / beads,
                     balance.label,
@@ -234,8 +235,9 @@ def _filling_issues(balance: Balance) -> tuple[Issue, ...]:
                 WARNING,
                 LEFT_OUT,
                 Text(
-                    "{}: beads of {:.4g} mm do not reach into what is narrower, layers not above the last "
-                    "cut, and nothing is laid within a hub; use narrower beads, or lower layers",
+                    "{}: beads of {:.4g} mm do not fit into narrower regions, layers end at the "
+                    "last cut, and the inside of a hub is not filled; use narrower beads, or "
+                    "lower layers",
                     _left_out(balance, True),
                     balance.width,
                 ),
@@ -247,8 +249,8 @@ def _filling_issues(balance: Balance) -> tuple[Issue, ...]:
                 WARNING,
                 OUTSIDE,
                 Text(
-                    "about {:.3g} cm3 of beads lie outside the {:.3g} cm3 of {}: beads of {:.4g} mm stand "
-                    "out where it is narrower; use narrower beads, or machine it off",
+                    "about {:.3g} cm3 of beads are outside the {:.3g} cm3 of {}: beads of {:.4g} "
+                    "mm exceed narrow regions; use narrower beads, or machine off the excess",
                     (balance.outside or 0.0) / MM3,
                     part_volume / MM3,
                     balance.label,
@@ -263,9 +265,10 @@ def _filling_issues(balance: Balance) -> tuple[Issue, ...]:
                 _much(twice, part_volume),
                 TWICE,
                 Text(
-                    "about {:.3g} cm3 of beads are laid over others of their layer, {:.2g} % of {}: "
-                    "where lines and their links meet contours, and where room is left for less than a bead; layers get higher "
-                    "there. Use fill: contours, narrower beads, or a wider strategy.gap",
+                    "over-deposition of about {:.3g} cm3, {:.2g} % of {}: beads overlap where "
+                    "lines and links meet contours, and in spaces narrower than a bead, and "
+                    "layers get higher there; use fill: contours, narrower beads, or a wider "
+                    "strategy.gap",
                     twice / MM3,
                     100.0 * twice / part_volume,
                     balance.label,
@@ -311,7 +314,7 @@ def _left_out(balance: Balance, share: bool) -> str:
         )
     if not balance.width and not balance.solids:
         return Text(
-            "about {:.3g} of the {:.3g} cm3 of {}, all that lies within its hub, are not deposited",
+            "about {:.3g} of the {:.3g} cm3 of {}, the volume inside its hub, are not deposited",
             left_cm3,
             part_cm3,
             balance.label,

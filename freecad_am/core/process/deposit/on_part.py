@@ -78,8 +78,9 @@ def check_on_part(toolpath: Toolpath, places_: Places, off: Array, limit: float)
                 ERROR,
                 CODE,
                 Text(
-                    "{} of {} places checked are off the part, this one at {} by {:.4g} mm, and {:.3g} mm are "
-                    "allowed: this toolpath deposits something else; choose another strategy, or other faces, and report the part",
+                    "{} of {} points checked are off the part, this one at {} by {:.4g} mm, with "
+                    "{:.3g} mm allowed, so the toolpath is wrong; choose another strategy or "
+                    "other faces, and report the part",
                     int((off[measured] > limit).sum()),
                     len(measured),
                     place(places_.points[worst]),

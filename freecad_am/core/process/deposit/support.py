@@ -257,9 +257,10 @@ def _issues(runs: list[_Run], toolpath: Toolpath, lowest: Mask) -> list[Issue]:
                 WARNING,
                 CODE,
                 Text(
-                    "{:.4g} mm of beads lie over nothing, {:.4g} mm of them in a row from here: what is below "
-                    "is more than {:.4g} mm away, or they overhang it by more than half of their width; deposit what carries "
-                    "them first, let the part grow from another side, or leave them out",
+                    "{:.4g} mm of bead are unsupported, the longest run {:.4g} mm from here: the "
+                    "surface below is more than {:.4g} mm away, or beads overhang by more than "
+                    "half their width; deposit the support first, change the growth direction, "
+                    "or remove these beads",
                     total[layer],
                     longest.length,
                     reach,
@@ -276,7 +277,7 @@ def _issues(runs: list[_Run], toolpath: Toolpath, lowest: Mask) -> list[Issue]:
                 WARNING,
                 CODE,
                 Text(
-                    "{} layers more have beads over nothing, {:.5g} mm of them",
+                    "{} more layers have unsupported beads, {:.5g} mm in total",
                     len(total) - len(worst),
                     remaining,
                 ),

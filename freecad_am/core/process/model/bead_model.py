@@ -180,7 +180,7 @@ def fit(
         wrong = np.flatnonzero(~((np.isfinite(column) | (column is radius)) & (column > 0.0)))
         if len(wrong):
             text = Text(
-                "{} {:.9g} {} is not a positive number; mend the row, or leave it out",
+                "{} {:.9g} {} is not a positive number; correct or remove the row",
                 name,
                 column[wrong[0]],
                 unit,
@@ -209,14 +209,15 @@ def fit(
             raise InputError(
                 "TABLE_CONTRADICTS",
                 label,
-                "rows that were laid alike were measured differently: {}; with both of each pair beads would get wider with "
-                "speed; measure these beads again, or leave the wrong one out",
+                "rows with the same settings have different results: {}; with both of each pair "
+                "the bead width would increase with speed; measure these beads again, or remove "
+                "the wrong row",
                 Text.joined(", ", contradictions),
             )
         raise InputError(
             "NO_MODEL",
             label,
-            "beads get wider with speed (m = {:.4g}); check the table's columns",
+            "the bead width increases with speed (m = {:.4g}); check the columns of the table",
             fits[0].m,
         )
     model = BeadModel(
@@ -271,7 +272,7 @@ def _besides(contradictions: Sequence[str]) -> str:
     if not contradictions:
         return ""
     return Text(
-        "; and rows that were laid alike were measured differently: {}; measure these again",
+        "; and rows with the same settings have different results: {}; measure them again",
         Text.joined(", ", contradictions),
     )
 
@@ -300,7 +301,8 @@ def _alike(radius: Array, speed: Array, equivalent: Array) -> str:
     ]
     if not same and np.ptp(equivalent) <= FLATTEST * equivalent.max():
         return Text(
-            "all beads get the same length of wire to each millimetre; measure at least two speeds at one wire feed"
+            "all beads have the same wire length per millimetre; measure at least two speeds at "
+            "one wire feed"
         )
     text = Text.joined(", and ", same) if same else Text("speeds and radii vary only together")
     return Text(

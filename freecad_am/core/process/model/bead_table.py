@@ -69,13 +69,14 @@ def read_table(name: str, folder: Path | None = None) -> Measured:
             raise InputError(
                 "BAD_TABLE",
                 name,
-                "it is not a table: it holds bytes that are not text in UTF-8; save it as CSV in UTF-8",
+                "it is not a table: it contains bytes that are not UTF-8 text; save it as CSV in "
+                "UTF-8",
             ) from None
         why = (getattr(error, "strerror", None) or str(error) or "no access").lower()
         raise InputError(
             "NO_FILE",
             name,
-            "the calibration table cannot be read ({}); give none, csw or the path of one",
+            "the calibration table cannot be read ({}); use none, csw or the path of a table",
             why,
         ) from None
     numbered = enumerate(text.splitlines(), 1)
@@ -95,7 +96,7 @@ def read_table(name: str, folder: Path | None = None) -> Measured:
         raise InputError(
             "BAD_TABLE",
             path.name,
-            "it has no column {}; name in its first line {}",
+            "the column {} is missing; name in its first line {}",
             missing[0],
             ", ".join(COLUMNS),
         )
@@ -114,7 +115,7 @@ def read_table(name: str, folder: Path | None = None) -> Measured:
         raise InputError(
             "BAD_TABLE",
             where,
-            "wire feed {:g} m/min is not a positive number; mend the row, or leave it out",
+            "wire feed {:g} m/min is not a positive number; correct or remove the row",
             feed[wrong[0]],
         )
     several = len(feed) > 0 and np.ptp(feed) > 1e-9 * feed.max()
@@ -143,13 +144,13 @@ def _check_columns(header: list[str], where: str) -> None:
     for column in header:
         if header.count(column) > 1:
             raise InputError(
-                "BAD_TABLE", where, "the column {!r} stands twice; keep one of them", column
+                "BAD_TABLE", where, "the column {!r} appears twice; remove one", column
             )
         if column not in COLUMNS and any(name in COLUMNS for name in header):
             raise InputError(
                 "BAD_TABLE",
                 where,
-                "the column {!r} is not known; remove it, or name it one of {}",
+                "unknown column {!r}; remove it, or rename it to one of {}",
                 column,
                 ", ".join(COLUMNS),
             )
@@ -169,7 +170,7 @@ def _number(row: dict[str | None, str | None], column: str, where: str) -> float
         raise InputError(
             "BAD_TABLE",
             where,
-            "it has more values than there are columns; write decimals with a point",
+            "the row has more values than columns; write decimals with a point",
         )
     text = (row[column] or "").strip()
     try:
@@ -182,6 +183,4 @@ def _number(row: dict[str | None, str | None], column: str, where: str) -> float
             if text
             else Text("there is no {}", column)
         )
-        raise InputError(
-            "BAD_TABLE", where, "{}; mend the row, or leave it out", Word(what)
-        ) from None
+        raise InputError("BAD_TABLE", where, "{}; correct or remove the row", Word(what)) from None

@@ -57,8 +57,9 @@ def check_speeds(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
                 WARNING,
                 CODE,
                 Text(
-                    "beads are laid at {:.4g} to {:.4g} mm/s, and {} {}; change process.travel_speed, "
-                    "process.bead_width or process.classes, or measure beads at these speeds",
+                    "the travel speed of beads is {:.4g} to {:.4g} mm/s, but {} {}; change "
+                    "process.travel_speed, process.bead_width or process.classes, or measure "
+                    "beads at these speeds",
                     speed_range[0],
                     speed_range[1],
                     process.material.name or "the material",

@@ -66,8 +66,8 @@ def model_issues(
                 WARNING,
                 "TABLE_CONTRADICTS",
                 Text(
-                    "rows of the bead table were laid alike and measured differently: {}; measure these beads again, or "
-                    "leave one of each pair out",
+                    "rows of the bead table have the same settings but different results: {}; "
+                    "measure these beads again, or remove one of each pair",
                     Text.joined(", ", model.contradictions),
                 ),
             )
@@ -85,8 +85,9 @@ def model_issues(
                 WARNING,
                 "WIRE_FEED",
                 Text(
-                    "the table was measured at a wire feed of {} mm/s, the job has {:.4g} mm/s; set "
-                    "process.wire.feed to auto or to that, or measure a table at it",
+                    "the table was measured at a wire feed of {} mm/s, but the job uses {:.4g} "
+                    "mm/s; set process.wire.feed to auto or to the measured feed, or measure a "
+                    "table at the feed of the job",
                     Word(measured),
                     feed,
                 ),
@@ -124,11 +125,11 @@ def _outside(
                 WARNING if slow > CLAMPED else NOTE,
                 "OUTSIDE_TABLE",
                 Text(
-                    "on {:.3g} % of the length, in {} of {} beads and {} "
-                    "segments, the width asked for takes a speed outside of the table's {:.4g} to {:.4g} mm/min; it is kept "
-                    "within, and the width is not held: it is {:.3g} mm at its farthest from the {:g} mm. Straight beads of the "
-                    "table are {:.4g} to {:.4g} mm wide: ask for a process.bead_width among these, or measure beads at other "
-                    "speeds",
+                    "on {:.3g} % of the length, in {} of {} beads and {} segments, the required "
+                    "width needs a speed outside the {:.4g} to {:.4g} mm/min of the table; the "
+                    "speed is clamped, and the width deviates: it is {:.3g} mm at worst instead "
+                    "of {:g} mm. Straight beads of the table are {:.4g} to {:.4g} mm wide: set "
+                    "process.bead_width in this range, or measure beads at other speeds",
                     100.0 * slow,
                     beads,
                     len(sized),
@@ -148,8 +149,9 @@ def _outside(
                 NOTE,
                 "TIGHT_BENDS",
                 Text(
-                    "{:.3g} % of the length bends more than the table's beads, of {:.4g} mm or more, and "
-                    "counts as bent like these; widths are only estimated there",
+                    "{:.3g} % of the length bends more tightly than the beads of the table, of "
+                    "{:.4g} mm radius or more, and is treated like these; widths are only "
+                    "estimates there",
                     100.0 * bent,
                     model.radii[0],
                 ),

@@ -110,13 +110,14 @@ def height_issue(
         WARNING if drift > DRIFT else NOTE,
         HEIGHTS,
         Text(
-            "{}beads are predicted {:.3g} to {:.3g} mm high, {:.3g} mm in the mean, at layers of {:g} mm{}{}",
-            Word("run as fast as the axes can follow, " if as_run else ""),
+            "{}beads are predicted {:.3g} to {:.3g} mm high, {:.3g} mm on average, for layers of "
+            "{:g} mm{}{}",
+            Word("limited to the speed of the axes, " if as_run else ""),
             height["min"],
             height["max"],
             height["mean"],
             layer_height,
-            Word("; set strategy.layer_height to what the beads make" if drift > DRIFT else ""),
+            Word("; set strategy.layer_height to the predicted height" if drift > DRIFT else ""),
             _sections(sized, process, model),
         ),
     )
@@ -127,7 +128,8 @@ def _sections(sized: Segments, process: ProcessParameters, model: BeadModel) -> 
     if np.isfinite(sized.wire).all():
         low, high = float(sized.wire.min()), float(sized.wire.max())
         return Text(
-            ". The wire runs in proportion to the speed, at {:.3g} to {:.3g} mm/s, and keeps their section",
+            ". The wire feed follows the speed, at {:.3g} to {:.3g} mm/s, and keeps the "
+            "cross-section",
             low,
             high,
         )
@@ -138,8 +140,8 @@ def _sections(sized: Segments, process: ProcessParameters, model: BeadModel) -> 
     if fastest < 1.05 * slowest:
         return ""
     return Text(
-        ". At one wire feed faster stretches are lower; process.wire.feed_mode: proportional would keep the "
-        "section, at {:.3g} to {:.3g} mm/s of wire",
+        ". At a constant wire feed faster stretches are lower; process.wire.feed_mode: "
+        "proportional would keep the cross-section, at {:.3g} to {:.3g} mm/s of wire",
         slowest,
         fastest,
     )

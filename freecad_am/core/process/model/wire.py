@@ -58,9 +58,9 @@ def set_wire_feed(
                 WARNING,
                 CODE,
                 Text(
-                    "the wire feeds {:.4g} mm3/s, {:.4g} mm/s of {:g} mm wire, but beads of {:.4g} x {:.4g} mm at "
-                    "{:.4g} mm/s take {:.4g} mm3/s; set process.wire.feed to {:.4g} mm/s, or to auto, or make width, layer height "
-                    "and travel speed what they are",
+                    "the wire feeds {:.4g} mm3/s, {:.4g} mm/s of {:g} mm wire, but beads of "
+                    "{:.4g} x {:.4g} mm at {:.4g} mm/s need {:.4g} mm3/s; set process.wire.feed "
+                    "to {:.4g} mm/s or to auto, or correct width, layer height and travel speed",
                     wire_rate,
                     process.wire.feed,
                     process.wire.diameter,
@@ -128,9 +128,10 @@ def _check_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
                 WARNING,
                 CODE,
                 Text(
-                    "the wire feeds {:.4g} mm3/s, but beads of these classes, at their own travel speeds, take {} "
-                    "mm3/s: more or less lies there than there is room for; give them a schedule that feeds the wire so, or the "
-                    "travel speed of the others",
+                    "the wire feeds {:.4g} mm3/s, but beads of these classes, at their own "
+                    "travel speeds, need {} mm3/s, so they are over- or under-filled; give them "
+                    "a schedule with a matching wire feed, or the travel speed of the other "
+                    "beads",
                     wire_rate,
                     text,
                 ),

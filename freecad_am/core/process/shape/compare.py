@@ -190,9 +190,9 @@ def issues(
         return drifts
     lacks = shape.allowance - shape.least
     if shape.least <= -shape.reach:
-        text = Text("there is none within {:.3g} mm", shape.reach)
+        text = Text("no deposit within {:.3g} mm", shape.reach)
     elif shape.least < 0.0:
-        text = Text("the part sticks out by {:.3g} mm", -shape.least)
+        text = Text("the part protrudes by {:.3g} mm", -shape.least)
     else:
         text = Text("{:.3g} mm are left to machine", shape.least)
     # if layers come out low, more is needed everywhere
@@ -203,8 +203,8 @@ def issues(
             WARNING,
             CODE,
             Text(
-                "on {:.3g} % of the faces the predicted deposit does not reach {:g} mm beyond the part, on "
-                "{:.3g} % it ends within the part: at {} {}. {}",
+                "on {:.3g} % of the faces the predicted deposit extends less than {:g} mm beyond "
+                "the part, on {:.3g} % it ends inside the part: at {} {}. {}",
                 100.0 * shape.short,
                 shape.allowance,
                 100.0 * shape.outside,
@@ -235,9 +235,9 @@ def _drift(
             WARNING,
             DRIFT,
             Text(
-                "this layer is predicted to end {:.3g} mm {} where the next one should begin: up to here "
-                "layers come out {:.3g} mm high in the mean, and {:g} mm are planned; set strategy.layer_height to {:.3g} mm, "
-                "or change what the wire feeds",
+                "the layer is predicted to end {:.3g} mm {} the start of the next one: up to "
+                "here layers are {:.3g} mm high on average instead of {:g} mm; set "
+                "strategy.layer_height to {:.3g} mm, or change the wire feed",
                 abs(drift[worst]),
                 Word(direction),
                 actual_height,

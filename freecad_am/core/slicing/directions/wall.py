@@ -139,8 +139,8 @@ def limit_turns(
             raise InputError(
                 "TURN_LIMIT",
                 label,
-                "build directions cannot be brought below {:.3g} deg/mm on a bead of {:.4g} mm: allow "
-                "a faster turn, or use the mode fixed",
+                "build directions still turn faster than {:.3g} deg/mm on a bead of {:.4g} mm: "
+                "allow a faster turn, or use the mode fixed",
                 np.degrees(rate),
                 s[-1],
             )

@@ -78,7 +78,7 @@ def slice_layers(
     fronts, beads = [state.fronts], [list[SpaceCurve]()]
     remaining = len(state.behind) - len(state.passed)
     while remaining:
-        progress(1.0 - remaining / len(state.behind), Text("finding layer {}", len(fronts)))
+        progress(1.0 - remaining / len(state.behind), Text("computing layer {}", len(fronts)))
         state = next_state(slicing, state)
         remaining -= len(state.passed)
         gap_beads = close_gaps(slicing, fronts[-1], state.fronts, state.passed)

@@ -87,7 +87,7 @@ class Facets:
             raise InputError(
                 "OPEN_MESH",
                 self.name,
-                "{} edges have not two faces, one at ({:.4g}, {:.4g}, {:.4g}) mm from the hub's "
+                "{} edges do not have two faces, one at ({:.4g}, {:.4g}, {:.4g}) mm from the hub "
                 "base; close the mesh",
                 int((counts != 2).sum()),
                 position[0],

@@ -44,8 +44,7 @@ def group_by_base(
         raise InputError(
             "NO_BASE",
             hub or label,
-            "the hub has no cylinder and no cone on its outside; choose a face of it, or give "
-            "strategy.base",
+            "the hub has no outer cylinder or cone; choose a face, or set strategy.base",
         )
     standing: dict[int, list[Body]] = {}
     for body in bodies:
@@ -102,21 +101,21 @@ def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bo
         ]
     )
     if (ranges[:, 1] <= 0.0).all():
-        text = "it lies inside of the hub"
+        text = "it is inside the hub"
     elif ranges[nearest, 0] > 0.0:
         text = Text(
-            "it begins {:.4g} mm outside of {}, at {}",
+            "it starts {:.4g} mm outside {}, at {}",
             ranges[nearest, 0],
             seats[nearest].base.name,
             where,
         )
     else:
-        text = Text("it passes {} beside the face, near {}", seats[nearest].base.name, where)
+        text = Text("it passes {} off the face, near {}", seats[nearest].base.name, where)
     hint = _unit_hint(body, seats) if unitless else ""
     raise InputError(
         "NOT_ON_HUB",
         body.name,
-        "it does not stand on the hub: {}; move it, or choose its base{}",
+        "it is not on the hub: {}; move it, or choose its base{}",
         Word(text),
         hint,
     )
@@ -134,8 +133,8 @@ def _unit_hint(body: Body, seats: Sequence[Seat]) -> str:
             adjacent = any(face.low <= z.max() and face.high >= z.min() for face in seat.faces)
             if heights.min() <= PAST_END_MM < heights.max() and adjacent:
                 return Text(
-                    ". Times {:g} it would reach {}: is its file in {}? Then export it in mm, or give scale: {:g} "
-                    "mm with it, as part.scale (in the window: Meshes, Scale)",
+                    ". Multiplied by {:g} it would reach {}: is its file in {}? If so, export it "
+                    "in mm, or set scale: {:g} mm, as part.scale (in the window: Meshes, Scale)",
                     factor,
                     seat.base.name,
                     unit,
@@ -173,7 +172,7 @@ def hub_among(
         raise InputError(
             "NO_HUB",
             label,
-            "none of its solids stands on a cylinder or cone of another: name the hub as substrate, choose "
-            "a face of it, or give strategy.base; what stands on a flat base is deposited by kind: solid",
+            "none of its solids is on a cylinder or cone of another: name the hub as substrate, "
+            "choose a face, or set strategy.base; for a flat base use kind: solid",
         )
     return int(np.argmax(votes))

@@ -115,7 +115,7 @@ def _in_one_piece(
         raise InputError(
             "TOO_FAR_ROUND",
             where,
-            "it winds {:.3g} times about the cone and would lie on itself when laid flat; divide it "
+            "it winds {:.3g} times around the cone and would overlap when unrolled; divide it "
             "into shorter solids",
             widest / TURN,
         )

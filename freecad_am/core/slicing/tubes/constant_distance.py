@@ -88,8 +88,8 @@ def _evaluate_offset(offset: Offset, v: Array, height: float, label: str) -> Pla
         raise InputError(
             "LAYER_HEIGHT",
             label,
-            "no point of the wall at v = {:.4g} lies {:g} mm from the layer below; keep the layer "
-            "height below the wall's smallest radius of curvature",
+            "the wall at v = {:.4g} has no point {:g} mm from the layer below; keep the layer "
+            "height below the smallest radius of curvature of the wall",
             where,
             height,
         )

@@ -67,7 +67,7 @@ def _step(
         raise InputError(
             "LAYER_HEIGHT",
             label,
-            "a layer height of {:g} mm is more than the wall's bend allows; lower it",
+            "a layer height of {:g} mm is too large for the bend of the wall; lower it",
             height,
         )
     point, rise, turn = surface.derivatives(new, v)

@@ -109,8 +109,8 @@ def _in_plane(
         raise InputError(
             "NOT_NORMAL",
             label,
-            "the planes normal to its centreline do not cut it in one curve each; choose other "
-            "layers for this wall",
+            "the planes normal to its centre line do not cut it in one curve each; choose other "
+            "layers for the wall",
         )
     u[-1] = u[0]
     _, along, around = surface.derivatives(u, v)

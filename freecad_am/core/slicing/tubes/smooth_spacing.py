@@ -69,8 +69,8 @@ def next_layer(
             raise InputError(
                 "LAYER_HEIGHT",
                 label,
-                "the wall has no point at {:g} mm from the layer below: use a smaller layer height "
-                "or a narrower band",
+                "the wall has no point at {:g} mm from the layer below: use a smaller layer "
+                "height or a narrower band",
                 share * height,
             )
         fronts.append(positions.u)
@@ -91,7 +91,7 @@ def next_layer(
         raise InputError(
             "BAND",
             label,
-            "a band of {:g} % is too narrow for {} points around: use more of them",
+            "a band of {:g} % is too narrow for {} points around: use more points",
             100.0 * band,
             len(grid) - 1,
         )

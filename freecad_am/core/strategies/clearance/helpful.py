@@ -103,19 +103,17 @@ def what_helps(touching: Touching, now: Change, clears: Callable[[Change], bool]
         for change in _useful_changes(touching, changes):
             if touching.toolpath.point_count > MAX_TRIAL_POINTS:
                 return Text(
-                    "these points would have room with {}, which was not tried for the others",
+                    "these points would be clear with {}, which was not tested for the others",
                     change.words,
                 )
             trials_left -= 1
             if trials_left >= 0 and clears(change):
-                return Text("with {} the nozzle is clear, which was tried", change.words)
+                return Text("with {} the nozzle is clear (tested)", change.words)
         trials += [change.words for change in changes[-1:] if trials_left >= 0]
-    fallback = Text(
-        "use other layers or another direction, or leave out what these points belong to"
-    )
+    fallback = Text("use other layers or another direction, or exclude the region of these points")
     return (
         Text(
-            "it still does with {}, each of which was tried; {}",
+            "it still does with {} (all tested); {}",
             Text.joined(", ", trials),
             fallback,
         )

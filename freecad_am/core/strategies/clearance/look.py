@@ -97,8 +97,8 @@ def nozzle_issues(
             ERROR,
             CLEARANCE,
             Text(
-                "the nozzle touches {} at {} of {} points; on parts of revolution it is not tilted away "
-                "from fixtures: move them, or use a slimmer nozzle",
+                "the nozzle touches {} at {} of {} points; on parts of revolution it does not "
+                "tilt away from fixtures: move them, or use a slimmer nozzle",
                 names,
                 int(hit.sum()),
                 len(points),

@@ -33,7 +33,7 @@ def tilt_issues(
                 ERROR,
                 CLEARANCE,
                 Text(
-                    "however the tool is tilted, the nozzle touches substrate, fixture, platform or "
+                    "at every possible tilt, the nozzle touches substrate, fixture, platform or "
                     "deposit at {} point(s) of layers {} to {}",
                     int(stuck.sum()),
                     layer[stuck].min(),
@@ -58,7 +58,7 @@ def tilt_issues(
                 NOTE,
                 "TILT_BACK",
                 Text(
-                    "{}, tool axes are tilted back to keep the nozzle clear, by up to {:.2f} deg",
+                    "{}, tool axes are tilted back for clearance, by up to {:.2f} deg",
                     Word(where),
                     np.degrees(tilt[worst]),
                 ),
@@ -78,8 +78,9 @@ def turn_issues(fastest: float, limit: float) -> list[Issue]:
             WARNING,
             "TURN_PASSED",
             Text(
-                "to keep the nozzle clear, tool axes turn by up to {:.3g} deg/mm, faster than "
-                "build_direction.max_turn ({:.3g} deg/mm); use a slimmer nozzle or allow a faster turn",
+                "for clearance, tool axes turn by up to {:.3g} deg/mm, faster than "
+                "build_direction.max_turn ({:.3g} deg/mm); use a slimmer nozzle or allow a "
+                "faster turn",
                 np.degrees(fastest),
                 np.degrees(limit),
             ),

@@ -83,14 +83,14 @@ def plan(
                 "BAD_VALUE",
                 "strategy.min_layer_time",
                 "a spiral has no layers to wait between; use path: layers, a slower "
-                "process.travel_speed, or leave it out",
+                "process.travel_speed, or remove it",
             )
         layers, plan_issues = spiral.layers(wall, strategy, process, tilting)
     else:
         slices, issues = sliced(wall, strategy)
         progress(
             0.2,
-            Text("build directions of {} layers, keeping the nozzle clear", slices.layer[-1] + 1),
+            Text("build directions of {} layers, with nozzle clearance", slices.layer[-1] + 1),
         )
         first_tilting = replace(tilting, parameters=classes.leaning(build, process, FIRST_LAYER))
         layers, plan_issues = _layers(wall, slices, strategy, process, tilting, first_tilting)
@@ -122,9 +122,7 @@ def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, 
             Issue(
                 NOTE,
                 "REMAINDER",
-                Text(
-                    "{:.3g} mm {} are left at the top, less than a layer", remainder, Word(measure)
-                ),
+                Text("{:.3g} mm {} remain at the top, less than a layer", remainder, Word(measure)),
             )
         )
     if rule is iso_height:
@@ -139,7 +137,7 @@ def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, 
                 NOTE,
                 "POINT_BEADS",
                 Text(
-                    "{} bead(s) of a radius of no more than the chord error ({:g} mm) are left out",
+                    "{} bead(s) with a radius up to the chord error ({:g} mm) are omitted",
                     int((~is_kept).sum()),
                     strategy.chord_error,
                 ),
@@ -171,8 +169,9 @@ def _spacing_issues(wall: RevolvedWall, layers: list[Array], layer_height: float
             WARNING,
             "SPACING",
             Text(
-                "{} of {} layers are more than 20 % off the layer height of {:g} mm, first layer {}; layer {} is {:.4g} mm "
-                "from the one below; layers along the wall (spacing: arc-length) are even",
+                "{} of {} layers deviate by more than 20 % from the layer height of {:g} mm, "
+                "first layer {}; layer {} is {:.4g} mm above the previous one; layers along the "
+                "wall (spacing: arc-length) are even",
                 len(uneven),
                 len(layers),
                 layer_height,

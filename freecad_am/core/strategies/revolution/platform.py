@@ -87,8 +87,8 @@ def overhanging(wall: RevolvedWall, platform: Platform) -> list[Issue]:
             WARNING,
             "OVER_PLATFORM",
             Text(
-                "the base of {} has a diameter of {:.4g} mm and reaches over the platform; {}check cell.platform_diameter (0 "
-                "for none)",
+                "the base of {} has a diameter of {:.4g} mm and exceeds the platform; {}check "
+                "cell.platform_diameter (0 for none)",
                 wall.label,
                 2.0 * base,
                 Word("use cell.mount: feature, move the part, or " if mounted else ""),
@@ -110,7 +110,7 @@ def refuse_below(
         worst = int(depth.argmax())
         raise _off_platform(
             Text(
-                "{} reaches {:.4g} mm below the platform, at {}",
+                "{} extends {:.4g} mm below the platform, at {}",
                 label,
                 depth[worst],
                 place(points[worst]),

@@ -68,16 +68,17 @@ def _over_itself(turns: Array, end: float, pitch: float, closed_top: bool) -> li
     start = int(np.searchsorted(turns, 2.0 * math.pi - 1e-9))
     if end > 0.0 and start < len(turns) - 1:
         text = Text(
-            "from here the second turn rises from 0 to {:g} mm above the flat first one, and half of it is deposited over "
-            "that; the end of the turn is right. Machine the foot, or use path: layers",
+            "from here the second turn rises from 0 to {:g} mm above the flat first turn, so the "
+            "first half of it is over-deposited; the end of the turn is correct. Machine the "
+            "foot, or use path: layers",
             pitch,
         )
         issues.append(Issue(NOTE, "DEPOSITED_TWICE", text, 0, 0, start))
     last_start = int(np.searchsorted(turns, turns[-1] - 2.0 * math.pi - 1e-9))
     if not closed_top and start < last_start < len(turns) - 1:
         text = Text(
-            "from here the flat last turn comes down from {:g} to 0 mm above the turn before, and half of it is deposited over "
-            "that. Machine the top, or use path: layers",
+            "from here the flat last turn descends from {:g} to 0 mm above the previous turn, so "
+            "the second half of it is over-deposited. Machine the top, or use path: layers",
             pitch,
         )
         issues.append(Issue(NOTE, "DEPOSITED_TWICE", text, 0, 0, last_start))

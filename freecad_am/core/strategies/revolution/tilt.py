@@ -337,8 +337,8 @@ class Tilting:
                     ERROR,
                     "MAX_TILT",
                     Text(
-                        "lead and tilt alone lean the tool by more than max_tilt ({}); make them smaller or "
-                        "the cap larger",
+                        "lead and tilt together already exceed max_tilt ({}); reduce them or "
+                        "raise the limit",
                         Word(cap),
                     ),
                     int(case_layer[over][0]),
@@ -347,7 +347,7 @@ class Tilting:
         elif (capped > 1e-9).any():
             first_layer = int(case_layer[np.argmax(capped > 1e-9)])
             text = Text(
-                "from layer {} on, max_tilt holds directions within {}", first_layer, Word(cap)
+                "from layer {} on, max_tilt limits directions to {}", first_layer, Word(cap)
             )
             issues.append(Issue(NOTE, "MAX_TILT", text, first_layer))
         back = angle - capped
@@ -363,9 +363,9 @@ class Tilting:
                     ERROR,
                     "CLEARANCE",
                     Text(
-                        "however far it is tilted back, the nozzle touches platform or deposit, beads of {:g} mm, in {} "
-                        "layer(s), from layer {} on; use a slimmer nozzle, another wall, or a smaller process.bead_width where "
-                        "beads are not that wide",
+                        "at every possible tilt, the nozzle touches platform or deposit, beads "
+                        "of {:g} mm, in {} layer(s), from layer {} on; use a slimmer nozzle, "
+                        "another wall, or a smaller process.bead_width if the beads are narrower",
                         self.bead_width,
                         len(hit),
                         hit[0],
@@ -384,7 +384,7 @@ class Tilting:
                     NOTE,
                     "TILT_BACK",
                     Text(
-                        "from layer {} on, directions are tilted back to keep the nozzle clear, by up to "
+                        "from layer {} on, directions are tilted back for clearance, by up to "
                         "{:.2f} deg in layer {}",
                         first_layer,
                         np.degrees(back.max()),

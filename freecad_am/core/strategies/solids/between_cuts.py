@@ -91,8 +91,9 @@ def issues(missed: Sequence[Uncut], strategy: FilledParameters) -> list[Issue]:
             WARNING,
             "NOT_DEPOSITED",
             Text(
-                "{} solid(s) lie between the cuts of two layers, {:g} mm apart, and get no bead, {:.4g} cm3 in all: {}{}; set "
-                "strategy.layer_height to at most their height, or fuse them with the solid beside them",
+                "{} solid(s) fit between the cuts of two layers, {:g} mm apart, and get no bead, "
+                "{:.4g} cm3 in total: {}{}; set strategy.layer_height to at most their height, "
+                "or fuse them with the adjacent solid",
                 len(missed),
                 strategy.layer_height,
                 sum(piece.bare for piece in missed) / MM3,

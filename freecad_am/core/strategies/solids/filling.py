@@ -168,7 +168,7 @@ class Pictures:
                     WARNING,
                     "OPEN_GAP",
                     Text(
-                        "beads leave {} gap(s) open, the widest of {:.3g} mm at {}; strategy.gap allows "
+                        "beads leave {} gap(s), the widest {:.3g} mm at {}; strategy.gap allows "
                         "{:.3g} mm",
                         len(gaps),
                         width,
@@ -185,8 +185,8 @@ class Pictures:
                     NOTE,
                     "PATTERN_ROUND_HUB",
                     Text(
-                        "a layer all the way round the hub is filled with {}; strategy.fill = {} is "
-                        "for regions with an end",
+                        "a layer all around the hub is filled with {}; strategy.fill = {} needs "
+                        "regions with an end",
                         INSTEAD[strategy.fill],
                         strategy.fill,
                     ),
@@ -287,8 +287,9 @@ def _no_bead(layer: Slice, bare: Sequence[Bare]) -> Issue:
         WARNING,
         "NO_BEAD",
         Text(
-            "{} place(s) too narrow for a bead get none, {:.3g} mm^2 in all; the largest, {:.3g} mm^2 and "
-            "{:.3g} mm wide, is at {}; use narrower beads, lower strategy.narrowest, or make the part thicker there",
+            "{} place(s) are too narrow for a bead, {:.3g} mm^2 in total; the largest, {:.3g} "
+            "mm^2 and {:.3g} mm wide, is at {}; use narrower beads, lower strategy.narrowest, or "
+            "make the part thicker there",
             len(bare),
             math.fsum(bare_place.area for bare_place in bare),
             largest.area,
@@ -329,8 +330,8 @@ def bead_width(
         raise InputError(
             "BEAD_SPACING",
             "strategy.bead_spacing",
-            "beads {:g} mm wide (process.bead_width), {:g} mm apart, leave stripes "
-            "of {:.3g} mm open between them; use {:g} mm or less, or wider beads",
+            "beads {:g} mm wide (process.bead_width), {:g} mm apart, leave stripes of {:.3g} mm "
+            "between them; use {:g} mm or less, or wider beads",
             width,
             spacing,
             spacing - width,
@@ -355,8 +356,8 @@ def over_fed(
         return []
     overlap = strategy.bead_overlap is not None
     text = Text(
-        "beads {:g} mm wide (process.bead_width) lie {:.4g} mm apart ({}): the wire feeds {:.4g} mm3 "
-        "for each mm of bead, {:.3g} times the {:.4g} mm3 that it has room for; {}",
+        "beads {:g} mm wide (process.bead_width) are {:.4g} mm apart ({}): the wire feeds {:.4g} "
+        "mm3 per mm of bead, {:.3g} times the available {:.4g} mm3; {}",
         process.bead_width,
         spacing,
         Word("strategy.bead_overlap" if overlap else "strategy.bead_spacing"),
@@ -386,7 +387,8 @@ def _wider_apart(
     if model is None and isinstance(process.wire.feed, str):
         if overlap is not None:
             return Text(
-                "set strategy.bead_overlap to {:.3g} %, or leave it out and set process.fill_width to spacing",
+                "set strategy.bead_overlap to {:.3g} %, or remove it and set process.fill_width "
+                "to spacing",
                 100.0 * (1.0 - USUAL_SPACING),
             )
         return Text(
@@ -397,15 +399,15 @@ def _wider_apart(
     balanced = section / strategy.layer_height  # mm apart
     if balanced > width:
         return Text(
-            "set strategy.layer_height to {:.3g} mm, or feed less wire",
+            "set strategy.layer_height to {:.3g} mm, or reduce the wire feed",
             section / (USUAL_SPACING * width),
         )
     if overlap is not None:
         return Text(
-            "set strategy.bead_overlap to {:.3g} %, or feed less wire",
+            "set strategy.bead_overlap to {:.3g} %, or reduce the wire feed",
             100.0 * (1.0 - balanced / width),
         )
-    return Text("set strategy.bead_spacing to {:.3g} mm, or feed less wire", balanced)
+    return Text("set strategy.bead_spacing to {:.3g} mm, or reduce the wire feed", balanced)
 
 
 def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> list[Issue]:
@@ -428,8 +430,8 @@ def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> l
             NOTE,
             "THIN_SINGLE",
             Text(
-                "{} bead(s) alone in regions narrower than a bead of {:.3g} mm stand out of them, by up "
-                "to {:.3g} mm at {}",
+                "{} single bead(s) exceed regions narrower than a bead of {:.3g} mm, by up to "
+                "{:.3g} mm at {}",
                 len(curves),
                 2.0 * beads.inset,
                 out[worst],

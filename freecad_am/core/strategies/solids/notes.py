@@ -51,8 +51,9 @@ def notes(
                 NOTE,
                 "WAITS",
                 Text(
-                    "the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in all, so that no "
-                    "layer takes less than {:g} s and no solid is returned to sooner than after {:g} s",
+                    "the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in "
+                    "total, so that every layer takes at least {:g} s and at least {:g} s pass "
+                    "before it returns to a solid",
                     len(waits),
                     len(layers),
                     max(waits),
@@ -68,8 +69,8 @@ def notes(
                 NOTE,
                 "WAITS",
                 Text(
-                    "the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in all, so that no "
-                    "solid is returned to sooner than after {:g} s",
+                    "the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in "
+                    "total, so that at least {:g} s pass before it returns to a solid",
                     len(waits),
                     len(layers),
                     max(waits),
@@ -107,8 +108,8 @@ def _speeds(
     ]
     _, layer, number = max(varied, key=lambda deviation: deviation[0])
     text = Text(
-        "{} of {} beads are deposited at {:.4g} to {:.4g} mm/s{}, for one wire feed to make them {}; the speed follows that "
-        "along them",
+        "{} of {} beads are deposited at {:.4g} to {:.4g} mm/s{}, so that one wire feed makes "
+        "them {}; the speed varies along them",
         len(varied),
         len(deviations),
         speed.min(),
@@ -117,7 +118,7 @@ def _speeds(
         Text.joined(" and ", sizes),
     )
     remedy = _for_one_speed(strategy, bool(high))
-    message = Text("{}; for one speed give {}", text, remedy) if remedy else text
+    message = Text("{}; for a constant speed set {}", text, remedy) if remedy else text
     return [Issue(NOTE, "SPEED_VARIES", message, layer, number)]
 
 
@@ -155,8 +156,8 @@ def _single_layers(layers: Sequence[Layer], strategy: FilledParameters) -> list[
             NOTE,
             "SINGLE_LAYER",
             Text(
-                "{} of {} solids or groups of solids get a single layer, on the hub: they are no higher than "
-                "strategy.layer_height, {:g} mm",
+                "{} of {} solids or groups of solids get a single layer, on the hub: they are no "
+                "higher than strategy.layer_height, {:g} mm",
                 len(single),
                 len(starts) - 1,
                 strategy.layer_height,
@@ -197,8 +198,8 @@ def _turn_issues(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[I
             NOTE,
             "TURN_LIMITED",
             Text(
-                "on {} of {} beads, {:.4g} mm in all, the torch begins to turn ahead of corners, by up "
-                "to {:.3g} deg from what is asked, to turn no faster than {}",
+                "on {} of {} beads, {:.4g} mm in total, the torch starts to turn before corners, "
+                "deviating by up to {:.3g} deg, to turn no faster than {}",
                 len(spread_beads),
                 len(beads),
                 length,
@@ -227,8 +228,9 @@ def _less(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]:
             WARNING,
             "LEAN_REDUCED",
             Text(
-                "on {} of {} beads in {} bends follow one another too closely to turn the torch round "
-                "them at {}: it leans by {:.3g} to {:.3g} deg there instead of {:.3g} deg; lean less, or allow a faster turn",
+                "on {} of {} beads in {} bends are too close together to turn the torch around "
+                "them at {}: its tilt is {:.3g} to {:.3g} deg there instead of {:.3g} deg; tilt "
+                "less, or allow a faster turn",
                 len(reduced),
                 len(beads),
                 Word(where),
@@ -253,8 +255,8 @@ def _normals(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue
             WARNING,
             "TURN_OF_NORMALS",
             Text(
-                "on {} of {} beads the hub's normals alone turn by up to {:.3g} deg/mm, faster "
-                "than {}; the torch follows them all the same",
+                "on {} of {} beads the hub normals themselves turn by up to {:.3g} deg/mm, "
+                "faster than {}; the torch still follows them",
                 len(fast),
                 len(beads),
                 math.degrees(worst.normals),

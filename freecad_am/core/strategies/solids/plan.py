@@ -103,8 +103,8 @@ def plan(
         raise InputError(
             "NOTHING_TO_DEPOSIT",
             solids.label,
-            "no bead of {:g} mm or more finds room in any layer; use a smaller bead "
-            "spacing, or thin = single",
+            "no bead of {:g} mm or more fits in any layer; use a smaller bead spacing, or thin = "
+            "single",
             strategy.least_bead,
         )
     course = order_beads(ranked, strategy.order)
@@ -158,7 +158,7 @@ def _refuse_mode(planes: bool, strategy: FilledParameters, build: BuildDirection
         raise InputError(
             "NOT_FOR_FAMILY",
             "build_direction.mode",
-            "{} is not for curved layers, which grow along their normals; use local",
+            "{} does not apply to curved layers, which grow along their normals; use local",
             build.mode,
         )
     if planes:
@@ -166,14 +166,14 @@ def _refuse_mode(planes: bool, strategy: FilledParameters, build: BuildDirection
             raise InputError(
                 "NOT_FOR_FAMILY",
                 "build_direction.mode",
-                "symmetry-plane is for walls; plane layers grow along their "
-                "normal: use local or fixed",
+                "symmetry-plane is for walls; planar layers grow along their normal: use local "
+                "or fixed",
             )
     elif build.mode != "local":
         raise InputError(
             "NOT_FOR_FAMILY",
             "build_direction.mode",
-            "{} is not for solids on a hub, which grow along its normals; use local",
+            "{} does not apply to solids on a hub, which grow along its normals; use local",
             build.mode,
         )
 

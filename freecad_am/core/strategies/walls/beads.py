@@ -164,7 +164,8 @@ def corner_notes(turns: list[Array]) -> list[Issue]:
             NOTE,
             "CORNERS",
             Text(
-                "{} of {} fronts have corners, first layer {}; the sharpest turns by {:.3g} deg. The robot slows down there",
+                "{} of {} fronts have corners, first layer {}; the sharpest turns by {:.3g} deg. "
+                "The robot slows down there",
                 len(cornered),
                 len(turns),
                 cornered[0],
@@ -185,14 +186,15 @@ def turn_notes(rates: list[float], strategy: SurfaceParameters) -> list[Issue]:
     corners = sum(np.isinf(rates[index]) for index in over)
     finite = np.where(np.isinf(rates), 0.0, rates)
     if strategy.spacing == "smooth" and over:
-        corner_text = Text(", {} of them in corners", corners) if corners else ""
+        corner_text = Text(", {} in corners", corners) if corners else ""
         return [
             Issue(
                 WARNING,
                 "TURN",
                 Text(
-                    "a band of {:g} % does not suffice: within the wall {} of {} layers turn by more than {:.3g} deg/mm{}, "
-                    "first layer {}, by up to {:.3g} deg/mm{}. The robot slows down there; a wider strategy.band rounds them",
+                    "a band of {:g} % is too narrow: within the wall {} of {} layers turn by "
+                    "more than {:.3g} deg/mm{}, first layer {}, by up to {:.3g} deg/mm{}. The "
+                    "robot slows down there; a wider strategy.band rounds them",
                     100.0 * strategy.band,
                     len(over),
                     len(rates),
@@ -220,6 +222,6 @@ def short_note(dropped: int) -> list[Issue]:
         Issue(
             NOTE,
             "SHORT_BEADS",
-            Text("{} bead(s) at the end shorter than half a layer height are left out", dropped),
+            Text("{} bead(s) at the end shorter than half a layer height are omitted", dropped),
         )
     ]

@@ -63,8 +63,8 @@ def symmetry_plane(wall: SurfaceWall | PatchWall, build: BuildDirectionParameter
         raise InputError(
             "NO_SYMMETRY_PLANE",
             "build_direction.mode",
-            "{} is not a bend of a torus, so its plane of symmetry is not "
-            "known; give its normal as build_direction.plane, or use local, layer or fixed",
+            "{} is not a bend of a torus, so it has no plane of symmetry; give the normal as "
+            "build_direction.plane, or use local, layer or fixed",
             wall.label,
         )
     return normal

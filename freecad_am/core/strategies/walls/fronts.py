@@ -114,8 +114,8 @@ def _refuse(strategy: SurfaceParameters) -> None:
         raise InputError(
             "NO_PARAMETER",
             "strategy.spacing",
-            "this wall has no closed parameter whose lines layers could follow (several "
-            "faces, openings, a side or a slanted end); use constant-distance or smooth",
+            "the wall has no closed parameter for layers to follow (several faces, openings, a "
+            "side or a slanted end); use constant-distance or smooth",
         )
 
 
@@ -146,14 +146,14 @@ def _deposited_pieces(
         return kept_layers, short_note(dropped)
     kept_layers = uncut_pieces(pieces)
     if not kept_layers:
-        raise InputError("TOO_LOW", label, "its end cuts the first layer off; make it longer")
+        raise InputError("TOO_LOW", label, "its end cuts the first layer; make it longer")
     top_curves = [piece.curve for layer in kept_layers for piece in layer if not piece.children]
     remainder = (
         float(nearest_feet(top_curves, rims.upper).distance.max())
         if top_curves and len(rims.upper)
         else 0.0
     )
-    text = Text("up to {:.4g} mm of the wall are left above the last whole layer", remainder)
+    text = Text("up to {:.4g} mm of the wall remain above the last whole layer", remainder)
     note = Issue(NOTE, "REMAINDER", text, len(kept_layers) - 1)
     return kept_layers, [note] if remainder > 1e-4 * strategy.layer_height else []
 
@@ -180,8 +180,8 @@ def _close(
             NOTE,
             "CLOSING",
             Text(
-                "{} bead(s) close gaps between fronts that meet, nearer to them than a layer height; the "
-                "first in layer {}",
+                "{} bead(s) close gaps between merging fronts, closer to them than a layer "
+                "height; the first in layer {}",
                 count,
                 first_layer,
             ),

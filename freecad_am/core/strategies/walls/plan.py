@@ -116,7 +116,7 @@ def _stretches(
         raise InputError(
             "TOO_LOW",
             wall.label,
-            "its end does not lie above the substrate all around; make it longer",
+            "its end is not above the substrate all around; make it longer",
         )
     if strategy.end == "whole":
         remainder = float(
@@ -125,7 +125,7 @@ def _stretches(
         note = Issue(
             NOTE,
             "REMAINDER",
-            Text("up to {:.4g} mm of the wall are left above the last whole layer", remainder),
+            Text("up to {:.4g} mm of the wall remain above the last whole layer", remainder),
             count - 1,
         )
         return stretches[:count], [note] if remainder > 1e-6 * strategy.layer_height else []

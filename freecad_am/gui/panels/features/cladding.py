@@ -23,13 +23,11 @@ from ..pick import PickPanel
 FACES = Link(
     "Source",
     "",
-    marked(
-        "The faces to cover; of an object that is not a solid all of them, where none is picked."
-    ),
+    marked("Faces to cover; if none is selected and the object is not a solid, all its faces."),
     type_name="App::PropertyLinkSub",
 )
 SUBSTRATE = Link(
-    "Substrate", "", marked("A further part that the nozzle is kept clear of."), required=False
+    "Substrate", "", marked("Another part that the nozzle must clear."), required=False
 )
 CM2 = 100.0  # mm2
 
@@ -69,7 +67,7 @@ class CladdingPanel(PickPanel):
         return None if self.faces.picks else self.faces
 
     def _refusal(self, field: PickField, pick: picking.Pick) -> str:
-        return tr("{} cannot be taken for this.").format(pick.obj.Label)
+        return tr("{} cannot be used here.").format(pick.obj.Label)
 
     def _elements(self) -> list[str]:
         """Of the faces picked."""

@@ -23,15 +23,15 @@ from ..pick import PickPanel
 CURVES = Link(
     "Source",
     "",
-    marked("The edges, wire, sketch or table of points to lay as beads."),
+    marked("Edges, wire, sketch or table of points to deposit as beads."),
     type_name="App::PropertyLinkSub",
 )
 NORMALS = Link(
     "Normals",
     "",
     marked(
-        "Faces of the same object that the curves lie on, whose normals are the directions; none: the "
-        "table's own, or the direction below."
+        "Faces of the same object under the curves, whose normals set the tool directions; none: "
+        "the directions in the table, or the direction below."
     ),
     required=False,
     type_name="App::PropertyLinkSub",
@@ -39,7 +39,7 @@ NORMALS = Link(
 SUBSTRATE = Link(
     "Substrate",
     "",
-    marked("The part that they are laid on; none is needed on a platform."),
+    marked("Part below the curves; not needed on a platform."),
     required=False,
 )
 
@@ -55,7 +55,7 @@ class CurvesPanel(PickPanel):
         )
         self.curves = PickField(CURVES, tr("Curves"), curves, self._arm, picking.EDGE, whole=True)
         self.normals = PickField(NORMALS, tr("Faces"), faces, self._arm, picking.FACE)
-        self.substrate = PickField(SUBSTRATE, tr("Stands on"), substrate, self._arm)
+        self.substrate = PickField(SUBSTRATE, tr("Substrate"), substrate, self._arm)
         self.fixtures = PickField(FIXTURES, tr("Fixtures"), fixtures, self._arm)
         picks = [self.curves, self.normals, self.substrate, self.fixtures]
         super().__init__(
@@ -80,7 +80,7 @@ class CurvesPanel(PickPanel):
         return None if self.curves.picks else self.curves
 
     def _refusal(self, field: PickField, pick: picking.Pick) -> str:
-        return tr("{} cannot be taken for this.").format(pick.obj.Label)
+        return tr("{} cannot be used here.").format(pick.obj.Label)
 
     def _elements(self) -> list[str]:
         """The names of edges and faces of the source."""

@@ -31,7 +31,7 @@ SOLIDS = Link(
     "Solids",
     "",
     marked(
-        "The solids or closed meshes to deposit, one after the other; a click on one again leaves it out."
+        "Solids or closed meshes to deposit, one after the other; click one again to remove it."
     ),
     type_name="App::PropertyLinkList",
 )
@@ -39,7 +39,8 @@ HUB = Link(
     "Hub",
     "",
     marked(
-        "The cylinder or cone of the hub to grow on, or the whole hub: then its surface is found under each solid."
+        "The cylinder or cone of the hub, or the whole hub: then the surface under each solid is "
+        "detected."
     ),
     required=False,
     type_name="App::PropertyLinkSub",
@@ -114,7 +115,8 @@ class HubPanel(PickPanel):
 
     def _refusal(self, field: PickField, pick: picking.Pick) -> str:
         text = tr(
-            "{} is another object; faces of a hub are of one object. Clear it first to start again."
+            "{} is another object; the hub faces must belong to one object. Clear it first to "
+            "start again."
         )
         return text.format(pick.obj.Label)
 

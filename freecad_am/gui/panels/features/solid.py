@@ -42,21 +42,21 @@ SOLIDS = Link(
     "Solids",
     "",
     marked(
-        "The solids or closed meshes to deposit, one after the other; a click on one again leaves it out."
+        "Solids or closed meshes to deposit, one after the other; click one again to remove it."
     ),
     type_name="App::PropertyLinkList",
 )
 SUBSTRATE = Link(
     "Substrate",
     "",
-    marked("The part that they stand on; none is needed on a platform."),
+    marked("Part below the solids; not needed on a platform."),
     required=False,
 )
 GUIDE = Link(
     "Guide",
     "",
     marked(
-        "The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the "
+        "Edges, wire or sketch as a guide; layers are normal to it; none: the centre line of the "
         "solid."
     ),
     required=False,
@@ -65,9 +65,7 @@ GUIDE = Link(
 START = Link(
     "StartFaces",
     "",
-    marked(
-        "The faces on which the first of geodesic and offset layers lies; none: where they stand."
-    ),
+    marked("Start faces of geodesic and offset layers; none: the base of the solid."),
     required=False,
     type_name="App::PropertyLinkSub",
 )
@@ -100,7 +98,7 @@ class SolidPanel(PickPanel):
             ([], None, None, None, ()) if obj is None else _present(obj)
         )
         self.solids = PickField(SOLIDS, tr("Solids"), solids, self._arm)
-        self.substrate = PickField(SUBSTRATE, tr("Stands on"), substrate, self._arm)
+        self.substrate = PickField(SUBSTRATE, tr("Substrate"), substrate, self._arm)
         self.fixtures = PickField(FIXTURES, tr("Fixtures"), fixtures, self._arm)
         self.guide = PickField(GUIDE, tr("Guide"), guide, self._arm, picking.EDGE, whole=True)
         self.start = PickField(START, tr("Starts on"), start, self._arm, picking.FACE)
@@ -119,7 +117,7 @@ class SolidPanel(PickPanel):
         """The slider of the overhang view: a picture alone, it enters nothing."""
         box, help = (
             QtGui.QWidget(),
-            tr("Faces that lean out over nothing by more than this angle are red in the 3D view"),
+            tr("Faces that overhang by more than this angle are red in the 3D view"),
         )
         column = QtGui.QVBoxLayout(box)
         column.setContentsMargins(4, 0, 4, 0)
@@ -162,7 +160,7 @@ class SolidPanel(PickPanel):
         return None if self.solids.picks else self.solids
 
     def _refusal(self, field: PickField, pick: picking.Pick) -> str:
-        return tr("{} cannot be taken for this.").format(pick.obj.Label)
+        return tr("{} cannot be used here.").format(pick.obj.Label)
 
     def _links(self) -> dict[str, Any]:
         solids = [pick.obj for pick in self.solids.picks]

@@ -53,7 +53,7 @@ class WallPanel(PickPanel):
         whole = None if wall is None else picking.whole(wall)
         if wall is not None and whole is not None and wall.names and not whole.names:
             self.note = tr(
-                "The whole of {} is taken; Pick takes single faces, click by click."
+                "The whole of {} is used; Pick selects single faces, click by click."
             ).format(wall.obj.Label)
             wall = whole
         for name, pick in (("Source", wall), ("Substrate", substrate)):
@@ -91,7 +91,8 @@ class WallPanel(PickPanel):
         if field.element == picking.EDGE:
             return tr("Click edges of one object.")
         text = tr(
-            "{} is another object; faces of a wall are of one object. Clear it first to start again."
+            "{} is another object; the wall faces must belong to one object. Clear it first to "
+            "start again."
         )
         return text.format(pick.obj.Label)
 
