@@ -836,7 +836,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Robots: obstacles in the cell that nozzle, part and links must clear, such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg of the origin of the file, or of the centre of the box, in the manufacturer&apos;s base frame.</source>
-        <translation>Robots : obstacles dans la cellule que buse, pièce et corps évitent, comme : table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du centre de la boîte, dans le repère de base du fabricant.</translation>
+        <translation>Robots : obstacles dans la cellule que buse, pièce et segments évitent, par exemple : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du centre de la boîte, dans le repère de base du constructeur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -5134,7 +5134,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Robots: obstacles in the cell that nozzle, part and links must clear, such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg of the origin of the file, or of the centre of the box, in the manufacturer&apos;s base frame.</source>
-        <translation>Robots : obstacles dans la cellule que buse, pièce et corps évitent, comme : table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du centre de la boîte, dans le repère de base du fabricant.</translation>
+        <translation>Robots : obstacles dans la cellule que buse, pièce et segments évitent, par exemple : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du centre de la boîte, dans le repère de base du constructeur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
