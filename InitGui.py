@@ -4,11 +4,11 @@
 import FreeCADGui as Gui
 
 from freecad_am.gui import former_names
-from freecad_am.gui.texts import translation
+from freecad_am.gui.texts import in_language
 from freecad_am.objects.work import hooks
 
 former_names.install()
-translation.install()
+in_language.install()
 
 
 class RoboticAMWorkbench(Gui.Workbench):
@@ -18,7 +18,7 @@ class RoboticAMWorkbench(Gui.Workbench):
 
     def __init__(self):
         from freecad_am.gui import icons
-        from freecad_am.gui.texts.translation import tr
+        from freecad_am.gui.texts.in_language import tr
 
         self.__class__.ToolTip = tr(
             "Layers, joint paths and checked programs for robots that deposit material"
@@ -37,16 +37,16 @@ class RoboticAMWorkbench(Gui.Workbench):
     def Activated(self):
         """Called when the workbench is chosen: its menu shows the tooltips, which say why a tool is greyed, and its toolbar
         all tools."""
-        from freecad_am.gui.tools import menus, toolbar
+        from freecad_am.gui.tools import toolbar
 
-        menus.show_tooltips(self.MenuText)
+        toolbar.show_tooltips(self.MenuText)
         toolbar.keep_whole(self.MenuText)
 
     def ContextMenu(self, recipient):
         """Called for a right click in the tree or the 3D view."""
-        from freecad_am.gui.tools import menus
+        from freecad_am.gui.tools import toolbar
 
-        names = menus.for_selection()
+        names = toolbar.for_selection()
         if names:
             self.appendContextMenu("", names)
 
@@ -58,7 +58,7 @@ class RoboticAMWorkbench(Gui.Workbench):
 def robotic_am_preferences():
     """Add the page of preferences, which are there before the workbench is opened."""
     from freecad_am.gui import icons
-    from freecad_am.gui.preferences.hook import RoboticAMPreferences
+    from freecad_am.gui.preferences.page import RoboticAMPreferences
 
     Gui.addIconPath(icons.FOLDER)
     Gui.addPreferencePage(RoboticAMPreferences, "Robotic AM")

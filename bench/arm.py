@@ -20,7 +20,7 @@ import arm_apart
 import numpy as np
 from arm_jobs import CLEARANCE, EXAMPLE, box_text, carried_out, cylinder, is_path, places
 
-from freecad_am.core.kinematics.links import cylinders as link_rods
+from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.machines import machine
 from tests.kdl_links import KdlLinks
 
@@ -159,7 +159,7 @@ def _nearest(folder: Path, body: Standing) -> float | None:
     box = fcl.CollisionObject(fcl.Box(*body.size), fcl.Transform(middle))
     links = [
         (number, [cylinder(fcl, rod) for rod in rods])
-        for number, rods in enumerate(link_rods.robot_cylinders(robot.chain))
+        for number, rods in enumerate(external_links.robot_cylinders(robot.chain))
     ]
     for q in places(folder):
         for number, rods in links[1:]:

@@ -24,7 +24,7 @@ from arm_jobs import CLEARANCE, EXAMPLE, box_text, carried_out, cylinder, is_pat
 
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics.external import MECHANISMS
-from freecad_am.core.kinematics.links import cylinders as link_rods
+from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.types import Array
 from tests.core.kinematics.test_external_links import mechanism
@@ -164,7 +164,9 @@ class Piece:
 def _least(fcl: Any, job: Moving, joints: Array) -> float:
     """The least distance in mm with joints (k, axes) between what is kept apart."""
     robot = machine.load(job.robot)
-    links = [[_rod(fcl, rod) for rod in rods] for rods in link_rods.robot_cylinders(robot.chain)]
+    links = [
+        [_rod(fcl, rod) for rod in rods] for rods in external_links.robot_cylinders(robot.chain)
+    ]
     last, arm = len(links) - 1, KdlLinks(robot)
 
     def of_links(q: Array) -> list[Array]:

@@ -20,13 +20,12 @@ import numpy as np
 
 from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.angles import TURN, shortest
-from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.curves.sampling import sample_curve
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall, sample_curve
 from freecad_am.core.geometry.obstacles import box
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.cell import Cell
-from freecad_am.core.kinematics.links import cylinders as link_rods
+from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
@@ -55,7 +54,7 @@ def run() -> list[Row]:
     """Both in turns on the same job, then the certificate."""
     dome, cell = hemisphere(15.0, choose(0.2, 1.0), "fixed"), _beside_a_wall()
     rods, task = (
-        link_rods.robot_cylinders(cell.robot.chain),
+        external_links.robot_cylinders(cell.robot.chain),
         Task(cell, cell.branch or 0, JointParameters()),
     )
     found = []

@@ -18,8 +18,7 @@ def run_of_points(layer_height: float, points: int, document: str):
     """A hemisphere of many points as a simulation plays it."""
     import numpy as np
 
-    from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-    from freecad_am.core.geometry.curves.sampling import sample_curve
+    from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall, sample_curve
     from freecad_am.core.kinematics import cell as cells
     from freecad_am.core.parameters.build_direction import BuildDirectionParameters
     from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
@@ -33,7 +32,7 @@ def run_of_points(layer_height: float, points: int, document: str):
     from freecad_am.core.simulation.totals import totals
     from freecad_am.core.simulation.watch import watch
     from freecad_am.core.strategies.revolution import plan as revolution
-    from freecad_am.gui.simulation.run import Run
+    from freecad_am.gui.simulation.player import Run
 
     def dome(t):
         return np.c_[45.0 * np.cos(t), 45.0 * np.sin(t)], np.c_[-np.sin(t), np.cos(t)]

@@ -13,12 +13,12 @@ from time import process_time
 
 import numpy as np
 
-from freecad_am.core.geometry.implicit import Round
+from freecad_am.core.geometry.columns import Round
 from freecad_am.core.geometry.walls.surface import Torus
 from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.fronts import layers as fronts
 from freecad_am.core.slicing.tubes import constant_distance
-from freecad_am.core.slicing.tubes.wall_layer import WallLayer, even_grid
+from freecad_am.core.slicing.tubes.smooth_spacing import WallLayer, even_grid
 from tests.core.patch_walls import bend
 
 from rows import Row

@@ -38,17 +38,18 @@ from .core.parameters.joints import JointParameters
 from .core.parameters.process import ProcessParameters
 from .core.parameters.program import ProgramParameters
 from .core.parameters.scan import ScanParameters
-from .macro.arguments import checked_document, checked_job, checked_list, checked_path, checked_text
-from .macro.changes import change, recompute
-from .macro.export import (
-    export,
-    export_cell,
-    export_report,
-    export_waypoints,
-    export_wires,
-    make_cam_path,
-    make_trajectory,
+from .macro.arguments import (
+    checked_document,
+    checked_job,
+    checked_list,
+    checked_path,
+    checked_stage,
+    checked_text,
+    in_order,
+    make_stage,
+    one_step,
 )
+from .macro.changes import change, recompute
 from .macro.features import (
     make_cladding_feature,
     make_curves_feature,
@@ -58,9 +59,18 @@ from .macro.features import (
     make_solid_feature,
     make_surface_feature,
 )
-from .macro.parts import array_element, open_part
-from .macro.scan import make_scan
-from .macro.steps import checked_stage, in_order, make_stage, one_step
+from .macro.scan import (
+    array_element,
+    export,
+    export_cell,
+    export_report,
+    export_waypoints,
+    export_wires,
+    make_cam_path,
+    make_scan,
+    make_trajectory,
+    open_part,
+)
 from .macro.suit import (
     in_vain,
     is_held_apart,
@@ -73,7 +83,7 @@ from .macro.suit import (
 from .objects import user_machines
 from .objects.cell import Cell
 from .objects.checks.controllers import post_of, usual_motion
-from .objects.fields.naming import proposed_name, taken_name
+from .objects.fields.rows import proposed_name, taken_name
 from .objects.job_group import grouped
 from .objects.joint_path import JointPath
 from .objects.program import Program

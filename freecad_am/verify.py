@@ -13,20 +13,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
 from .core.geometry.formatting import format_deviation
 from .core.issues import ERROR, Issue, Text
 from .core.kinematics.cell import Cell
 from .core.motion import Motion
 from .core.program import Program
 from .core.read_moves import ReadMoves
+from .core.types import Array
 from .posts.catalogue import Post
-from .read_back import between, points, text_path
+from .read_back import points, text_path
 from .read_back.events import event_issues
-from .read_back.planned import Planned
-from .read_back.times import time_issues
-from .read_back.ways import way_issues
+from .read_back.text_path import Planned
+from .read_back.ways import time_issues, way_issues
 
 STRAYS = (
     "the path between two points leaves the straight line by {:.3g} mm, more than the chord error"
@@ -95,7 +93,7 @@ def _verify_joints(
     issues += points.joint_issues(cell, planned, read, continuous) + points.point_issues(
         planned, path
     )
-    strayed, off = between.beads_between(cell, planned, shown, path, chord_error)
+    strayed, off = points.beads_between(cell, planned, shown, path, chord_error)
     issues += planned.issue("VERIFY_BETWEEN", off, Text(STRAYS, strayed))
     text = text_path.text_joints(cell, planned.joints, shown, half, path, None)
     return _concluded(cell, planned, read, path, text, strayed, second, issues)
@@ -129,7 +127,7 @@ def _verify_poses(
     strayed = 0.0
     # a tool that stays the same goes straight from point to point, and so does one that stands seen from a part that is held
     if read.tool is not None and not read.held and len(planned.ends):
-        strayed, off = between.tools_between(cell, planned, asked, tools, poses, chord_error)
+        strayed, off = points.tools_between(cell, planned, asked, tools, poses, chord_error)
         issues += planned.issue("VERIFY_BETWEEN", off, Text(STRAYS, strayed))
     text = text_path.text_joints(
         cell, planned.joints, read.joints, text_path.digits(cell, read), poses, asked
@@ -180,7 +178,7 @@ def _concluded(
     issues: list[Issue],
 ) -> Verification:
     """What is looked at whatever the text is told in, rapids and limits; what the second solver said, and who solved."""
-    wandered, turned, off = between.rapids_between(cell, planned, text, path, read.linear)
+    wandered, turned, off = points.rapids_between(cell, planned, text, path, read.linear)
     issues += planned.issue(
         "VERIFY_BETWEEN", off, Text(WANDERS, format_deviation(wandered), turned)
     )

@@ -11,7 +11,7 @@ import pytest
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.cell import CellParameters
-from freecad_am.read_back import between, planned
+from freecad_am.read_back import points, text_path
 from freecad_am.read_back.text_path import Path
 
 CELLS = {
@@ -23,7 +23,7 @@ CELLS = {
 
 @pytest.fixture(autouse=True)
 def few_at_once(monkeypatch):
-    monkeypatch.setattr(planned, "PIECE", 64)
+    monkeypatch.setattr(text_path, "PIECE", 64)
 
 
 @pytest.fixture(params=CELLS)
@@ -71,7 +71,7 @@ def test_the_tip_leaves_no_chord_by_more_than_its_bow(cell):
     straight = tips[:, :1] + np.linspace(0.0, 1.0, 21)[:, None] * (tips[:, -1:] - tips[:, :1])
     strayed, bow = (
         np.linalg.norm(tips - straight, axis=2).max(axis=1),
-        between._bow(cell, serial, ends),
+        points._bow(cell, serial, ends),
     )
     assert (strayed <= bow + 1e-9).all()
     assert strayed.max() > 10.0 and np.median(bow[strayed > 1e-3] / strayed[strayed > 1e-3]) < 100.0
@@ -87,7 +87,7 @@ def test_what_is_told_is_what_all_of_them_driven_tell(cell, seed):
     wanted = tip + rng.normal(size=tip.shape) * 10.0 ** rng.uniform(-5, 0, (len(tip), 1))
     bound = 10.0 ** rng.uniform(-4, 1, len(tip))
     path = Path(tip, np.zeros_like(tip), bound, bound)
-    largest, off = between.beads_between(
+    largest, off = points.beads_between(
         cell, SimpleNamespace(ends=ends, position=wanted), shown, path, 0.01
     )
 
@@ -107,7 +107,7 @@ def test_the_farthest_is_found_where_no_point_is_off(cell):
     tip = on_the_way(cell, shown, ends, np.array([0.0, 1.0]))
     tip = np.append(tip[:1, 0], tip[:, 1], axis=0)
     path = Path(tip, np.zeros_like(tip), np.full(len(tip), 1e3), np.zeros(len(tip)))
-    largest, off = between.beads_between(
+    largest, off = points.beads_between(
         cell, SimpleNamespace(ends=ends, position=tip), shown, path, 0.0
     )
     apart = off_segment(

@@ -8,8 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from freecad_am import verify as verification
-from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.curves.sampling import sample_curve
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall, sample_curve
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
@@ -18,7 +17,7 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.core.planning.beads import moving_tool
+from freecad_am.core.planning.beads import steps
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.strategies.revolution import plan as revolution
@@ -58,7 +57,7 @@ def planned():
 def written(planned, request):
     cell, motion, beads = planned
     if request.param == "cartesian":
-        motion = moving_tool.refined_to_chord_error(motion, cell, CHORD_ERROR, beads)
+        motion = steps.refined_to_chord_error(motion, cell, CHORD_ERROR, beads)
     parameters = ProgramParameters(post="staubli", motion=request.param, max_points=500)
     program = build(motion, cell, ProcessParameters(), parameters, "dome")
     return cell, motion, program, staubli.write(program)
@@ -88,7 +87,7 @@ def test_without_the_added_points_the_moving_tool_leaves_the_bead(planned):
 
 def test_added_points_lie_on_the_circles_and_the_arm_reaches_them(planned):
     cell, motion, beads = planned
-    finer = moving_tool.refined_to_chord_error(motion, cell, CHORD_ERROR, beads)
+    finer = steps.refined_to_chord_error(motion, cell, CHORD_ERROR, beads)
     assert len(finer) > 1.5 * len(motion) and finer.total_time == pytest.approx(motion.total_time)
     for layer, bead in {(0, 0), (int(motion.layer.max()), 0)}:
         rows, more = ((m.deposit & (m.layer == layer) & (m.bead == bead)) for m in (motion, finer))
@@ -141,7 +140,7 @@ ORIGIN = (12.5, -7.25, 31.0, 0.3, -0.2, 1.1)
 def test_the_program_origin_changes_the_text_and_not_the_motion(planned):
     """Two origins: other gauges, the same flange in space; from the text alone, by frames multiplied here."""
     cell, motion, beads = planned
-    motion = moving_tool.refined_to_chord_error(motion, cell, CHORD_ERROR, beads)
+    motion = steps.refined_to_chord_error(motion, cell, CHORD_ERROR, beads)
     texts, flanges = [], []
     for origin in ("auto", ORIGIN):
         parameters = ProgramParameters(post="staubli", motion="cartesian", origin=origin)

@@ -20,13 +20,13 @@ from matplotlib.figure import Figure
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1]))
 
-from freecad_am.core.geometry.implicit import Round  # noqa: E402
+from freecad_am.core.geometry.columns import Round  # noqa: E402
 from freecad_am.core.geometry.walls.surface import Torus  # noqa: E402
 from freecad_am.core.geometry.walls.surface_wall import SurfaceWall  # noqa: E402
 from freecad_am.core.parameters.strategy import SurfaceParameters  # noqa: E402
 from freecad_am.core.slicing.first_layer import intersect_implicit  # noqa: E402
 from freecad_am.core.slicing.tubes import normal_layers  # noqa: E402
-from freecad_am.core.slicing.tubes.wall_layer import even_grid, local_distances  # noqa: E402
+from freecad_am.core.slicing.tubes.smooth_spacing import even_grid, local_distances  # noqa: E402
 from freecad_am.core.strategies.walls.plan import sliced  # noqa: E402
 
 BEND, TUBE, PIPE, HEIGHT, END = 60.0, 15.0, 32.0, 5.0, 0.5 * np.pi

@@ -22,7 +22,7 @@ RESULTS = (
 )
 EXTENDING = (
     "freecad_am.core.filling.fill",
-    "freecad_am.core.filling.curve",
+    "freecad_am.core.filling.centre",
     "freecad_am.core.geometry.regions.region",
     "freecad_am.core.kinematics.machines.machine",
     "freecad_am.core.planning.plan",

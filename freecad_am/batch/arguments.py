@@ -7,7 +7,7 @@ import argparse
 from collections.abc import Callable
 from typing import NoReturn
 
-from freecad_am.core.issues import InputError
+from ..core.issues import InputError
 
 PROGRAM = "freecad-am"
 

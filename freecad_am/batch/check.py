@@ -14,32 +14,29 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from freecad_am.core.geometry.file_content import MB, read_content
-from freecad_am.core.issues import ERROR, NOTE, InputError, Issue, Text
-from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import jacobian
-from freecad_am.core.kinematics.cell import Cell
-from freecad_am.core.motion import Motion
-from freecad_am.core.parameters.cell import CellParameters
-from freecad_am.core.parameters.joints import JointParameters
-from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.planning.program.build import build_header
-from freecad_am.core.planning.task import CONDITION_FLOOR
-from freecad_am.core.preflight import clearance, joints
-from freecad_am.core.preflight.promise import Promise, row_place
-from freecad_am.core.read_moves import ReadMoves
-from freecad_am.core.simulation import rapid_look, waypoints
-from freecad_am.core.simulation.margins import spread_to_deposit_rows
-from freecad_am.objects.checks import controllers
-from freecad_am.posts import catalogue
-from freecad_am.read_back import driven, switched
-from freecad_am.read_back.finding import Finding
-from freecad_am.read_back.into_platform import into_platform
-from freecad_am.read_back.selected import selection_findings
-from freecad_am.report import figures
-from freecad_am.sections import cell as job_cell
-from freecad_am.sections import tree
-
+from ..core.geometry.file_content import MB, read_content
+from ..core.issues import ERROR, NOTE, InputError, Issue, Text
+from ..core.kinematics import cell as cells
+from ..core.kinematics import jacobian
+from ..core.kinematics.cell import Cell
+from ..core.motion import Motion
+from ..core.parameters.cell import CellParameters
+from ..core.parameters.joints import JointParameters
+from ..core.parameters.program import ProgramParameters
+from ..core.planning.program.build import build_header
+from ..core.planning.task import CONDITION_FLOOR
+from ..core.preflight import clearance
+from ..core.preflight.promise import Promise, row_place
+from ..core.read_moves import ReadMoves
+from ..core.simulation import rapid_look, waypoints
+from ..core.simulation.achievable_feed import spread_to_deposit_rows
+from ..objects.checks import controllers
+from ..posts import catalogue
+from ..read_back import followed, selected
+from ..read_back.selected import Finding, into_platform, selection_findings
+from ..report import figures
+from ..sections import cell as job_cell
+from ..sections import tree
 from . import paths
 from .job import job
 from .outputs import folder as outputs
@@ -59,7 +56,7 @@ class Known(NamedTuple):
 
     cell: CellParameters
     program: ProgramParameters | None
-    joints: JointParameters
+    clearance: JointParameters
     bead: tuple[float, float] | None
 
 
@@ -89,7 +86,7 @@ def check(
     cell = cells.resolve(context.cell, np.eye(4), folders=user_machines.folders())
     name, moves = _read(files, _posts(cell, context, post))
     settings = context.program or ProgramParameters(post=name)
-    motion = driven.driven(
+    motion = followed.driven(
         cell, build_header(cell, settings, catalogue.controller(name), "check"), moves
     )
     promises = _promises(motion, cell, context)
@@ -106,7 +103,7 @@ def check(
         for code, entry in zip(CODES, promises, strict=True)
         if entry.ok is False
     ]
-    findings += [*switched.switching_findings(motion, moves), *into_platform(motion, cell)]
+    findings += [*selected.switching_findings(motion, moves), *into_platform(motion, cell)]
     job_numbers = context.program and (context.program.user_frame, context.program.tool_frame)
     findings += selection_findings(motion, moves, job_numbers)
     if not motion.deposit.any():
@@ -262,7 +259,7 @@ def _promises(motion: Motion, cell: Cell, context: Known) -> list[Promise]:
         condition[reached] = _condition(
             cell, motion.joints[rows[reached]], context.joints.characteristic_length
         )
-    promises = joints.promises(
+    promises = clearance.promises(
         motion,
         cell,
         spread_to_deposit_rows(motion.deposit, condition),
@@ -277,7 +274,7 @@ def _promises(motion: Motion, cell: Cell, context: Known) -> list[Promise]:
         how = "not checked: a cell does not define the width and height of beads; give a job"
         return [*promises, Promise(clearance.ON_RAPIDS, how, None)]
     rapid_check = rapid_look.looked_at(
-        motion, driven.beads(motion), cell, [], *context.bead, RAPID_PLACES
+        motion, followed.beads(motion), cell, [], *context.bead, RAPID_PLACES
     )
     row = int(rapid_check.rows[0]) if len(rapid_check.rows) else None
     location = None if row is None else row_place(motion, row)

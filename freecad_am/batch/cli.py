@@ -129,9 +129,9 @@ def _tell_paths(paths: list[str], session: Any) -> None:
 
 
 def _export(options: Any, session: Any) -> int:
-    from freecad_am.batch import export
+    from . import measured
 
-    paths = export.export(
+    paths = measured.export(
         options.document, options.output, tuple(options.object), session, options.wires
     )
     _tell_paths(paths, session)

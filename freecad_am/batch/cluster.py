@@ -16,14 +16,12 @@ import uuid
 from collections.abc import Iterator
 from typing import Any
 
-from freecad_am.core.issues import InputError, Text, Word
-
+from ..core.issues import InputError, Text, Word
 from . import versions
 from .console import Session
 from .outputs import folder as outputs
 from .outputs import staging
-from .rows.journal import Journal
-from .rows.table import Row
+from .rows.table import Journal, Row
 
 WHERE, CODE = "--scheduler", "SCHEDULER"
 WORKER = "freecad_am_row_worker"

@@ -12,8 +12,8 @@ import time
 from collections.abc import Iterable
 from typing import Any
 
-from freecad_am.batch.supervised import tell_stopping
-from freecad_am.core.issues import ERROR, Issue, summarised
+from ..core.issues import ERROR, Issue, summarised
+from .supervised import tell_stopping
 
 DEBOUNCE_S = 1.0  # s within which a second Ctrl-C is the first: a terminal sends it, and the process that waits for us
 LEADING_CODES = ("REMEDY", "NO_REMEDY")  # codes of remedies, listed first

@@ -6,11 +6,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from freecad_am.core.geometry import frames
-from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics.machines import machine
-from freecad_am.sections import quantity
-
+from ..core.geometry import frames
+from ..core.issues import InputError
+from ..core.kinematics.machines import machine
+from ..sections import quantity
 from . import paths
 
 

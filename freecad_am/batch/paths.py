@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-from freecad_am.core.issues import InputError
-
+from ..core.issues import InputError
 from . import host
 
 

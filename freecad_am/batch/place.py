@@ -8,9 +8,8 @@ from __future__ import annotations
 import os
 from typing import Any, NamedTuple
 
-from freecad_am.core.issues import ERROR, NOTE, InputError, Issue, Text, Word, has_errors
-from freecad_am.core.one_thread import one_thread
-
+from ..core.issues import ERROR, NOTE, InputError, Issue, Text, Word, has_errors
+from ..core.one_thread import one_thread
 from . import paths
 from .job.features import in_words_of_job
 from .job.job import SECTIONS, Job

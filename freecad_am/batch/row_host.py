@@ -17,8 +17,8 @@ import sys
 import tempfile
 from typing import Any
 
-from freecad_am.batch import run as planning
-from freecad_am.batch import versions
+from . import run as planning
+from . import versions
 
 
 def main() -> None:
@@ -57,17 +57,17 @@ def _set_up(settings: dict[str, Any]) -> None:
 
 def _planned(request: dict[str, Any]) -> dict[str, Any]:
     """The result of an order."""
-    from freecad_am.batch.rows import process as row_process
+    from .rows import table
 
-    receiver, process = row_process.start_row(row_process.Order(**request))
+    receiver, process = table.start_row(table.Order(**request))
 
     def end(*_: Any) -> None:
-        row_process.stop(process)
+        table.stop(process)
         os._exit(1)
 
     old_handler = signal.signal(signal.SIGTERM, end)
     try:
-        return row_process.received(receiver, process)
+        return table.received(receiver, process)
     finally:
         signal.signal(signal.SIGTERM, old_handler)
 

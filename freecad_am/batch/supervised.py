@@ -16,8 +16,8 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from freecad_am.core import copies
-from freecad_am.core.issues import AmError, InputError
+from ..core import copies
+from ..core.issues import AmError, InputError
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 INTERRUPTED = 130

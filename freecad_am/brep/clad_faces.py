@@ -11,14 +11,13 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from freecad_am.core.types import Array, Index, Mask
-
 from ..core.geometry.formatting import place
 from ..core.geometry.mesh.refined import Edges
 from ..core.geometry.walls.clad_faces import CladFaces
 from ..core.geometry.walls.patch_wall import PatchWall
 from ..core.geometry.walls.surface import dot
 from ..core.issues import WARNING, InputError, Issue, Text, Word
+from ..core.types import Array, Index, Mask
 from .kernel.limits import reported
 from .walls.checks import CREASE, smallest_radii
 from .walls.patch_wall import sound

@@ -10,12 +10,11 @@ import FreeCAD
 import numpy as np
 import Part
 
-from freecad_am.core.types import Array
-
 from ..core.geometry.curves.bead_curves import BeadCurve
 from ..core.geometry.formatting import place
 from ..core.geometry.step_count import step_count
 from ..core.issues import InputError
+from ..core.types import Array
 
 MIN_EDGE_MM = 1e-4  # mm; shorter edges are none
 ON_FACE = 0.01  # mm that a curve may be off its faces

@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
 from ..core.issues import InputError
+from ..core.types import Array
 from .walls.start_edges import sampled
 
 MIN_EDGE_MM = 1e-3  # mm; shorter edges are none

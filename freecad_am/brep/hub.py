@@ -13,9 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from freecad_am.core.geometry.angles import TURN
-from freecad_am.core.types import Array
-
+from ..core.geometry.angles import TURN
 from ..core.geometry.columns import lengths
 from ..core.geometry.developable import Developable
 from ..core.geometry.mesh.manifold import find_holes, separate_vertices
@@ -23,12 +21,49 @@ from ..core.geometry.mesh.repair import Repaired, crossing_messages, mended_issu
 from ..core.geometry.mesh.solid import SolidMesh
 from ..core.geometry.obstacles import Body
 from ..core.geometry.on_hub import Base, Seat, Stretch, downwards, sector, upright
-from ..core.issues import NOTE, InputError, Issue, Text
+from ..core.issues import NOTE, WARNING, InputError, Issue, Text
+from ..core.types import Array
 from .kernel.limits import refuse_bare
+from .kernel.process import in_kernel_process
 from .revolution.axis import from_normals
+from .sections_agree import sections_agree
 from .shapes.no_solid import no_solid
-from .shapes.tessellate import WELDED
-from .whole_mesh import complete_mesh
+from .shapes.tessellate import WELDED, Tessellation, fine
+
+FINER = (1.0, 0.8, 1.2, 0.5)  # of the deflection asked for, in the order in which they are tried
+MAX_DEFLECTIONS = (
+    1.5  # deflections between triangles and shape, on average over its area, that are not fault
+)
+
+
+def complete_mesh(solid: Any, chord: float, label: str) -> tuple[Tessellation, tuple[Issue, ...]]:
+    """Triangles within about `chord` mm of a Part.Solid, whose volume equals the solid's within its
+    area times a few chords; with a warning MESH_VOLUME if no attempt does and the sections differ
+    from the solid's, too.
+    """
+    exact, area = abs(float(solid.Volume)), float(solid.Area)
+    attempts: list[tuple[float, Tessellation]] = []
+    for share in FINER:
+        tessellation = in_kernel_process(fine, solid.copy(), share * chord)
+        volume = abs(SolidMesh(tessellation.vertices, tessellation.triangles).volume)
+        if abs(volume - exact) <= MAX_DEFLECTIONS * max(share, 1.0) * chord * area:
+            return tessellation, ()
+        attempts.append((volume, tessellation))
+    volume, tessellation = attempts[0]
+    if sections_agree(
+        solid, tessellation.vertices, tessellation.triangles, chord, abs(volume - exact)
+    ):
+        return tessellation, ()  # it is the kernel's integral of the volume that is off
+    volume, tessellation = min(attempts, key=lambda attempt: abs(attempt[0] - exact))
+    message = Text(
+        "{}: its triangles enclose {:.4g} cm3 but its faces {:.4g} cm3; check the part and "
+        "export it again, or deposit it from a mesh",
+        label,
+        1e-3 * volume,
+        1e-3 * exact,
+    )
+    return tessellation, (Issue(WARNING, "MESH_VOLUME", message),)
+
 
 SHARE = 0.4  # of the chord error, between solids and their triangles
 CROSSED = (

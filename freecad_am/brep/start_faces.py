@@ -8,11 +8,10 @@ from typing import Any
 
 import Part
 
-from freecad_am.core.types import Array
-
+from ..core.types import Array
 from .hub import SHARE
 from .kernel.process import in_kernel_process
-from .shapes.fine_mesh import fine
+from .shapes.tessellate import fine
 from .walls.wall import faces_by_name
 
 

@@ -14,8 +14,7 @@ import FreeCADGui as Gui
 import numpy as np
 from PySide import QtCore, QtGui
 
-from freecad_am.core.types import Array
-
+from ..core.types import Array
 from ..objects.fields import preferences
 from .widgets.present import present
 

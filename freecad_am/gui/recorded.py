@@ -12,10 +12,10 @@ import FreeCADGui as Gui
 
 from .. import api
 from ..objects.results.findings import reason_of
-from ..objects.shapes.array_elements import ArrayElement
+from ..objects.shapes.places import ArrayElement
 from ..objects.staleness import FAILED, INFEASIBLE
 from .background.busy import busy
-from .texts.translation import tr, translated
+from .texts.in_language import tr, translated
 
 IMPORT = "import freecad_am.api as am"
 

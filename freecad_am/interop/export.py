@@ -9,13 +9,101 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ..core.issues import InputError
+from ..core.kinematics.machines import machine
+from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
-from ..core.simulation import waypoints
-from ..objects.current import check_recomputed
+from ..core.simulation import timeline, waypoints
+from ..objects import user_machines
+from ..objects.current import check_current, check_recomputed
+from ..objects.stage import stage_of
 from ..objects.work import hooks
-from . import cam_path, cell_file, dxf, robot_trajectory, step_wires
-from .lines import Line
-from .source import lines_of, motion_of
+from . import cell_file, dxf, neighbour, robot_trajectory, step_wires
+from .lines import Line, of_motion, of_toolpath
+
+ON, OFF = "(deposit on)", "(deposit off)"
+
+
+def add(document: Any, lines: Sequence[Line], label: str) -> Any:
+    """A Path::Feature of the document; InputError NO_MODULE where this FreeCAD has no CAM."""
+    try:
+        import Path
+    except ImportError:
+        raise neighbour.lacking("CAM path", "CAM (Path)", "write STEP or DXF") from None
+    obj = neighbour.added(document, "Path::Feature", "AmPath", label)
+    obj.Path = Path.Path([Path.Command(name, words) for name, words in commands(lines)])
+    obj.purgeTouched()  # nothing is left to recompute, which the tree would ask for
+    return obj
+
+
+def commands(lines: Sequence[Line]) -> list[tuple[str, dict[str, float]]]:
+    """Names and words: G0 to the first point and along rapid moves, G1 along beads; F in mm/s as FreeCAD keeps it."""
+    found: list[tuple[str, dict[str, float]]] = []
+    place: list[float] | None = None
+    for line in lines:
+        points = line.points.tolist()
+        if points[0] != place:
+            found.append(("G0", _xyz(points[0])))
+        place = points[-1]
+        if line.deposit:
+            found.append((f"({line.name})", {}))
+            found.append((ON, {}))
+            speeds = line.speed[1:].tolist()
+            found += [
+                ("G1", {**_xyz(at), "F": speed})
+                for at, speed in zip(points[1:], speeds, strict=True)
+            ]
+            found.append((OFF, {}))
+        else:
+            found += [("G0", _xyz(at)) for at in points[1:]]
+    return found
+
+
+def _xyz(point: list[float]) -> dict[str, float]:
+    return {"X": point[0], "Y": point[1], "Z": point[2]}
+
+
+KINDS = ("toolpath", "joint path", "program")
+
+
+def lines_of(obj: Any, rapids: bool = True) -> tuple[Line, ...]:
+    """Beads, and where the stage knows them the rapid moves, of a toolpath, a joint path, or a program's joint path.
+
+    Raises InputError for any other object, for one without a result, and for one whose result does not fit the document.
+    """
+    obj = _path_of(obj)
+    value = obj.Proxy.value(obj)
+    lines = of_toolpath(value) if obj.Proxy.kind == "toolpath" else of_motion(value.motion)
+    return lines if rapids else tuple(line for line in lines if line.deposit)
+
+
+def motion_of(obj: Any) -> tuple[Motion, tuple[str, ...], tuple[str, ...]]:
+    """The motion of the same, of a toolpath its beads alone; what tables call the axes, and their units, none of a toolpath.
+
+    Raises InputError as `lines_of`, and where the machine's file is gone.
+    """
+    obj = _path_of(obj)
+    value = obj.Proxy.value(obj)
+    if obj.Proxy.kind == "toolpath":
+        return timeline.deposit_motion(value), (), ()
+    arm = machine.load(obj.Cell.Machine, user_machines.folders())
+    return value.motion, arm.columns, arm.units
+
+
+def _path_of(obj: Any) -> Any:
+    """The toolpath or joint path that is meant, whose result fits the document as it is now."""
+    stage = stage_of(obj)
+    if stage is None or stage.kind not in KINDS:
+        label = getattr(obj, "Label", repr(obj))
+        raise InputError(
+            "BAD_INPUT", label, "it has no path; choose a toolpath, joint path or program"
+        )
+    path = obj if stage.kind != "program" else obj.JointPath
+    if path is None:
+        raise InputError("NO_INPUT", obj.Label, "its joint path was deleted; choose a joint path")
+    if path.Key:
+        check_current(path)
+    return path
+
 
 STEP, DXF, CELL, PAGE = (".step", ".stp"), (".dxf",), (".yaml", ".yml"), ".html"
 
@@ -118,7 +206,7 @@ def _whole(path: str, write: Callable[[str], None]) -> str:
 
 def add_cam_path(obj: Any) -> Any:
     """The lines of a stage as a path of the CAM workbench, in its document."""
-    return cam_path.add(obj.Document, lines_of(obj), f"{obj.Label} (CAM)")
+    return add(obj.Document, lines_of(obj), f"{obj.Label} (CAM)")
 
 
 def add_trajectory(obj: Any, tolerance: float, turn: float) -> Any:

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from freecad_am.core.types import Array, Index
-
 from ..core.geometry.frames import smallest_rotation
 from ..core.motion import Motion
 from ..core.toolpath import Toolpath
+from ..core.types import Array, Index
 
 
 @dataclass(frozen=True, eq=False)

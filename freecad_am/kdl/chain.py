@@ -13,10 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.types import Array, ArrayLike
-
 from ..core.geometry import frames
 from ..core.kinematics.machines.machine import Machine
+from ..core.types import Array, ArrayLike
 
 SOLVERS = ("nr", "lma")
 ITERATIONS = 100

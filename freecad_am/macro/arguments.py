@@ -3,16 +3,24 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import numbers
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import FreeCAD as App
 
 from ..core.issues import InputError
-from ..objects.fields.plain_text import is_text, safe_repr
+from ..core.parameters.field import unknown_choice
+from ..core.strategies.sequence import BY_FEATURE, BY_HEIGHT
+from ..objects import stage as stages
+from ..objects.fields.rows import is_text, safe_repr
+from ..objects.fields.settings import set_parameters
+from ..objects.shapes import bodies
+from ..objects.shapes.nested import resolved
+from ..objects.stage_parts import Link
 
 
 def checked_document(doc: Any, where: str = "doc") -> Any:
@@ -174,3 +182,173 @@ def named(value: Any) -> str:
         if is_gone(value)
         else str(getattr(value, "Label", None) or safe_repr(value))
     )
+
+
+TEXTS = {
+    "ProgramName": "name",
+    "File": "file",
+}  # properties that stand with links, and what macros call them
+
+
+def checked_links(
+    doc: Any, links: Sequence[Link], values: dict[str, Any], of: Any = None
+) -> dict[str, Any]:
+    """Values of links, by their names, as properties take them, and of what stands with them; None as it is. of: the stage
+    whose they will be, where it is there already.
+
+    InputError BAD_INPUT by the key of the link, and that of a path to a face or edge that is not there.
+    """
+    known = {link.name: link for link in links}
+    found = dict(values)
+    for name, value in values.items():
+        if name in known and value is not None:
+            found[name] = _checked(doc, known[name], value)
+        elif name in TEXTS:
+            checked_text(value, TEXTS[name])
+        elif name == "Sequence" and checked_text(value, "sequence") not in (BY_FEATURE, BY_HEIGHT):
+            raise unknown_choice("sequence", value, (BY_FEATURE, BY_HEIGHT))
+    after = [] if of is None else [of, *of.InListRecursive]
+    for name in found.keys() & known.keys():
+        for one in _objects(found[name]):
+            if one in after:  # FreeCAD takes it, and falls over it
+                raise InputError(
+                    "BAD_INPUT",
+                    known[name].key,
+                    "{} is made from {} itself; choose another object",
+                    one.Label,
+                    of.Label,
+                )
+    return found
+
+
+def _objects(value: Any) -> list[Any]:
+    """The objects of a link as a property takes it."""
+    if value is None:
+        return []
+    return value if isinstance(value, list) else [value[0] if isinstance(value, tuple) else value]
+
+
+def _checked(doc: Any, link: Link, value: Any) -> Any:
+    if link.many:
+        return checked_objects(value, link.key, doc)
+    if link.type_name != "App::PropertyLinkSub":
+        return checked_object(value, link.key, doc)
+    if not isinstance(value, (tuple, list)) or len(value) != 2:
+        return checked_object(value, link.key, doc), []
+    owner = checked_object(value[0], link.key, doc)
+    return resolved(owner, checked_names(value[1], link.key), link.key)
+
+
+def make_stage(
+    doc: Any,
+    proxy: type[stages.Stage],
+    name: str,
+    label: str,
+    links: dict[str, Any],
+    parameters: Sequence[Any],
+    values: dict[str, Any],
+) -> Any:
+    """A stage with its links and parameters, computed; nothing is left of one that fails."""
+    checked_document(doc)
+    checked_text(label, "label")
+    links = checked_links(doc, proxy.links, links)
+    with one_step(doc, f"Make {label}"):
+        obj = doc.addObject("App::FeaturePython", name)
+        try:
+            stage = proxy(obj)
+            obj.Label = label
+            for property_name, value in links.items():
+                if value is not None:
+                    setattr(obj, property_name, value)
+            set_parameters(obj, stage, parameters, values)
+            bodies.fill_in(obj, parameters, values)
+            for other in in_order(obj.OutListRecursive):
+                other.Proxy.renew(other)
+            renew(obj)
+        except BaseException:
+            doc.removeObject(obj.Name)
+            raise
+    return obj
+
+
+def with_faces(source: Any, faces: Any) -> Any:
+    """A link to an object, or to faces of it; None for no object."""
+    return None if source is None else (source, checked_names(faces, "faces"))
+
+
+def owned(owner: Any, names: Any, key: str) -> Any:
+    """A link to faces or edges of an object; None for none. InputError BAD_INPUT for those of nothing."""
+    names = checked_names(names, key)
+    if names and owner is None:
+        raise InputError(
+            "BAD_INPUT",
+            key,
+            "{} are names without an object; pass the object too",
+            ", ".join(names),
+        )
+    return (owner, names) if names else None
+
+
+def renew(obj: Any, force: bool = False) -> None:
+    """Compute a stage where its inputs have changed, or by force."""
+    obj.Proxy.renew(obj, force)
+    obj.purgeTouched()
+
+
+def checked_stage(obj: Any) -> stages.Stage:
+    """The proxy of a stage. InputError BAD_INPUT for any other object."""
+    proxy = None if is_gone(obj) else stages.stage_of(obj)
+    if proxy is None:
+        raise InputError("BAD_INPUT", named(obj), "it is not a stage of the workbench; choose one")
+    return proxy
+
+
+def in_order(objects: Sequence[Any]) -> list[Any]:
+    """The stages among objects, inputs first."""
+    return sorted(
+        (obj for obj in objects if stages.stage_of(obj)), key=lambda obj: len(obj.OutListRecursive)
+    )
+
+
+@contextlib.contextmanager
+def one_step(doc: Any, name: str) -> Iterator[None]:
+    """One step of undo, taken back whole when it fails; part of the step that is open, if there is one. In a document that
+    keeps no undo steps, as those without a window, objects that were made in it go.
+
+    InputError BAD_INPUT for what is not a document.
+    """
+    checked_document(doc)
+    if App.getActiveTransaction():
+        yield
+        return
+    if not doc.UndoMode:
+        with _without_new_ones(doc):
+            yield
+        return
+    doc.openTransaction(name)
+    try:
+        yield
+    except BaseException:
+        _end_step(doc.abortTransaction, abort=True)
+        raise
+    _end_step(doc.commitTransaction, abort=False)
+
+
+@contextlib.contextmanager
+def _without_new_ones(doc: Any) -> Iterator[None]:
+    """Remove objects that were made within it where it fails, the last ones first."""
+    before = {obj.Name for obj in doc.Objects}
+    try:
+        yield
+    except BaseException:
+        for name in [obj.Name for obj in doc.Objects if obj.Name not in before][::-1]:
+            if doc.getObject(name) is not None:  # it may have gone with another one
+                doc.removeObject(name)
+        raise
+
+
+def _end_step(end: Callable[[], None], abort: bool) -> None:
+    """End a step of one's own. FreeCAD leaves one open in which nothing was changed, and counts what comes next to it."""
+    end()
+    if App.getActiveTransaction():
+        App.closeActiveTransaction(abort)

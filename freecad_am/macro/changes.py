@@ -13,9 +13,17 @@ from ..objects.fields.settings import set_parameters
 from ..objects.program import Program
 from ..objects.shapes.chosen import FeatureStage
 from ..objects.staleness import UP_TO_DATE
-from .arguments import checked_document, is_gone
-from .links import checked_links
-from .steps import checked_stage, in_order, one_step, owned, renew, with_faces
+from .arguments import (
+    checked_document,
+    checked_links,
+    checked_stage,
+    in_order,
+    is_gone,
+    one_step,
+    owned,
+    renew,
+    with_faces,
+)
 
 
 def change(obj: Any, **values: Any) -> Any:

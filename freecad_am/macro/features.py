@@ -10,8 +10,15 @@ from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import CladdingParameters, DevelopableParameters, SolidParameters
 from ..core.parameters.strategy import CurvesParameters, RevolutionParameters, SurfaceParameters
 from ..objects.planned.feature_kinds import proxy_of
-from .arguments import checked_document, checked_keywords, checked_list, checked_text
-from .steps import make_stage, owned, with_faces
+from .arguments import (
+    checked_document,
+    checked_keywords,
+    checked_list,
+    checked_text,
+    make_stage,
+    owned,
+    with_faces,
+)
 
 
 def make_feature(

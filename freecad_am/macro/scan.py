@@ -3,18 +3,174 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
-from ..core.issues import InputError
+from ..core.geometry.curves.bead_curves import POINT_FILES
+from ..core.issues import InputError, Text
+from ..core.one_thread import one_thread
 from ..core.parameters.inspection import AUTO, BEST, NONE, InspectionParameters
+from ..posts import earlier
 from .arguments import (
     checked_document,
     checked_number,
     checked_object,
+    checked_stage,
     checked_target,
     checked_text,
+    make_stage,
+    named,
+    one_step,
 )
-from .steps import make_stage, one_step
+
+
+@one_thread()
+def export(program: Any, folder: str) -> list[str]:
+    """Write the files of a program, or the figures of an inspection, into a folder, which is made; the paths.
+
+    Parts that an earlier, longer program of this name has left there are removed. `am.export(doc.Program, "out")`
+    """
+    folder = checked_target(folder, "folder")
+    kind = checked_stage(program).kind
+    if kind == "inspection":
+        from ..objects.inspection import files_of_figures as files_of
+    elif kind == "program":
+        from ..objects.program import files_of
+    else:
+        raise InputError(
+            "WRONG_KIND", program.Label, "it is neither a program nor an inspection; choose one"
+        )
+    files = files_of(program)
+    try:
+        return earlier.write(folder, files)
+    except OSError as error:
+        message = Text("{}; choose a writable folder", error.strerror or error)
+        raise InputError("NOT_WRITABLE", error.filename or folder, message) from None
+
+
+@one_thread()
+def export_wires(obj: Any, path: str, *, rapids: bool = False) -> str:
+    """Write beads, and the rapid moves if wanted, of a toolpath, joint path or program as wires into a STEP or DXF file.
+
+    `am.export_wires(doc.JointPath, "path.step", rapids=True)`
+    """
+    from ..interop import export as interop
+
+    path = checked_target(path, "path")
+    checked_stage(obj)
+    return interop.write_wires(obj, path, rapids)
+
+
+def export_cell(cell: Any, path: str) -> str:
+    """Write a cell into a file of its own, which jobs name: `cell: my-cell.yaml`.
+
+    `am.export_cell(doc.Cell, "my-cell.yaml")`
+    """
+    from ..interop import export as interop
+
+    path = checked_target(path, "path")
+    checked_stage(cell)
+    return interop.write_cell(cell, path)
+
+
+def export_waypoints(obj: Any, path: str) -> str:
+    """Write the points of a toolpath, joint path or program as a table, as the commands write waypoints.csv.
+
+    `am.export_waypoints(doc.JointPath, "waypoints.csv")`
+    """
+    from ..interop import export as interop
+
+    path = checked_target(path, "path")
+    checked_stage(obj)
+    return interop.write_waypoints(obj, path)
+
+
+@one_thread()
+def export_report(obj: Any, path: str) -> str:
+    """Write the report of a toolpath, joint path or program as a page, as the commands write report.html; the path.
+
+    `am.export_report(doc.Program, "report.html")`
+    """
+    from ..interop import export as interop
+    from ..report.of_document import reported
+
+    path = checked_target(path, "path")
+    checked_stage(obj)
+    return interop.write_page(path, reported(obj), obj.Label)
+
+
+@one_thread()
+def make_cam_path(obj: Any) -> Any:
+    """The path of a toolpath, joint path or program as an object of the CAM workbench, to be inspected there; it does not
+    follow changes. `am.make_cam_path(doc.JointPath)`"""
+    from ..interop import export as interop
+
+    checked_stage(obj)
+    with one_step(obj.Document, "CAM path"):
+        return interop.add_cam_path(obj)
+
+
+@one_thread()
+def make_trajectory(obj: Any, *, tolerance: float = 0.1, turn: float = 2.0) -> Any:
+    """The same as a trajectory of the Robot workbench, thinned: within `tolerance` mm and, for the tool axis, `turn` deg.
+
+    `am.make_trajectory(doc.JointPath, tolerance=0.5)`
+    """
+    from ..interop import export as interop
+
+    checked_stage(obj)
+    tolerance, turn = checked_number(tolerance, "tolerance"), checked_number(turn, "turn")
+    with one_step(obj.Document, "Trajectory"):
+        return interop.add_trajectory(obj, tolerance, math.radians(turn))
+
+
+def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
+    """A part file as an object of the document: STEP, IGES, BREP, an object (Name or Label) of an FCStd file; or a mesh
+    (STL, OBJ, 3MF): solids on a hub, or what a wall grows on or is kept clear of; or a table of points (CSV), G-code of a
+    slicer or a toolpath of AdaOne (.ada3dp), which are laid as beads.
+
+    scale: mm of one unit of an STL or OBJ file, which do not tell it. `am.open_part(doc, "cup.step")`
+    """
+    checked_document(doc)
+    path = checked_target(path, "path")
+    checked_text(object, "object")
+    scale = checked_number(scale, "scale")
+    if path.lower().endswith(tuple(POINT_FILES)):
+        from ..objects.table_part import open_points
+
+        with one_step(doc, "Open part"):
+            table = open_points(doc, path)
+            table.purgeTouched()
+        return table
+    from ..objects.shapes.part_file import add_part, part_content
+
+    shape, label, issues = part_content(path, object, scale)
+    with one_step(doc, "Open part"):
+        part = add_part(doc, shape, label, issues)
+        if hasattr(shape, "Topology"):
+            part.addProperty(
+                "App::PropertyLength", "FileScale", "Part", "Length of one unit of the file.", 1
+            )
+            part.FileScale = scale
+        part.purgeTouched()
+    return part
+
+
+def array_element(array: Any, index: int) -> Any:
+    """An element of a link array as an object that stages can be made of, numbered from 0 as in FreeCAD's selection.
+
+    It is the element itself where FreeCAD shows elements as objects (`ShowElement`, of Draft `ExpandArray`), else a hidden
+    link to it beside the array. `am.make_solid_feature(doc, am.array_element(doc.Array, 1))`
+    """
+    from ..objects.shapes.places import object_of
+
+    checked_object(array, "array")
+    if isinstance(index, bool) or not isinstance(index, int):
+        raise InputError(
+            "BAD_INPUT", "index", "{} is not a whole number; give one such as 1", named(index)
+        )
+    with one_step(array.Document, "Element of array"):
+        return object_of(array, index)
 
 
 def make_scan(
@@ -35,7 +191,11 @@ def make_scan(
     `within` mm of it as they are. pairs: three or more measured points and where they are on the object, as an inspection
     has them; with them nothing else is fitted. Raises InputError SCAN_UNIT, SCAN_OTHER, SCAN_AMBIGUOUS.
     """
-    from ..core.inspection import point_file, scan_checks, scan_motion  # what few jobs need
+    from ..core.inspection import (
+        planned,  # what few jobs need
+        point_file,
+        scan_checks,
+    )
     from ..objects.inspection import Inspection
     from ..objects.shapes.bodies import snapshot_of
 
@@ -54,8 +214,8 @@ def make_scan(
         and scan_checks.share_near(measured.points, body, within) < scan_checks.LEAST_ON_PART
     )
     if asked and not pairs:
-        motion = scan_motion.align_scan(measured.points, body, measured.label)
-        pairs = scan_motion.as_pairs(motion, scan_checks.extent(body.vertices))
+        motion = planned.align_scan(measured.points, body, measured.label)
+        pairs = planned.as_pairs(motion, scan_checks.extent(body.vertices))
     values = {"fit": NONE, "unit": unit, "pairs": pairs}
     with one_step(doc, f"Make {label}"):
         found = make_stage(

@@ -20,11 +20,11 @@ from ..objects import user_machines
 from ..objects.checks.collisions import in_platform
 from ..objects.fields import properties
 from ..objects.fields.rows import rows
-from ..objects.planned import platform_size, suited_cell
+from ..objects.planned import suited_cell
 from ..objects.results.findings import issues_of
 from ..objects.staleness import INFEASIBLE
+from .arguments import one_step, renew
 from .changes import change
-from .steps import one_step, renew
 
 SEARCHES = 3  # for a cell, of a new job whose joint path is infeasible
 
@@ -103,7 +103,7 @@ def fit_platform(cell: Any, toolpath: Any) -> None:
     if not any(issue.code == OVER_PLATFORM for issue in issues_of(toolpath)):
         return
     settings = cell.Proxy.value(cell)
-    found = platform_size.fitted(toolpath.Proxy.value(toolpath), settings)
+    found = suited_cell.fitted(toolpath.Proxy.value(toolpath), settings)
     planned, key = toolpath.Status != INFEASIBLE, toolpath.Key
     try:
         _write(cell, found, [toolpath])

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..brep.clad_faces import clad_faces
-from ..core.geometry.walls.clad_mesh import clad_mesh
+from ..core.geometry.walls.mesh_wall import clad_mesh
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import CladdingParameters

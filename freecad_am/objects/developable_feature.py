@@ -9,11 +9,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..brep.hub import SHARE, Bodies, bodies_of, seat_of_numbers, seats
-from ..core.geometry.beyond_hub import volume_beyond
 from ..core.geometry.developable import Developable
 from ..core.geometry.mesh.solid import SolidMesh
 from ..core.geometry.obstacles import Body
-from ..core.geometry.on_hub import OwnHub, Seat, SolidsOnHub
+from ..core.geometry.on_hub import OwnHub, Seat, SolidsOnHub, volume_beyond
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import DevelopableParameters

@@ -17,7 +17,7 @@ from ..core.strategies import size
 from .results.fingerprints import digits, fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape
 from .shapes.chosen import FeatureStage, names_of, source_of
-from .shapes.marks import EDGE
+from .shapes.nested import EDGE
 from .shapes.places import global_placement
 from .stage_parts import Link, Outcome, Section, Work
 

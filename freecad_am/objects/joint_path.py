@@ -22,17 +22,18 @@ from ..core.parameters.process import ProcessParameters
 from ..core.planning.beads.speeds import SLOWED
 from ..core.planning.joint_path import JointPath as JointsOfBeads
 from ..core.planning.motion import assemble
+from ..core.planning.other_cells import Fixed, Tried
 from ..core.planning.plan import plan_joints
 from ..core.planning.remedies import LONGEST_SEARCH, most_points, remedies
-from ..core.planning.tried import Fixed, Tried
-from ..core.process.model import bead_table, predicted
+from ..core.process.model import wire
+from ..core.process.model.notes import height_issue
 from ..core.simulation import payload
 from ..core.simulation.timeline import timeline
 from ..core.simulation.totals import MM3_PER_CM3, totals
 from ..core.toolpath import Toolpath
 from . import user_machines
 from .checks.collisions import collision_issues, look, margin_issues
-from .checks.links_clear import arm_issues, cylinders_of
+from .checks.placed import arm_issues, cylinders_of
 from .shapes import cell_obstacles
 from .stage import Stage, stage_of
 from .stage_parts import Link, Outcome, Section, Work
@@ -330,11 +331,11 @@ def _heights_as_run(
     """The heights that a bead model predicts where beads are slowed, in place of the toolpath's
     prediction.
     """
-    model = None if toolpath.law is None else bead_table.process_model(process)
+    model = None if toolpath.law is None else wire.process_model(process)
     if model is None or not any(issue.code == SLOWED for issue in path.issues):
         return []
     beads = [entry.bead for entry in path.beads]
-    return [predicted.height_issue(beads, toolpath.layer_height, process, model, as_run=True)]
+    return [height_issue(beads, toolpath.layer_height, process, model, as_run=True)]
 
 
 def _sums(

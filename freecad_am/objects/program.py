@@ -14,7 +14,7 @@ from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
-from ..core.planning.beads import moving_tool, steps
+from ..core.planning.beads import steps
 from ..core.planning.program import beads as program_beads
 from ..core.planning.program import build as programs
 from ..core.planning.program import linear_approach
@@ -194,7 +194,7 @@ def posted(job: Job) -> Posted:
     straight = parameters.motion == "cartesian" and not post.CONTROLLER.straight_in_part
     if straight and cell.arrangement.holds_part:
         beads = [path.bead for path in planned.joint_path.beads]
-        motion = moving_tool.refined_to_chord_error(motion, cell, toolpath.chord_error, beads)
+        motion = steps.refined_to_chord_error(motion, cell, toolpath.chord_error, beads)
     motion, _ = steps.programmed(motion, post.CONTROLLER, toolpath.chord_error, parameters.blend)
     if linear_approach.asked(parameters, post.CONTROLLER):
         motion = linear_approach.shorten_approaches(motion, cell)

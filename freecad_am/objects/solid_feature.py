@@ -11,7 +11,7 @@ from ..brep.hub import bodies_of
 from ..brep.start_faces import triangles_of_faces
 from ..core.geometry.obstacles import Body
 from ..core.issues import InputError, Issue, Text
-from ..core.layers.along.guided import prepare_guided
+from ..core.layers.along.centre_line import prepare_guided
 from ..core.layers.planes.stacking import prepare_stack
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import SolidParameters

@@ -21,13 +21,13 @@ import FreeCAD as App
 from ..core.issues import ERROR, AmError, InfeasibleError, InputError, Issue, Text, Word, has_errors
 from ..core.one_thread import one_thread
 from . import staleness
-from .fields import expressions, properties
+from .fields import properties, rows
 from .fields.link_targets import broken_link, is_there
 from .fields.properties import HIDDEN, OUTPUT, READ_ONLY
 from .results import keys, store
 from .results.findings import first_message, issues_of, reason_of, say, store_issues
 from .results.keys import SCHEMA_VERSION
-from .results.stored import Stored
+from .results.store import Stored
 from .shapes.file_links import missing_files
 from .stage_parts import Link, Outcome, Section, Work
 from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
@@ -246,7 +246,7 @@ class Stage(Stored):
                 return Text("{} is missing; choose {}", link.name, link.help_phrase)
             if broken := broken_link(getattr(obj, link.name)):
                 return _lost_link(obj, broken, link.name)
-        return expressions.broken(obj)
+        return rows.broken(obj)
 
     def _store(
         self, obj: Any, outcome: Outcome, floats: list[float], text: str, key: str, seconds: float

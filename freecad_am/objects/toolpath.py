@@ -15,7 +15,7 @@ from ..core.parameters.process import OF_FEATURE, ProcessParameters
 from ..core.parameters.scan import ScanParameters
 from ..core.parameters.strategy import RevolutionParameters, SurfaceParameters
 from ..core.process.deposit import balance as deposit_balance
-from ..core.process.model import bead_table
+from ..core.process.model import wire
 from ..core.strategies.sequence import BY_FEATURE, BY_HEIGHT
 from ..core.toolpath import Toolpath as CoreToolpath
 from .checks.on_its_part import check_on_part
@@ -29,7 +29,7 @@ from .stage import Stage, stage_of
 from .stage_parts import Link, Outcome, Section, Work
 
 if TYPE_CHECKING:
-    from ..core.planning.tried import Fixed
+    from ..core.planning.other_cells import Fixed
     from .checks.predicted_shape import Target
 
 FIXED = "fixed"
@@ -218,7 +218,7 @@ class Toolpath(Stage):
         without the document; None if it has one already, and without walls. With several features
         only the walls are changed.
         """
-        from ..core.planning.tried import Fixed
+        from ..core.planning.other_cells import Fixed
 
         features = features_of(obj)
         shapes = [stage_of(entry) for entry in features]
@@ -279,7 +279,7 @@ class Toolpath(Stage):
     def further_inputs(self, obj: Any) -> list[str]:
         processes = self.processes(obj)
         models = [
-            bead_table.load(feature_process.bead_model)
+            wire.load(feature_process.bead_model)
             for feature_process in processes
             if feature_process.bead_model != "none"
         ]

@@ -6,10 +6,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from . import joints, process
-from .chart import Chart, Picture
-from .fit import fit
-from .rows import TIME, Rows, rows
+from . import joints
+from .chart import Chart, Picture, fit
+from .joints import TIME, Rows, rows
 from .source import Source
 
 Charts = tuple[Chart, ...]
@@ -42,17 +41,17 @@ PICTURES = {
     "condition": Entry(
         "Condition", joints.condition, machine=True, lacking="this machine has no condition"
     ),
-    "travel": Entry("Speed along the path", process.travel),
-    "deposit": Entry("Deposit rate", process.deposit),
+    "travel": Entry("Speed along the path", joints.travel),
+    "deposit": Entry("Deposit rate", joints.deposit),
     "spacing": Entry(
         "Distance between layers",
-        of=process.spacing,
+        of=joints.spacing,
         lacking="none of these layers rests on another",
     ),
-    "volumes": Entry("Volume by layer", of=process.by_layer, lacking=_NO_PLANES),
-    "section": Entry("Section of the last layer", of=process.section, lacking=_NO_PLANES),
-    "heights": Entry("Predicted heights", of=process.heights, lacking=_NO_MODEL),
-    "spread": Entry("Predicted widths and speeds", of=process.spread, lacking=_NO_MODEL),
+    "volumes": Entry("Volume by layer", of=joints.by_layer, lacking=_NO_PLANES),
+    "section": Entry("Section of the last layer", of=joints.section, lacking=_NO_PLANES),
+    "heights": Entry("Predicted heights", of=joints.heights, lacking=_NO_MODEL),
+    "spread": Entry("Predicted widths and speeds", of=joints.spread, lacking=_NO_MODEL),
     "fit": Entry("Fit of the bead widths", of=_fit, lacking=_NO_MODEL),
 }
 

@@ -3,13 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
-from freecad_am.core.types import Array, Integers, Mask
+from ..core.issues import Text
+from ..core.process.model.bead_model import MINUTE, BeadModel
+from ..core.process.model.wire import Measured
+from ..core.quantities import SPEEDS
+from ..core.types import Array, Integers, Mask
 
 LINE, STEP, DOTS, MARKED, OUTLINE = "line", "step", "dots", "marked", "outline"
 INF = float("inf")
@@ -158,3 +162,104 @@ def _padded(low: float, high: float) -> tuple[float, float]:
     if more <= 1e-9 * max(abs(low), abs(high), 1e-3):  # as good as constant
         more = 0.05 * max(abs(low), abs(high)) or 0.5
     return low - more, high + more
+
+
+STEPS = 60
+
+
+def fit(measured: Measured, model: BeadModel, wanted: float | None = None) -> Chart:
+    """Curves and dots coloured by radius; `wanted` is a width drawn across, mm."""
+    speed = np.linspace(*model.speeds, STEPS)
+    radii = np.unique(measured.radius)
+    curves = []
+    for number, radius in enumerate(radii.tolist()):
+        rows = measured.radius == radius
+        widths = model.widths(speed, np.full(STEPS, radius))
+        curves.append(Curve(f"r {radius:g} mm", MINUTE * speed, widths, number))
+        curves.append(
+            Curve(
+                Text("r {:g} mm, measured", radius),
+                MINUTE * measured.speed[rows],
+                measured.width[rows],
+                number,
+                DOTS,
+            )
+        )
+    marks = () if wanted is None else ((wanted, f"asked: {wanted:g}"),)
+    return Chart(
+        "Width of beads",
+        Quantity("travel speed", "mm/min"),
+        Quantity("width", "mm"),
+        tuple(curves),
+        marks=marks,
+    )
+
+
+Scale = Callable[[float, str], tuple[float, str]]
+TRAVEL = (
+    "travel",
+    "spread",
+    "fit",
+)  # pictures by name whose speeds are those of the deposition point
+JOINTS = ("place", "angle", "speed", "acceleration", "jerk")  # quantities of axes
+
+
+def in_units(picture: Picture, scale: Scale) -> Picture:
+    """A picture in other units. scale: for values of up to a number, how many of the other unit make one, and its name."""
+    travel = picture.name in TRAVEL
+    return replace(
+        picture, charts=tuple(of_chart(chart, scale, travel) for chart in picture.charts)
+    )
+
+
+def of_chart(chart: Chart, scale: Scale, travel: bool = False) -> Chart:
+    """A chart in other units. travel: its speeds are those of the deposition point."""
+    x = _in_unit(chart.x, chart.across(), travel, scale)
+    y = (
+        x
+        if chart.plane and chart.x.unit == chart.y.unit
+        else _in_unit(chart.y, chart.up(), travel, scale)
+    )
+    across, up = x[0], y[0]
+    bars = chart.bars
+    return replace(
+        chart,
+        x=chart.x._replace(unit=x[1]),
+        y=chart.y._replace(unit=y[1]),
+        curves=tuple(
+            replace(
+                curve,
+                x=across * curve.x,
+                y=up * curve.y,
+                width=across * curve.width,
+            )
+            for curve in chart.curves
+        ),
+        bars=None if bars is None else Bars(bars.name, across * bars.edges, up * bars.heights),
+        limits=_scaled(chart.limits, up),
+        band=None if chart.band is None else _scaled(chart.band, across),
+        marks=tuple((up * value, name) for value, name in chart.marks),
+        upright=tuple((across * value, name) for value, name in chart.upright),
+        borders=_array(chart.borders, across),
+        span=None if chart.span is None else _scaled(chart.span, up),
+        names=tuple((across * x, up * y, name) for x, y, name in chart.names),
+    )
+
+
+def _in_unit(
+    quantity: Quantity, ends: tuple[float, float], travel: bool, scale: Scale
+) -> tuple[float, str]:
+    """The factor and the unit of an axis of a chart."""
+    if quantity.unit in SPEEDS and not travel:
+        return 1.0, quantity.unit
+    if quantity.unit == "mm" and quantity.name in JOINTS:
+        return 1.0, quantity.unit
+    return scale(max(map(abs, ends)), quantity.unit)
+
+
+def _scaled(ends: tuple[float, float], factor: float) -> tuple[float, float]:
+    return factor * ends[0], factor * ends[1]
+
+
+def _array(values: Array | None, factor: float) -> Array | None:
+    return None if values is None else np.asarray(factor * values)

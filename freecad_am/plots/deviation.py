@@ -9,11 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from freecad_am.core.geometry.fitted import DeviationMap
-from freecad_am.core.inspection.bands import band_of, bands, css, step_of
-from freecad_am.core.process.shape.deviation import name_of
-from freecad_am.core.types import Array
-
+from ..core.geometry.fitted import DeviationMap
+from ..core.inspection.bands import band_of, bands, css, step_of
+from ..core.process.shape.compare import name_of
+from ..core.types import Array
 from .chart import DOTS, MARKED, Bars, Chart, Curve, Quantity
 
 TILT = math.radians(30.0)  # from above, as the part is looked at

@@ -13,10 +13,57 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
+from ..core.types import Array, Index
 from .chart import DOTS, MARKED, OUTLINE, STEP, Chart, Curve
-from .envelope import envelope
 from .look import BAR, Look
-from .named import named
+
+POINTS_KEPT = 4  # points to a column that are drawn as they are
+
+
+def envelope(x: Array, y: Array, columns: int, low: float, high: float) -> Index:
+    """The points, rising numbers into x and y (n,), that look like all of them between x = low and high.
+
+    x never falls. NaN in y is kept where it is to be seen as a gap. One point beyond either end is kept, for the lines that
+    lead there.
+    """
+    first = max(int(np.searchsorted(x, low, side="left")) - 1, 0)
+    end = min(int(np.searchsorted(x, high, side="right")) + 1, len(x))
+    rows = np.arange(first, end)
+    if len(rows) <= POINTS_KEPT * columns:
+        return rows
+    column = np.clip(np.floor((x[first:end] - low) / (high - low) * columns), -1, columns).astype(
+        np.intp
+    )
+    begins = np.concatenate([[0], np.flatnonzero(np.diff(column)) + 1])
+    ends = np.concatenate([begins[1:], [len(rows)]]) - 1
+    known = np.flatnonzero(np.isfinite(y[first:end]))
+    rising = known[np.lexsort((y[first:end][known], column[known]))]
+    cuts = np.flatnonzero(np.diff(column[rising])) + 1
+    least = rising[np.concatenate([[0], cuts])] if len(rising) else rising
+    largest = rising[np.concatenate([cuts, [len(rising)]]) - 1] if len(rising) else rising
+    kept: Index = rows[np.unique(np.concatenate([begins, ends, least, largest]))]
+    return kept
+
+
+RING = {"linestyle": "none", "marker": "o", "markersize": 8.0, "fillstyle": "none"}
+NAME_OFFSET = (6.0, 4.0)  # points from a place to its name
+
+
+def named(axes: Any, chart: Chart, colour: str, size: float) -> None:
+    """Put a ring about each place of a chart that has a name, and this beside it, of so many points."""
+    for x, y, name in chart.names:
+        axes.add_line(Line2D([x], [y], color=colour, **RING))
+        axes.annotate(
+            name,
+            (x, y),
+            NAME_OFFSET,
+            textcoords="offset points",
+            color=colour,
+            size=size,
+            weight="bold",
+            parse_math=False,
+        )
+
 
 DPI = 100.0
 # of a frame, in pixels: what is left free at its sides, above for its title, below for its scale

@@ -8,22 +8,20 @@ from functools import cached_property
 
 import numpy as np
 
-from freecad_am.core.types import Array, Integers
-
 from ..core.geometry.on_hub import Group, SolidsOnHub
 from ..core.kinematics.cell import Cell
 from ..core.layers.planes.slabs import Slabs, group_of, slabs
 from ..core.motion import Motion
 from ..core.parameters.process import ProcessParameters
 from ..core.process.deposit import spacing
-from ..core.process.model import bead_model, bead_table, predicted
+from ..core.process.model import bead_model, notes, wire
 from ..core.process.model.bead_model import BeadModel
-from ..core.process.model.bead_table import Measured
+from ..core.process.model.wire import Measured
 from ..core.simulation.achievable_feed import AchievableFeed, achievable_feed
-from ..core.simulation.deposit import volumes
-from ..core.simulation.rates import Rates, rates
-from ..core.simulation.timeline import Timeline, timeline
+from ..core.simulation.table_links import Rates, rates
+from ..core.simulation.timeline import Timeline, timeline, volumes
 from ..core.toolpath import Toolpath
+from ..core.types import Array, Integers
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,12 +100,10 @@ class Source:
         """The table of the bead model and its fit; None without one. InputError where the table cannot be read."""
         if self.process.bead_model == "none":
             return None
-        measured = bead_table.read_table(self.process.bead_model)
+        measured = wire.read_table(self.process.bead_model)
         return measured, bead_model.fit(*measured)
 
-    def segments(self, layers: tuple[int, int]) -> predicted.Segments:
+    def segments(self, layers: tuple[int, int]) -> notes.Segments:
         """What the bead model predicts of the beads of layers, the last one included."""
         low, high = layers
-        return predicted.segments(
-            [bead for layer, _, bead in self.toolpath if low <= layer <= high]
-        )
+        return notes.segments([bead for layer, _, bead in self.toolpath if low <= layer <= high])

@@ -6,16 +6,124 @@ from __future__ import annotations
 import contextlib
 import importlib
 import re
-from collections.abc import Iterable, Mapping
+import unicodedata
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
+import numpy as np
+
 from ..core.controller import Controller
-from ..core.issues import InputError
+from ..core.issues import InputError, Text
 from ..core.orientation import Pendant
 from ..core.program import Program
 from ..core.read_moves import ReadMoves
-from .names import Naming
+from ..core.types import Integers
 from .refusals import Asked
+
+
+def controller_checks(*promises: str) -> tuple[str, ...]:
+    """Requirements on the controller, one sentence each; docs/posts describes the settings."""
+    return promises
+
+
+# names that files cannot have on the computers programs pass through
+DEVICES = frozenset(
+    ("CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10)))
+)
+
+
+@dataclass(frozen=True)
+class Naming:
+    """The rules of a controller.
+
+    written: how it writes a name. start, starts: a pattern of how one begins, and in words.
+    longest: characters; spare of them are left free in proposals, for the digits of parts.
+    reserved: words, upper case, that are not names; DEVICES never are. prefix: begins proposals if
+    the name itself is not valid.
+    """
+
+    written: Callable[[str], str]
+    start: str
+    starts: str
+    longest: int
+    spare: int
+    prefix: str
+    reserved: frozenset[str] = field(default_factory=frozenset)
+    what: str = "a program's name"
+
+    def checked(self, name: str, where: str) -> str:
+        """The name as the controller has it. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+        as_written = self.written(name) if name.isascii() else name
+        if not name:
+            raise self.refused(name, where, "it is empty")
+        if re.search(r"[^A-Za-z0-9_]", as_written):
+            raise self.refused(
+                name, where, "it may hold only the letters A to Z, digits and underscores"
+            )
+        if not re.match(self.start, as_written):
+            raise self.refused(name, where, Text("it must start with {}", self.starts))
+        if len(as_written) > self.longest:
+            raise self.refused(name, where, Text("it has more than {} characters", self.longest))
+        if self._is_reserved(as_written):
+            raise self.refused(name, where, "it is a reserved word")
+        return as_written
+
+    def fits(self, name: str) -> bool:
+        """Whether the controller takes a name, with the digits of parts behind it."""
+        try:
+            return len(self.checked(name, "name")) <= self.longest - self.spare
+        except InputError:
+            return False
+
+    def refused(self, name: str, where: str, why: str) -> InputError:
+        """The error for a name that is none, with one that is."""
+        return InputError(
+            "PROGRAM_NAME",
+            where,
+            "{!r} cannot be {} on the controller: {}; use {!r}",
+            name,
+            self.what,
+            why,
+            self.proposed(name),
+        )
+
+    def proposed(self, name: str) -> str:
+        """One like it that the controller takes, with the digits of parts behind it."""
+        proposal = self.written(re.sub(r"[^A-Za-z0-9]+", "_", plain(name)).strip("_"))
+        if not re.match(self.start, proposal) or self._is_reserved(proposal):
+            proposal = f"{self.prefix}{proposal}".rstrip("_")
+        return proposal[: self.longest - self.spare].rstrip("_")
+
+    def parts(self, name: str, count: int) -> list[str]:
+        """Names of `count` parts. Raises InputError PROGRAM_NAME without room for their digits."""
+        digits = max(2, len(str(count)))
+        names = [f"{name}{number:0{digits}d}" for number in range(1, count + 1)]
+        if len(names[0]) > self.longest:
+            raise self.refused(
+                name,
+                "name",
+                Text(
+                    "with the {} digits of its parts it has more than {} characters",
+                    digits,
+                    self.longest,
+                ),
+            )
+        return names
+
+    def _is_reserved(self, name: str) -> bool:
+        return name.upper() in DEVICES | self.reserved
+
+
+def plain(text: str) -> str:
+    """The text in ASCII characters that can be printed."""
+    ascii_text = (
+        unicodedata.normalize("NFKD", text.replace("ß", "ss"))
+        .encode("ascii", "ignore")
+        .decode("ascii")
+    )
+    return re.sub(r"[^ -~]+", " ", ascii_text)
+
 
 NAMES = (
     "fanuc",
@@ -150,3 +258,71 @@ def main_file(files: Iterable[str]) -> str:
     the shortest name, which has no part number.
     """
     return min(files, key=lambda name: (not name.endswith("/start.pgx"), len(name), name))
+
+
+_NUMBER = re.compile(r"\d+")
+_LOOP = re.compile(rb"for \w+=(\d+) to (\d+)")  # of VAL 3, about a single move
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """The lines of n moves, in the order of execution. files: names; file: (n,) index into them;
+    line: (n,) from 0.
+    """
+
+    files: tuple[str, ...]
+    file: Integers
+    line: Integers
+
+    def __len__(self) -> int:
+        return len(self.line)
+
+    def of(self, row: int) -> tuple[str, int]:
+        """File and line of a move."""
+        return self.files[self.file[row]], int(self.line[row])
+
+    def move_at(self, name: str, line: int) -> int | None:
+        """The move in a line of a file, the first one in a loop; between two moves the next one,
+        after the last the last one. None for a file without moves.
+        """
+        moves_of_file = (
+            np.flatnonzero(self.file == self.files.index(name))
+            if name in self.files
+            else np.zeros(0, np.int64)
+        )
+        if not len(moves_of_file):
+            return None
+        return int(
+            moves_of_file[
+                min(int(np.searchsorted(self.line[moves_of_file], line)), len(moves_of_file) - 1)
+            ]
+        )
+
+
+def lines_of(post: str, files: dict[str, bytes]) -> Lines:
+    """The lines of the moves of a program of ours. Parts of a program are run in the order of their
+    numbers.
+    """
+    pattern = load(post).MOVE_LINE
+    names = tuple(
+        sorted(files, key=lambda name: [int(number) for number in _NUMBER.findall(name)] + [0])
+    )
+    move_lines = [_moves(pattern, files[name]) for name in names]
+    file = np.repeat(np.arange(len(names)), [len(lines) for lines in move_lines])
+    return Lines(
+        names, file, np.array([line for lines in move_lines for line in lines], dtype=np.int64)
+    )
+
+
+def _moves(pattern: re.Pattern[bytes], content: bytes) -> list[int]:
+    """The line of each move of a file, as often as it is run."""
+    move_lines: list[int] = []
+    times = 1
+    for number, line in enumerate(content.split(b"\n")):
+        loop = _LOOP.search(line)
+        if loop:
+            times = int(loop[2]) - int(loop[1]) + 1
+        elif pattern.match(line):
+            move_lines += [number] * times
+            times = 1
+    return move_lines

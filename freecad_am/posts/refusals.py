@@ -9,8 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
 from ..core.issues import InputError, Text
 from ..core.program import (
     LINEAR_MOVE,
@@ -23,6 +21,7 @@ from ..core.program import (
     WaitBelow,
     Weave,
 )
+from ..core.types import Array
 from .parts import place, switching
 
 CALL = "process.between_layers.call"

@@ -4,15 +4,46 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
+from ..core.geometry import frames
 from ..core.issues import ERROR, WARNING, Issue, Text
+from ..core.kinematics.cell import Cell
 from ..core.motion import Motion
-from ..core.read_moves import ReadMoves
-from .finding import Finding
+from ..core.read_moves import Event, ReadMoves
+from ..core.types import Array, Index
+from .events import timed
+
+
+class Finding(NamedTuple):
+    """An issue, and the row of the motion that it is about; None where it is about no row."""
+
+    issue: Issue
+    row: int | None
+
+    def line(self, motion: Motion, text: ReadMoves) -> tuple[str, int] | None:
+        """File and line, from 1, of the move to the row, the motion being what the text drives; None where it is unknown."""
+        if self.row is None or text.lines is None:
+            return None
+        # the first row of a bead repeats the end of the move before
+        return text.lines.at(max(int(np.count_nonzero(motion.moves[: self.row + 1])) - 1, 0))
+
+
+def error_at(code: str, message: Text, motion: Motion, row: int) -> Finding:
+    """An error about a row of the motion."""
+    return Finding(
+        Issue(
+            ERROR,
+            code,
+            message,
+            int(motion.layer[row]),
+            int(motion.bead[row]),
+            int(motion.point[row]),
+        ),
+        row,
+    )
 
 
 def selection_findings(
@@ -91,3 +122,89 @@ def _calls(motion: Motion, text: ReadMoves) -> Iterator[Finding]:
 def _finding_at(level: str, code: str, message: Text, motion: Motion, row: int) -> Finding:
     bead_point = int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row])
     return Finding(Issue(level, code, message, *bead_point), row)
+
+
+# s that a time in a text may be longer than that of its move: both are rounded to milliseconds
+MOST_LONGER = 0.002
+
+
+def switching_findings(motion: Motion, text: ReadMoves) -> list[Finding]:
+    """The first DEPOSIT_SWITCH where it is switched on a second time, or is on where the program ends: an end of a bead is
+    lost; and the first TRIGGER_LEAD where it is switched earlier than the move begins on which it is. motion: what the text
+    drives."""
+    first_findings: dict[str, Finding] = {}
+    for finding in _findings(motion, text):
+        first_findings.setdefault(finding.issue.code, finding)
+    return list(first_findings.values())
+
+
+def _findings(motion: Motion, text: ReadMoves) -> Iterator[Finding]:
+    rows, on = np.flatnonzero(motion.moves), False
+    for event in timed(text.events, motion.speed[rows]):
+        if event.kind not in ("on", "off"):
+            continue
+        if on and event.kind == "on":
+            message = Text("the deposit is switched on although it is already on")
+            yield _finding("DEPOSIT_SWITCH", message, motion, rows, event.row)
+        on = event.kind == "on"
+        seconds = _time_of_its_move(event, motion.duration[rows])
+        if seconds is not None:
+            message = Text(
+                "the last move before the switching point takes {:.3g} s, less than the lead of "
+                "{:.3g} s; use a program.trigger.lead up to that time, a larger retract distance "
+                "before switching on, or a larger strategy.chord_error before switching off",
+                seconds,
+                event.ahead,
+            )
+            yield _finding("TRIGGER_LEAD", message, motion, rows, event.row - 1)
+    if on:
+        message = Text("the deposit is still on at the end of the program")
+        yield _finding("DEPOSIT_SWITCH", message, motion, rows, len(rows))
+
+
+def _finding(code: str, message: Text, motion: Motion, rows: Index, move: int) -> Finding:
+    """An error at a move; at the last one for what follows it."""
+    return error_at(code, message, motion, int(rows[min(move, len(rows) - 1)]))
+
+
+def _time_of_its_move(event: Event, seconds: Array) -> float | None:
+    """s of the move that an event is on, where it comes before that begins. How long the first move takes nobody knows."""
+    move = event.row - 1
+    if (
+        event.ahead is None
+        or move < 1
+        or not event.ahead > seconds[move] + event.digits + MOST_LONGER
+    ):
+        return None
+    return float(seconds[move])
+
+
+ROUNDED = 0.1  # mm that digits of a program, and joints between its points, may take
+
+
+def into_platform(motion: Motion, cell: Cell) -> list[Finding]:
+    """INTO_PLATFORM with the lowest place, where the nozzle's tip is below the platform, within its edge, while it deposits.
+    motion: what the text drives; what is not reached is not looked at."""
+    rows = np.flatnonzero(motion.deposit & motion.reachable)
+    to_platform = frames.inverse(cell.mount)
+    points = motion.position[rows] @ to_platform[:3, :3].T + to_platform[:3, 3]
+    below = (points[:, 2] < -ROUNDED) & (
+        np.hypot(points[:, 0], points[:, 1]) < 0.5 * cell.platform_diameter
+    )
+    if not below.any():
+        return []
+    low, count = int(np.where(below, points[:, 2], np.inf).argmin()), int(below.sum())
+    text = Text(
+        (
+            "the nozzle deposits at 1 point below the platform, by {1:.3g} mm; correct its height, "
+            "or the platform of the cell"
+        )
+        if count == 1
+        else (
+            "the nozzle deposits at {0} points below the platform, here {1:.3g} mm; correct "
+            "their heights, or the platform of the cell"
+        ),
+        count,
+        -points[low, 2],
+    )
+    return [error_at("INTO_PLATFORM", text, motion, int(rows[low]))]

@@ -5,33 +5,76 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from freecad_am.core.issues import Issue, has_errors
-from freecad_am.core.kinematics.cell import Cell
-from freecad_am.core.kinematics.inverse import opw
-from freecad_am.core.motion import Motion
-from freecad_am.core.parameters.joints import OPTIMISED, JointParameters
-from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.planning import comparison
-from freecad_am.core.planning.external import level
-from freecad_am.core.planning.external import rule as external_rule
-from freecad_am.core.planning.joint_path import JointPath
-from freecad_am.core.planning.task import Task
-from freecad_am.core.process.deposit import balance as deposit_balance
-from freecad_am.core.process.deposit import spacing as layer_spacing
-from freecad_am.core.process.deposit.balance import Balance
-from freecad_am.core.process.model import predicted
-from freecad_am.core.simulation import class_figures, totals
-from freecad_am.core.simulation.timeline import timeline
-from freecad_am.core.strategies.families import family_of
-from freecad_am.core.toolpath import Toolpath
-from freecad_am.core.types import Array
+from ..core.issues import Issue, has_errors
+from ..core.kinematics.cell import Cell
+from ..core.kinematics.inverse import opw
+from ..core.motion import Motion
+from ..core.parameters.build_direction import BuildDirectionParameters
+from ..core.parameters.cell import CellParameters
+from ..core.parameters.joints import OPTIMISED, JointParameters
+from ..core.parameters.process import ProcessParameters
+from ..core.parameters.strategy import LayerParameters
+from ..core.planning import criteria
+from ..core.planning.external import level, optimised
+from ..core.planning.joint_path import JointPath
+from ..core.planning.task import Task
+from ..core.process.deposit import balance as deposit_balance
+from ..core.process.deposit import spacing as layer_spacing
+from ..core.process.deposit.balance import Balance
+from ..core.process.model import notes
+from ..core.simulation import class_figures, totals
+from ..core.simulation.timeline import timeline
+from ..core.strategies.families import family_of
+from ..core.toolpath import Toolpath
+from ..core.types import Array
 
-from .asked import Feature
+if TYPE_CHECKING:  # slow to import, and jobs without a cell have none
+    from freecad_am.core.preflight.promise import Promise
+    from freecad_am.objects.joint_path import Planned
+
+
+@dataclass(frozen=True)
+class Feature:
+    """What is deposited, and how. shape: gives what was found of its part (the result of the stage)."""
+
+    name: str
+    strategy: LayerParameters
+    build_direction: BuildDirectionParameters
+    process: ProcessParameters
+    shape: Callable[[], Any]
+
+
+@dataclass(frozen=True)
+class Job:
+    """A job. process: of the program; features may differ from it. cell: None where a path alone is planned."""
+
+    name: str
+    features: tuple[Feature, ...]
+    process: ProcessParameters
+    joints: JointParameters
+    cell: CellParameters | None
+
+
+@dataclass(frozen=True)
+class Results:
+    """What was made of a job. toolpath: as it was cut. planned: None where there is no joint path; seconds: that it took.
+    issues: of all stages. programs: names of the files. distances: between the layers as they are run. preflight: its
+    promises."""
+
+    toolpath: Toolpath
+    planned: Planned | None
+    seconds: float
+    issues: Sequence[Issue]
+    programs: Sequence[str]
+    distances: Callable[[], Sequence[Array]]
+    preflight: Callable[[], tuple[Promise, ...]]
+
 
 VERSION = 1
 
@@ -85,7 +128,7 @@ def build(
         "comparison": [],
         "spacing_comparison": [],
         "process": _process(process, toolpath),
-        "beads": predicted.beads(toolpath),
+        "beads": notes.beads(toolpath),
         "classes": class_figures.figures(motion, process),
         "machine": None,
         "timing_s": {},
@@ -125,9 +168,7 @@ def features(
                 "unsupported_mm": part.unsupported,
                 "deposit": deposit_balance.as_dict(balance),
                 "spacing_comparison": rows_of_wall,
-                "beads": None
-                if one.process.bead_model == "none"
-                else predicted.beads(part, numbers),
+                "beads": None if one.process.bead_model == "none" else notes.beads(part, numbers),
             }
         )
     return found
@@ -142,7 +183,7 @@ def add_joints(
         "method": planned.method,
         "objective": planned.objective,
         "feasible": planned.feasible,
-        **comparison.path_figures(planned, cell, joints),
+        **criteria.path_figures(planned, cell, joints),
         "planning_time_s": seconds - sum(float(entry["planning_time_s"]) for entry in others),
         "branch": list(planned.branch),
         "limits": planned.limits,
@@ -172,7 +213,7 @@ def _external(cell: Cell, planned: JointPath, joints: JointParameters) -> dict[s
     return {
         **found,
         "rule": OPTIMISED,
-        **external_rule.figures(task, planned.beads),
+        **optimised.figures(task, planned.beads),
         "level": planned.of_level,
     }
 

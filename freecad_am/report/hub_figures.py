@@ -7,15 +7,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from freecad_am.core.geometry.curves.guide import Guide
-from freecad_am.core.geometry.on_hub import Group, SolidsOnHub, middle_azimuth
-from freecad_am.core.geometry.plane import Plane
-from freecad_am.core.layers.along.layer import between
-from freecad_am.core.process.model.bead_model import MINUTE
-from freecad_am.core.toolpath import Bead, Layer, Toolpath
-from freecad_am.core.types import Array
-from freecad_am.plots.look import shade
-
+from ..core.geometry.curves.guide import Guide
+from ..core.geometry.on_hub import Group, SolidsOnHub, middle_azimuth
+from ..core.geometry.plane import Plane
+from ..core.layers.along.field import between
+from ..core.process.model.bead_model import MINUTE
+from ..core.toolpath import Bead, Layer, Toolpath
+from ..core.types import Array
+from ..plots.look import shade
 from . import svg
 
 WIDE, EDGES = 388.0, 68.0  # of a picture, between and beside its frame

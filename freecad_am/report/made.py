@@ -8,19 +8,18 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Any
 
-from freecad_am.core.geometry.on_hub import SolidsOnHub
-from freecad_am.core.kinematics.cell import Cell
-from freecad_am.core.motion import Motion
-from freecad_am.core.process.deposit import balance as deposit_balance
-from freecad_am.core.process.deposit import spacing
-from freecad_am.core.simulation import deposit
-from freecad_am.core.simulation.margins import spread_to_deposit_rows
-from freecad_am.core.strategies.families import family_of
-from freecad_am.core.toolpath import Toolpath
-from freecad_am.core.types import Array
-
+from ..core.geometry.on_hub import SolidsOnHub
+from ..core.kinematics.cell import Cell
+from ..core.motion import Motion
+from ..core.process.deposit import balance as deposit_balance
+from ..core.process.deposit import spacing
+from ..core.simulation import timeline
+from ..core.simulation.achievable_feed import spread_to_deposit_rows
+from ..core.strategies.families import family_of
+from ..core.toolpath import Toolpath
+from ..core.types import Array
 from . import figures
-from .asked import Job, Results
+from .figures import Job, Results
 from .of_feature import OfFeature
 
 Timed = Callable[[str], AbstractContextManager[None]]
@@ -65,7 +64,7 @@ class Made:
 def as_run(results: Results, cell: Cell | None) -> tuple[Toolpath, Motion]:
     """The toolpath as it is run, and its motion: that of the deposit alone where nothing was planned."""
     if results.planned is None:
-        return results.toolpath, deposit.deposit_motion(
+        return results.toolpath, timeline.deposit_motion(
             results.toolpath, 0 if cell is None else len(cell.machine.columns)
         )
     return results.planned.joint_path.toolpath(results.toolpath), results.planned.motion

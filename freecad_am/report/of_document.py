@@ -10,26 +10,25 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.issues import InputError, Issue
-from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.parameters.build_direction import BuildDirectionParameters
-from freecad_am.core.parameters.joints import JointParameters
-from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.process.model.predicted import HEIGHTS
-from freecad_am.objects import user_machines
-from freecad_am.objects.checks import preflight
-from freecad_am.objects.current import check_current
-from freecad_am.objects.fields.shown_units import in_user_units, scale_of, window_is_open
-from freecad_am.objects.job_group import is_group
-from freecad_am.objects.joint_path import planned_of
-from freecad_am.objects.results.findings import issues_of
-from freecad_am.objects.stage import stage_of
-from freecad_am.objects.toolpath import features_of, strategy_of
-from freecad_am.objects.work import progress
-
+from ..core.issues import InputError, Issue
+from ..core.kinematics import cell as cells
+from ..core.parameters.build_direction import BuildDirectionParameters
+from ..core.parameters.joints import JointParameters
+from ..core.parameters.process import ProcessParameters
+from ..core.parameters.program import ProgramParameters
+from ..core.process.model.notes import HEIGHTS
+from ..objects import user_machines
+from ..objects.checks import preflight
+from ..objects.current import check_current
+from ..objects.fields.preferences import in_user_units, scale_of, window_is_open
+from ..objects.job_group import is_group
+from ..objects.joint_path import planned_of
+from ..objects.results.findings import issues_of
+from ..objects.stage import stage_of
+from ..objects.toolpath import features_of, strategy_of
+from ..objects.work import progress
 from . import units
-from .asked import Feature, Job, Results
+from .figures import Feature, Job, Results
 from .made import Made, made
 
 KINDS = ("toolpath", "joint path", "program")

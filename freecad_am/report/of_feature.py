@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from freecad_am.core.types import Array
+from ..core.types import Array
 
 if TYPE_CHECKING:  # slow to import, and a job of other families never needs it
     from freecad_am.core.strategies.walls.comparison import Compared, Refused

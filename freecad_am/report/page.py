@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
-from freecad_am.core.geometry.on_hub import SolidsOnHub
-from freecad_am.core.process.deposit.spacing import local_distances
-from freecad_am.core.strategies.walls.comparison import Compared
-from freecad_am.core.toolpath import Toolpath
-from freecad_am.plots.source import Source
-
+from ..core.geometry.on_hub import SolidsOnHub
+from ..core.process.deposit.spacing import local_distances
+from ..core.strategies.walls.comparison import Compared
+from ..core.toolpath import Toolpath
+from ..plots.source import Source
 from . import hub_figures, places, predicted_figures, scan_figures, units, view, wall_figures
 from .of_feature import OfFeature
 from .pictures import MISSING, Pictures
@@ -29,7 +28,8 @@ from .tables import (
     pairs_of,
     table_of,
 )
-from .turned import columns, element
+from .turned import columns
+from .turned.columns import policy, style, turned
 
 _WHOLE = (
     ("feasible", "feasible"),
@@ -93,7 +93,7 @@ def render(content: Content) -> str:
     width = (
         content.source.process.bead_width if toolpath.bead_width is None else toolpath.bead_width
     )
-    path = element.turned(shown, toolpath, width, content.platform_diameter)
+    path = turned(shown, toolpath, width, content.platform_diameter)
     sections = [
         f'<header><h1>{name}</h1><span class="status {status}">{status}</span></header>'
         f'<p class="sub">{escape(_subtitle(content))}</p>{_cards(report)}{places.findings(report["issues"], shown)}',
@@ -125,8 +125,8 @@ def render(content: Content) -> str:
     return (
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{name}</title>'
         f'<meta name="viewport" content="width=device-width,initial-scale=1">'
-        f'<meta http-equiv="Content-Security-Policy" content="{element.policy()}">'
-        f"<style>{STYLE}{element.style()}</style></head>"
+        f'<meta http-equiv="Content-Security-Policy" content="{policy()}">'
+        f"<style>{STYLE}{style()}</style></head>"
         f"<body><main>{''.join(sections)}</main>{path.data}</body></html>\n"
     )
 

@@ -10,14 +10,11 @@ from types import ModuleType
 
 import numpy as np
 
-from freecad_am.plots import deviation, joints, process
-from freecad_am.plots.chart import Chart, together
-from freecad_am.plots.fit import fit
-from freecad_am.plots.look import PAGE
-from freecad_am.plots.rows import Rows, rows
-from freecad_am.plots.source import Source
-from freecad_am.plots.units import of_chart
-
+from ..plots import deviation, joints
+from ..plots.chart import Chart, fit, of_chart, together
+from ..plots.joints import Rows, rows
+from ..plots.look import PAGE
+from ..plots.source import Source
 from . import units
 from .of_feature import OfFeature
 
@@ -68,20 +65,20 @@ class Pictures:
         """Distances between the layers of each feature, speed along the path, deposit rate and mass."""
         source = self.source
         first = [
-            process.distances(
+            joints.distances(
                 np.concatenate(one.spacing), one.toolpath.layer_height, one.band, one.name
             )
             for one in features
             if one.spacing
         ]
         return self._half(
-            (*first, *process.travel(source, self.rows), *process.deposit(source, self.rows))
+            (*first, *joints.travel(source, self.rows), *joints.deposit(source, self.rows))
         )
 
     def beads(self) -> list[str]:
         """What a bead model predicts, and its fit."""
         source = self.source
-        charts = (*process.spread(source, self.layers), *process.heights(source, self.layers))
+        charts = (*joints.spread(source, self.layers), *joints.heights(source, self.layers))
         if charts and source.model is not None:
             charts = (*charts, fit(*source.model, source.process.bead_width))
         return self._half(charts)

@@ -8,14 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.geometry.fitted import DeviationMap, PredictedShape
-from freecad_am.core.geometry.formatting import place
-from freecad_am.core.inspection.bands import step_of
-from freecad_am.core.process.shape.deviation import name_of
-
+from ..core.geometry.fitted import DeviationMap, PredictedShape
+from ..core.geometry.formatting import place
+from ..core.inspection.bands import step_of
+from ..core.process.shape.compare import name_of
 from . import units
-from .colour_key import key_of
 from .places import place_of
+from .scan_figures import key_of
 from .tables import grid_of, pairs_of
 from .turned.columns import Shown
 

@@ -9,14 +9,22 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.geometry.fitted import Fitted
-from freecad_am.core.inspection.bands import band_of, bands, css
-from freecad_am.core.types import Array
-
+from ..core.geometry.fitted import Fitted
+from ..core.inspection.bands import band_of, bands, css
+from ..core.types import Array
 from . import units
-from .colour_key import key_of
 from .svg import Plot
 from .tables import grid_of
+
+
+def key_of(tolerance: float) -> str:
+    """A coloured square and the range in mm of each band, from the most inside on."""
+    return " ".join(
+        f'<span style="white-space:nowrap"><span style="color:{css(band.colour)}">&#9632;</span> {escape(band.text)}&ensp;'
+        "</span>"
+        for band in bands(float(f"{tolerance:.6g}"))
+    )
+
 
 TOLERANCE = 0.1  # mm, of the bands that both pictures are coloured by
 MAX_DOTS = 4000  # dots of a picture

@@ -9,27 +9,26 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.geometry.walls.surface_wall import SurfaceWall
-from freecad_am.core.issues import AmError
-from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.cell import Cell
-from freecad_am.core.motion import Motion
-from freecad_am.core.parameters.joints import JointParameters
-from freecad_am.core.parameters.strategy import FRONTS, ISO
-from freecad_am.core.planning import comparison
-from freecad_am.core.planning.joint_path import JointPath
-from freecad_am.core.planning.motion import assemble
-from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.process.deposit.layer_curve import SMOOTH
-from freecad_am.core.strategies.walls import comparison as wall_comparison
-from freecad_am.core.strategies.walls.comparison import METHODS, NORMAL, Compared, Refused
-from freecad_am.core.toolpath import Toolpath
-from freecad_am.core.types import Array
-from freecad_am.objects import user_machines
-from freecad_am.objects.planned.toolpaths import Given, planned
-
+from ..core.geometry.walls.surface_wall import SurfaceWall
+from ..core.issues import AmError
+from ..core.kinematics import cell as cells
+from ..core.kinematics.cell import Cell
+from ..core.motion import Motion
+from ..core.parameters.joints import JointParameters
+from ..core.parameters.strategy import FRONTS, ISO
+from ..core.planning import criteria
+from ..core.planning.joint_path import JointPath
+from ..core.planning.motion import assemble
+from ..core.planning.plan import plan_joints
+from ..core.process.deposit.layer_curve import SMOOTH
+from ..core.strategies.walls import comparison as wall_comparison
+from ..core.strategies.walls.comparison import METHODS, NORMAL, Compared, Refused
+from ..core.toolpath import Toolpath
+from ..core.types import Array
+from ..objects import user_machines
+from ..objects.planned.toolpaths import Given, planned
 from . import figures as of_report
-from .asked import Job
+from .figures import Job
 
 _MOTION = (
     "condition_min",
@@ -115,7 +114,7 @@ def motion_of(
 ) -> dict[str, Any]:
     """How the robot moves while it deposits. axis_limited_s: the deposit's time if each step took as long as the slowest
     axis needs."""
-    figures = comparison.path_figures(path, cell, joints)
+    figures = criteria.path_figures(path, cell, joints)
     deposit = motion.deposit & (motion.point > 0)
     share = np.nanmax(of_report.speed_ratio(motion, cell)[deposit], axis=1, initial=0.0)
     time = motion.duration[deposit]

@@ -9,9 +9,8 @@ from html import escape
 
 import numpy as np
 
-from freecad_am.core.geometry.formatting import round_step
-from freecad_am.core.types import Array
-
+from ..core.geometry.formatting import round_step
+from ..core.types import Array
 from . import units
 
 _MOST_COLUMNS = 700

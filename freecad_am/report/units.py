@@ -12,8 +12,8 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 
-from freecad_am.core.issues import Text
-from freecad_am.core.quantities import put_values
+from ..core.issues import Text
+from ..core.quantities import put_values
 
 _LABEL = re.compile(r"(?P<name>.*, )?(?P<unit>mm|mm/s|mm/min|cm³|g|m)")
 _FIGURE = re.compile(r"-?[\d,]+(?:\.\d+)?(?:e[-+]\d+)?")

@@ -9,11 +9,10 @@ from html import escape
 
 import numpy as np
 
-from freecad_am.core.toolpath import Toolpath
-from freecad_am.core.types import Array
-from freecad_am.plots.look import shade
-
-from ..core.geometry.mesh.facets import doubled_areas
+from ..core.geometry.mesh.collapsed import doubled_areas
+from ..core.toolpath import Toolpath
+from ..core.types import Array
+from ..plots.look import shade
 from . import svg
 
 WIDTH, HEIGHT, MARGIN = 960, 620, 34

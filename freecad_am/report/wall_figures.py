@@ -7,11 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from freecad_am.core.strategies.walls.comparison import METHODS, NORMAL, Compared
-from freecad_am.core.toolpath import Toolpath
-from freecad_am.core.types import Array
-from freecad_am.plots.look import shade
-
+from ..core.strategies.walls.comparison import METHODS, NORMAL, Compared
+from ..core.toolpath import Toolpath
+from ..core.types import Array
+from ..plots.look import shade
 from . import svg, view
 
 TITLES = {

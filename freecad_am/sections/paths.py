@@ -14,7 +14,7 @@ from ..core.geometry.located import expanded, is_there, locate
 from ..core.kinematics.machines import calibration
 from ..core.kinematics.urdf import reference as urdf_reference
 from ..core.parameters.cell import NO_SHAPE
-from ..core.process.model import bead_table
+from ..core.process.model import wire
 
 EACH = "[]"
 FEATURES = "features"
@@ -94,7 +94,7 @@ def _changed(
 
 def _table(at: Callable[[str], str], name: str) -> str:
     """A bead table that is none of ours."""
-    return name if name in ("none", *bead_table.BUILT_IN) else at(name)
+    return name if name in ("none", *wire.BUILT_IN) else at(name)
 
 
 def _material(at: Callable[[str], str], name: str) -> str:

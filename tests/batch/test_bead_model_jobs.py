@@ -11,7 +11,7 @@ import numpy as np
 import Part
 import pytest
 
-from freecad_am.core.process.model import bead_table
+from freecad_am.core.process.model.wire import BUILT_IN, FOLDER
 from freecad_am.posts import catalogue
 
 FIN = """\
@@ -207,7 +207,7 @@ def test_heights_where_axes_cannot_follow_are_those_of_the_speed_as_run(fin):
 
 def _fitted(column):
     """Coefficients of a column of the built-in table, by the normal equations."""
-    path = bead_table.FOLDER / bead_table.BUILT_IN["csw"]
+    path = FOLDER / BUILT_IN["csw"]
     lines = [
         line for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("#")
     ]

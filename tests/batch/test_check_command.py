@@ -12,7 +12,7 @@ import pytest
 
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.interop import cell_file
-from freecad_am.read_back.into_platform import into_platform
+from freecad_am.read_back.selected import into_platform
 from tests.posts.planned_jobs import SETUPS, WAYS, written
 
 WAY = WAYS[0]  # of a FANUC, in joints

@@ -13,12 +13,12 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.batch.job.part import bring
 from freecad_am.batch.job.part_source import PartSource
+from freecad_am.batch.job.shapes import bring
 from freecad_am.brep.files import apart
 from freecad_am.core import copies
 from freecad_am.core.issues import InputError
-from freecad_am.objects.shapes.file_issues import file_issues
+from freecad_am.objects.shapes.part_file import file_issues
 
 SECOND = b"2026-11-01T12:00:00"
 HOLE = 3.141592653589793 * 4 * 10  # of the cylinder in the box, 10 mm high
@@ -315,7 +315,7 @@ def test_the_place_in_an_opened_file(documents):
 
 def test_export_of_a_document_that_links_to_another(documents):
     """What is exported is made from the linked document as it is now; a missing one is named."""
-    from freecad_am.batch.export import export
+    from freecad_am.batch.measured import export
     from tests import plans
 
     def build():

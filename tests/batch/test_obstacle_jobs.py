@@ -11,7 +11,7 @@ import Part
 import pytest
 import yaml
 
-from freecad_am.core.kinematics.links import cylinders as link_rods
+from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.machines import machine
 from tests.core.planning.test_arm_clearance import on_rods
 from tests.kdl_links import KdlLinks
@@ -68,7 +68,7 @@ def nearest(folder, middle, size):
     arm, best = KdlLinks(robot), np.inf
     links = [
         (k, on_rods(rods))
-        for k, rods in enumerate(link_rods.robot_cylinders(robot.chain))
+        for k, rods in enumerate(external_links.robot_cylinders(robot.chain))
         if k and rods
     ]
     dense = np.concatenate(

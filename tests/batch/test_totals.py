@@ -83,7 +83,7 @@ def test_solids_on_hubs_count_as_wide_as_they_are_filled(doc):
     from FreeCAD import Vector
 
     from freecad_am.core.parameters.process import ProcessParameters
-    from freecad_am.core.simulation import deposit
+    from freecad_am.core.simulation import timeline
 
     rod, box = doc.addObject("Part::Feature", "Rod"), doc.addObject("Part::Feature", "Block")
     rod.Shape = Part.makeCylinder(20.0, 100.0)
@@ -96,6 +96,6 @@ def test_solids_on_hubs_count_as_wide_as_they_are_filled(doc):
     for width, options in ((4.0, {}), (5.0, {"bead_width": 5.0})):
         toolpath = api.make_toolpath(doc, feature, **options)
         made, process = api.result(toolpath), toolpath.Proxy.parameters(toolpath, ProcessParameters)
-        volumes[width] = deposit.volumes(deposit.deposit_motion(made), process, made).sum()
+        volumes[width] = timeline.volumes(timeline.deposit_motion(made), process, made).sum()
         assert volumes[width] == pytest.approx(made.length * width * 2.0, rel=1e-9)
     assert volumes[4.0] == pytest.approx(solid.Volume, rel=0.15)

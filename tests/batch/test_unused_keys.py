@@ -4,7 +4,7 @@
 import pytest
 
 from freecad_am.batch.job import job as jobs
-from freecad_am.batch.job.unused import unused_key_issues
+from freecad_am.batch.job.job import unused_key_issues
 
 HEAD = "version: 1\npart: {file: part.step}\nstrategy: {kind: revolution}\n"
 ROBOT = "cell: {machine: fanuc-arcmate120ic, setup: "

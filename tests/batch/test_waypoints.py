@@ -10,7 +10,7 @@ import pytest
 
 from freecad_am.core.motion import Motion
 from freecad_am.core.parameters.bead_classes import CLASSES
-from freecad_am.core.simulation import deposit, waypoints
+from freecad_am.core.simulation import timeline, waypoints
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 COLUMNS = (
@@ -112,7 +112,7 @@ def test_without_a_cell_the_deposit_alone():
     path = Toolpath(
         (Layer((bead(0.0, True),)), Layer((bead(1.0, True), bead(1.5, True)))), np.eye(4), 1.0, 0.01
     )
-    motion = deposit.deposit_motion(path)
+    motion = timeline.deposit_motion(path)
     rows = list(csv.DictReader(io.StringIO("".join(waypoints.text(motion)))))
     assert list(rows[0]) == [*COLUMNS.split(",")[:15], "class"] and {
         row["class"] for row in rows

@@ -7,7 +7,7 @@ import Part
 import pytest
 from FreeCAD import Placement, Rotation, Vector
 
-from freecad_am.brep.walls.cuts import refuse_crossing
+from freecad_am.brep.walls.patch_wall import refuse_crossing
 from freecad_am.brep.walls.sheet import sheet
 from freecad_am.brep.walls.wall_on import wall_on
 from freecad_am.core.geometry.mesh.refined import boundary

@@ -8,8 +8,8 @@ import Part
 import pytest
 from FreeCAD import Vector
 
-from freecad_am.brep import hub, whole_mesh
-from freecad_am.brep.shapes import fine_mesh
+from freecad_am.brep import hub
+from freecad_am.brep.shapes import tessellate
 from freecad_am.brep.shapes.tessellate import tessellated
 from freecad_am.core.geometry.mesh.refined import Edges
 from freecad_am.core.issues import InputError
@@ -43,9 +43,9 @@ def off_ball_with_bore(points):
 def test_a_mesh_of_hundreds_of_thousands_of_triangles(shape, off):
     """The kernel takes minutes for them."""
     began = time.process_time()
-    vertices, triangles, owner, _ = fine_mesh.fine(shape.copy(), CHORD)
+    vertices, triangles, owner, _ = tessellate.fine(shape.copy(), CHORD)
     assert time.process_time() - began < 8.0
-    assert len(triangles) > fine_mesh.SLOW_TRIANGLES and len(owner) == len(triangles)
+    assert len(triangles) > tessellate.SLOW_TRIANGLES and len(owner) == len(triangles)
     assert (Edges(triangles).count == 2).all()
     assert off(vertices).max() < 1e-6
     some = vertices[triangles[::97]]
@@ -62,7 +62,7 @@ def test_a_mesh_of_hundreds_of_thousands_of_triangles(shape, off):
 
 def test_others_are_as_the_kernel_makes_them():
     shape = Part.makeTorus(40, 16)
-    ours, kernels = fine_mesh.fine(shape.copy(), 0.1), tessellated(shape.copy(), 0.1)
+    ours, kernels = tessellate.fine(shape.copy(), 0.1), tessellated(shape.copy(), 0.1)
     assert np.array_equal(ours.vertices, kernels.vertices) and np.array_equal(
         ours.triangles, kernels.triangles
     )
@@ -85,9 +85,9 @@ def without(face):
 
 def test_a_face_that_the_kernel_makes_no_triangles_of_gets_those_of_splines(monkeypatch):
     """As it does of some countersinks out of STEP files, at any deflection."""
-    monkeypatch.setattr(fine_mesh, "tessellated", without(0))
+    monkeypatch.setattr(tessellate, "tessellated", without(0))
     shape = Part.makeCone(8, 5, 4)
-    vertices, triangles, owner, nodes = fine_mesh.fine(shape, 0.02)
+    vertices, triangles, owner, nodes = tessellate.fine(shape, 0.02)
     assert (Edges(triangles).count == 2).all() and set(owner) == {0, 1, 2} and not nodes
     a, b, c = vertices[triangles].transpose(1, 0, 2)
     assert (np.cross(a, b) * c).sum() / 6.0 == pytest.approx(shape.Volume, rel=5e-3)
@@ -100,14 +100,14 @@ def test_a_face_that_the_kernel_makes_no_triangles_of_gets_those_of_splines(monk
 def test_a_face_of_which_there_are_no_triangles_at_all_is_named(monkeypatch):
     """Also where its solid is not the first."""
     two = Part.makeCompound([Part.makeBox(5, 5, 5, Vector(20, 0, 0)), Part.makeBox(1, 2, 3)])
-    monkeypatch.setattr(whole_mesh, "in_kernel_process", lambda made, *words: made(*words))
+    monkeypatch.setattr(hub, "in_kernel_process", lambda made, *words: made(*words))
 
     def bare(shape, chord):
         found = tessellated(shape, chord)
         kept = (found.owner != 4) | (np.ptp(found.vertices[:, 0]) > 1.5)  # of the smaller box
         return found._replace(triangles=found.triangles[kept], owner=found.owner[kept])
 
-    monkeypatch.setattr(fine_mesh, "tessellated", bare)
+    monkeypatch.setattr(tessellate, "tessellated", bare)
     with pytest.raises(InputError) as caught:
         hub.bodies_of(two, "boxes", 0.1, 0.0)
     assert caught.value.code == "BAD_SHAPE" and caught.value.where == "boxes Face11"

@@ -7,7 +7,7 @@ import pytest
 from freecad_am.brep.files.read import read_shape
 from freecad_am.brep.hub import bodies_of
 from freecad_am.brep.kernel import limits
-from freecad_am.brep.walls.substrate import substrate_of
+from freecad_am.brep.walls.sheet import substrate_of
 from freecad_am.core.issues import InputError
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from freecad_am import api
-from freecad_am.brep.files import mesh_difference, three_mf
+from freecad_am.brep.files import three_mf, three_mf_roles
 from freecad_am.brep.files.read import mesh_content, read_mesh
 from freecad_am.core.geometry.mesh.repair import repair_mesh
 from freecad_am.core.geometry.mesh.solid import SolidMesh
@@ -419,7 +419,7 @@ def test_a_round_negative_volume_leaves_what_is_outside_of_it(tmp_path):
 
 
 def test_negative_volumes_that_cannot_be_cut_are_refused_by_name(tmp_path, monkeypatch):
-    monkeypatch.setattr(mesh_difference, "MAX_TRIANGLES", 20)
+    monkeypatch.setattr(three_mf_roles, "MAX_TRIANGLES", 20)
     keys = {"name": "the hole", "volume_type": "NegativeVolume"}
     text = model(mesh(1, BOTH, BOTH_FACES), placed("item", 1))
     path = written(tmp_path, text, more={PRUSA: prusa((0, 11, {}), (12, 23, keys))})

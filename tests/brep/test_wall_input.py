@@ -10,7 +10,7 @@ from FreeCAD import Vector
 
 from freecad_am.brep.files.read import read_mesh
 from freecad_am.brep.walls import sheet
-from freecad_am.brep.walls.substrate import mesh_solid, substrate_of
+from freecad_am.brep.walls.sheet import mesh_solid, substrate_of
 from freecad_am.brep.walls.wall_on import wall_on
 from freecad_am.core.geometry.walls.patch_wall import PatchWall
 from freecad_am.core.issues import InputError

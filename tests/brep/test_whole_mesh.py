@@ -6,8 +6,8 @@ import numpy as np
 import Part
 import pytest
 
-from freecad_am.brep import hub, whole_mesh
-from freecad_am.brep.shapes.fine_mesh import fine
+from freecad_am.brep import hub
+from freecad_am.brep.shapes.tessellate import fine
 from freecad_am.core.geometry.mesh.solid import SolidMesh
 
 TORUS = Part.makeTorus(20.0, 5.0)
@@ -32,7 +32,7 @@ def cut_short(faulty):
 
 def test_another_deflection_is_taken_where_one_lacks_a_part(monkeypatch):
     made, asked = cut_short(lambda chord: chord > 0.009)
-    monkeypatch.setattr(whole_mesh, "in_kernel_process", made)
+    monkeypatch.setattr(hub, "in_kernel_process", made)
     found = hub.bodies_of(TORUS, "ring", 0.01 / hub.SHARE, 0.1)
     body = found.bodies[0]
     assert found.issues == () and len(asked) == 2
@@ -41,14 +41,10 @@ def test_another_deflection_is_taken_where_one_lacks_a_part(monkeypatch):
 
 def test_what_no_deflection_mends_is_told_with_both_volumes(monkeypatch):
     made, asked = cut_short(lambda chord: True)
-    monkeypatch.setattr(whole_mesh, "in_kernel_process", made)
+    monkeypatch.setattr(hub, "in_kernel_process", made)
     found = hub.bodies_of(TORUS, "ring", 0.01 / hub.SHARE, 0.1)
     (issue,) = found.issues
-    assert (
-        issue.code == "MESH_VOLUME"
-        and issue.level == "warning"
-        and len(asked) == len(whole_mesh.FINER)
-    )
+    assert issue.code == "MESH_VOLUME" and issue.level == "warning" and len(asked) == len(hub.FINER)
     assert f"{1e-3 * TORUS.Volume:.4g} cm3" in issue.message
 
 
@@ -65,8 +61,8 @@ def test_what_no_deflection_mends_is_told_with_both_volumes(monkeypatch):
 @pytest.mark.always
 def test_sound_solids_are_meshed_once(monkeypatch, shape, chord):
     made, asked = cut_short(lambda chord: False)
-    monkeypatch.setattr(whole_mesh, "in_kernel_process", made)
-    assert whole_mesh.complete_mesh(shape, chord, "it")[1] == () and asked == [chord]
+    monkeypatch.setattr(hub, "in_kernel_process", made)
+    assert hub.complete_mesh(shape, chord, "it")[1] == () and asked == [chord]
 
 
 def stretched(shape, *shares):
@@ -90,7 +86,7 @@ PIPE = Part.makeCylinder(20.0, 30.0).cut(Part.makeCylinder(12.0, 30.0))
 def test_no_warning_where_the_kernel_integrates_its_own_faces_wrongly(shape, volume):
     """The triangles are right, which is known from the formula; the kernel's volume is off by up to 1 %."""
     chord = 0.02
-    made, issues = whole_mesh.complete_mesh(shape, chord, "it")
+    made, issues = hub.complete_mesh(shape, chord, "it")
     assert issues == ()
     enclosed = abs(SolidMesh(made.vertices, made.triangles).volume)
     assert enclosed == pytest.approx(volume, abs=1.5 * chord * shape.Area)
@@ -109,10 +105,8 @@ def test_a_part_that_lacks_is_seen_where_the_kernel_is_wrong_too(monkeypatch, ax
         bent[side, axis] -= 0.03 * np.ptp(bent[:, axis])
         return right._replace(vertices=bent)
 
-    monkeypatch.setattr(whole_mesh, "in_kernel_process", dented)
-    assert [issue.code for issue in whole_mesh.complete_mesh(shape, 0.02, "it")[1]] == [
-        "MESH_VOLUME"
-    ]
+    monkeypatch.setattr(hub, "in_kernel_process", dented)
+    assert [issue.code for issue in hub.complete_mesh(shape, 0.02, "it")[1]] == ["MESH_VOLUME"]
 
 
 def test_faces_and_edges_beside_solids_are_noted():

@@ -5,8 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.curves.sampling import arc
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall, arc
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.cell import Cell
 from freecad_am.core.motion import Motion

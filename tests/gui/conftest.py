@@ -396,11 +396,11 @@ def joint_path(person, hemisphere):
 
 def _forget_places(window):
     """Docks of ours come in the next test as they come in a new session."""
-    from freecad_am.gui.docks import places as docks
+    from freecad_am.gui.docks import dock_area
 
-    for dock in docks._docks.values():
+    for dock in dock_area._docks.values():
         window.removeDockWidget(dock)
-    docks._areas.clear()
+    dock_area._areas.clear()
 
 
 @pytest.fixture

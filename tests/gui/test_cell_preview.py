@@ -16,7 +16,7 @@ from freecad_am.core.kinematics.urdf.cell import texts_of
 from freecad_am.core.kinematics.urdf.reference import Reference
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.external import externals
-from freecad_am.core.simulation.placing import at_rest
+from freecad_am.core.simulation.table_links import at_rest
 from freecad_am.gui.cell import proposing as cell_panel
 from freecad_am.gui.nodes.cell import resting_point
 from freecad_am.kdl.chain import KdlArm

@@ -12,8 +12,7 @@ from pivy import coin
 from freecad_am import api
 from freecad_am.core.toolpath import Bead
 from freecad_am.gui.path import dock as paths
-from freecad_am.gui.path.pieces import PathNodes
-from freecad_am.gui.path.rows import Rows
+from freecad_am.gui.path.pieces import PathNodes, Rows
 from freecad_am.gui.simulation import dock as simulations
 from freecad_am.gui.simulation import tool
 

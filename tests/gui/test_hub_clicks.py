@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from freecad_am import api
-from freecad_am.core.process.model import bead_table
+from freecad_am.core.process.model import wire
 from freecad_am.gui.path import colouring, legend
 from freecad_am.gui.views.hub import HubView
 
@@ -363,7 +363,7 @@ def test_a_bead_model_is_seen_by_its_fit(person, rotor, tmp_path, monkeypatch):
     assert not plot.isVisible()
     person.choose(panel, "BeadModel", "csw")
     person.until(lambda: plot.isVisible() and plot.ready, "the plot", 10)
-    model = bead_table.load("csw")
+    model = wire.load("csw")
     for number in (
         f"{model.width.m:.4g}",
         f"{model.width.r_squared:.4f}",

@@ -14,7 +14,7 @@ from freecad_am import api
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.machines import machine as machines
-from freecad_am.core.simulation.placing import at_rest
+from freecad_am.core.simulation.table_links import at_rest
 from freecad_am.gui.nodes.cell import resting_point
 from freecad_am.kdl.chain import KdlArm
 

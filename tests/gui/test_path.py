@@ -11,10 +11,9 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.toolpath import Layer
-from freecad_am.gui.path import clicks, colouring, dock
-from freecad_am.gui.path.facts import facts
-from freecad_am.gui.path.pieces import BLOCK
-from freecad_am.gui.path.rows import PIECE, Rows
+from freecad_am.gui.path import colouring, dock, path_view
+from freecad_am.gui.path.dock import facts
+from freecad_am.gui.path.pieces import BLOCK, PIECE, Rows
 
 
 def drawn(person):
@@ -391,20 +390,20 @@ def test_of_three_hundred_thousand_points_the_foremost_near_the_mouse_is_meant()
     turn[3, :3] = 5.0, -3.0, 2.0
     to_screen = np.diag([1 / 150, 1 / 120, -1 / 400, 1.0])  # orthographic, from above
     size = np.array([800.0, 600.0])
-    sight = clicks.Sight(turn, to_screen, size, np.array([0.0, 0.0, -1.0]))
+    sight = path_view.Sight(turn, to_screen, size, np.array([0.0, 0.0, -1.0]))
     world = points @ turn[:3, :3] + turn[3, :3]
     flat = 0.5 * (world[:, :2] / [150, 120] + 1) * size
     for place in random.uniform([200, 150], [600, 450], (20, 2)):
-        found = clicks.nearest(points, 0.0, 2.0, sight, place)
+        found = path_view.nearest(points, 0.0, 2.0, sight, place)
         away = np.linalg.norm(flat - place, axis=1)
-        near = away <= clicks.REACH_PX
+        near = away <= path_view.REACH_PX
         highest = world[near, 2].max()
-        front = near & (world[:, 2] >= highest - clicks.DEEP * 2.0)
+        front = near & (world[:, 2] >= highest - path_view.DEEP * 2.0)
         assert front[found] and away[found] == away[front].min()
-    assert clicks.nearest(points, 0.0, 2.0, sight, np.array([5.0, 5.0])) is None
+    assert path_view.nearest(points, 0.0, 2.0, sight, np.array([5.0, 5.0])) is None
     # a tube of 9 mm is as wide as it is seen: 22.5 px to each side
     alone, beside = world[:1] - turn[3, :3], np.array([[20.0, 0.0], [25.0, 0.0]]) + flat[0]
-    hit = [clicks.nearest(alone @ turn[:3, :3].T, 9.0, 9.0, sight, place) for place in beside]
+    hit = [path_view.nearest(alone @ turn[:3, :3].T, 9.0, 9.0, sight, place) for place in beside]
     assert hit == [0, None]
 
 

@@ -7,7 +7,7 @@ import pytest
 from freecad_am import api
 from freecad_am.core.kinematics.limits import margins
 from freecad_am.core.kinematics.machines import machine as machines
-from freecad_am.core.simulation.margins import speed_ratios
+from freecad_am.core.simulation.achievable_feed import speed_ratios
 from freecad_am.gui.colours import ramp
 from freecad_am.gui.path import colouring, legend
 

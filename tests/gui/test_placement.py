@@ -7,7 +7,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.simulation.placing import at_rest, placing
+from freecad_am.core.simulation.table_links import at_rest, placing
 from freecad_am.gui.nodes.cell import resting_point
 from freecad_am.gui.placement import dock as docks
 from freecad_am.gui.placement import figures

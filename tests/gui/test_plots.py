@@ -12,7 +12,7 @@ from freecad_am import api
 from freecad_am.gui.plots import canvas as canvases
 from freecad_am.gui.plots import dock as docks
 from freecad_am.plots import catalogue
-from freecad_am.plots.rows import rows
+from freecad_am.plots.joints import rows
 
 
 @pytest.fixture

@@ -7,8 +7,8 @@ import FreeCAD as App
 import numpy as np
 
 from freecad_am import api
-from freecad_am.gui.path.facts import facts
-from freecad_am.gui.path.rows import Rows
+from freecad_am.gui.path.dock import facts
+from freecad_am.gui.path.pieces import Rows
 from freecad_am.objects.results import store
 
 HEADLESS = """

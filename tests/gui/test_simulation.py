@@ -12,14 +12,14 @@ from freecad_am import api
 from freecad_am.core.geometry import frames
 from freecad_am.core.issues import WARNING, Issue
 from freecad_am.core.kinematics import external
-from freecad_am.core.planning.beads import moving_tool
+from freecad_am.core.planning.beads import steps
 from freecad_am.core.simulation.achievable_feed import achievable_feed
 from freecad_am.core.simulation.watch import ISSUE, LIMIT, SINGULAR, SLOWED, TOUCHES
 from freecad_am.gui.simulation import dock as docks
 from freecad_am.gui.simulation import fields, tool
-from freecad_am.gui.simulation.run import run_of
+from freecad_am.gui.simulation.player import run_of
 from freecad_am.gui.simulation.scene import SLOW, WRONG
-from freecad_am.gui.texts.touching import link_touches
+from freecad_am.gui.texts.in_language import link_touches
 from freecad_am.kdl.chain import KdlArm
 from freecad_am.objects.joint_path import Planned
 from tests.gui.positioner_jobs import on_positioner
@@ -396,9 +396,7 @@ def test_a_program_of_linear_moves_plays_the_points_they_get(hemisphere):
     run = run_of(api.make_program(doc, path, "LINES", motion="cartesian", post="staubli"))
     planned, toolpath = api.result(path), api.result(path.Toolpath)
     beads = [one.bead for one in planned.joint_path.beads]
-    motion = moving_tool.refined_to_chord_error(
-        planned.motion, run.cell, toolpath.chord_error, beads
-    )
+    motion = steps.refined_to_chord_error(planned.motion, run.cell, toolpath.chord_error, beads)
     assert len(run.motion) == len(motion) > len(planned.motion)
     assert np.array_equal(run.motion.joints, motion.joints) and np.array_equal(
         run.motion.point, motion.point

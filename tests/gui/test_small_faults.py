@@ -8,7 +8,7 @@ from freecad_am import api
 from freecad_am.gui import registry
 from freecad_am.gui.redundancy_map import tool as map_tool
 from freecad_am.gui.simulation import wording
-from freecad_am.gui.tools import commands, needs
+from freecad_am.gui.tools import commands, whats_this
 from freecad_am.gui.widgets import choices, suggestions
 from freecad_am.gui.widgets.fold import KEEP_MS
 
@@ -24,7 +24,7 @@ def test_a_toolpath_asks_for_any_of_the_tools_that_make_features(person):
     document = App.newDocument("Empty")
     tools = [name for name in commands.GROUPS[1] if name != "Cell"]
     assert len(tools) == 6
-    assert all(commands.TOOLS[name].text in needs.feature(document) for name in tools)
+    assert all(commands.TOOLS[name].text in whats_this.feature(document) for name in tools)
 
 
 def test_the_status_bar_does_not_go_on_asking_for_what_is_there(person, hemisphere):

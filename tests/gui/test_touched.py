@@ -5,8 +5,8 @@ import FreeCAD as App
 import pytest
 
 from freecad_am import api
-from freecad_am.batch.job.part import bring
 from freecad_am.batch.job.part_source import PartSource
+from freecad_am.batch.job.shapes import bring
 from freecad_am.core.issues import InputError
 
 PANELS = {

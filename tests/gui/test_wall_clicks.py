@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from freecad_am import api
-from freecad_am.gui.background import later
+from freecad_am.gui.background import worker
 from freecad_am.gui.views import preview
 
 ORANGE = (245, 120, 0)  # of first layers
@@ -168,7 +168,7 @@ def test_without_a_selection_the_panel_waits_for_clicks(person, hand, bend):
 
 def test_an_error_goes_with_its_entry_however_soon_the_next_is_typed(person, bend, monkeypatch):
     monkeypatch.setattr(
-        later, "WAIT", 1500
+        worker, "WAIT", 1500
     )  # entries are judged so long after the last one is typed, previews are sooner
     part, pipe = bend
     person.select(part)

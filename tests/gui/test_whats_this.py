@@ -4,7 +4,7 @@
 import pytest
 
 from freecad_am.gui.tools import commands, whats_this
-from freecad_am.gui.widgets import wheel
+from freecad_am.gui.widgets import upright
 
 
 @pytest.fixture
@@ -91,7 +91,7 @@ def test_what_is_not_ours_is_left_to_freecad(person):
 
 def test_what_pyside_mistakes_for_an_event_is_let_pass(person):
     """It hands over, now and then, what lay where the event is before."""
-    for one in (whats_this._watches[0], wheel._guard):
+    for one in (whats_this._watches[0], upright._guard):
         assert one.eventFilter(person.window, person.window) is False
 
 

@@ -6,8 +6,8 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.core.parameters.chord_error import scaled
 from freecad_am.core.parameters.filled import SolidParameters
+from freecad_am.core.parameters.strategy import scaled
 
 
 @pytest.fixture

@@ -161,10 +161,7 @@ def test_a_fillet_that_numbers_faces_anew(doc, face):
             "?"
         ):  # FreeCAD 1.0 and later say themselves that it is lost
             others += 1
-            assert (
-                feature.Status == "failed"
-                and f"Face{face} no longer exists" in feature.Message
-            )
+            assert feature.Status == "failed" and f"Face{face} no longer exists" in feature.Message
             put_quietly(part, box.Shape)
             api.change(feature, source=part, faces=[f"Face{face}"])
             continue

@@ -8,9 +8,9 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.issues import InputError
-from freecad_am.objects.shapes.array_elements import ArrayElement
 from freecad_am.objects.shapes.bodies import global_shape
 from freecad_am.objects.shapes.part_file import part_shape
+from freecad_am.objects.shapes.places import ArrayElement
 
 
 @pytest.fixture

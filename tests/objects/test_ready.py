@@ -13,13 +13,13 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.issues import InputError, has_errors
-from freecad_am.core.kinematics.links import cylinders as link_cylinders
+from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.links.collisions import CORE, flange_passes
-from freecad_am.core.kinematics.links.rounds import round_solid
+from freecad_am.core.kinematics.links.own import round_solid
 from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.planning.other_cells import Tried
 from freecad_am.core.planning.remedies import remedies
-from freecad_am.core.planning.tried import Tried
 from freecad_am.objects.checks.collisions import look, margin_issues
 from freecad_am.objects.joint_path import planned_of
 from freecad_am.objects.shapes import cell_obstacles
@@ -265,7 +265,7 @@ def test_a_wrist_of_which_no_shape_is_known_is_warned_about(doc):
 def test_the_flange_tells_what_of_a_forearm_is_not_there():
     def passes(name, share):
         robot = machines.load(name, ())
-        link = link_cylinders.robot_cylinders(robot.chain)[4]
+        link = external_links.robot_cylinders(robot.chain)[4]
         inner = [dataclasses.replace(one, radius=share * one.radius) for one in link]
         return flange_passes(robot, [round_solid(one, 0.0) for one in inner])
 

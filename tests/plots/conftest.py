@@ -6,9 +6,9 @@ import pytest
 
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
-from freecad_am.core.planning import comparison
-from freecad_am.core.simulation import deposit
-from freecad_am.core.simulation.margins import spread_to_deposit_rows
+from freecad_am.core.planning import criteria
+from freecad_am.core.simulation import timeline
+from freecad_am.core.simulation.achievable_feed import spread_to_deposit_rows
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 from freecad_am.plots.source import Source
 from tests.core.planned_dome import planned_dome
@@ -25,7 +25,7 @@ def dome():
         spread_to_deposit_rows(motion.deposit, column) for column in path.conditions(motion)
     )
     source = Source(path.toolpath(toolpath), motion, process, cell, condition, threshold, 0.1)
-    return source, comparison.path_figures(path, cell, JointParameters())
+    return source, criteria.path_figures(path, cell, JointParameters())
 
 
 @pytest.fixture
@@ -46,4 +46,4 @@ def modelled():
             )
         )
     toolpath = Toolpath(tuple(layers), np.eye(4), 2.0, 0.1)
-    return Source(toolpath, deposit.deposit_motion(toolpath), ProcessParameters(bead_model="csw"))
+    return Source(toolpath, timeline.deposit_motion(toolpath), ProcessParameters(bead_model="csw"))

@@ -10,13 +10,13 @@ from freecad_am.core.layers.planes.stacking import prepare_stack
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.process.deposit import spacing
-from freecad_am.core.process.model import bead_model, bead_table, predicted
-from freecad_am.core.simulation import deposit
+from freecad_am.core.process.model import bead_model, notes, wire
+from freecad_am.core.simulation import timeline
 from freecad_am.core.simulation.totals import totals
-from freecad_am.plots import catalogue, draw, joints, process
+from freecad_am.plots import catalogue, draw, joints
 from freecad_am.plots.chart import together
+from freecad_am.plots.joints import PATH, TIME, rows
 from freecad_am.plots.look import LIGHT
-from freecad_am.plots.rows import PATH, TIME, rows
 from freecad_am.plots.source import Source
 from tests.core.strategies.test_solids_in_planes import box, planned
 
@@ -125,7 +125,7 @@ def test_layers_are_chosen(dome):
 def test_deposit_rate_over_its_time_is_the_mass_of_the_job(dome):
     source, _ = dome
     along = rows(source)
-    rate, mass = process.deposit(source, along)
+    rate, mass = joints.deposit(source, along)
     sums = totals(source.motion, source.times, source.process, source.toolpath)
     assert mass.curves[0].y[-1] == pytest.approx(sums.mass, rel=1e-12)
     unit = {"min": 60.0, "s": 1.0}[rate.x.unit]
@@ -138,7 +138,7 @@ def test_deposit_rate_over_its_time_is_the_mass_of_the_job(dome):
 
 def test_travel_speed_is_told_apart_and_where_it_is_not_kept(dome):
     source, _ = dome
-    (chart,) = process.travel(source, rows(source))
+    (chart,) = joints.travel(source, rows(source))
     by_name = {one.name: one.y for one in chart.curves}
     assert np.nanmin(by_name["deposit"]) == np.nanmax(by_name["deposit"]) == 8.0
     assert (
@@ -146,7 +146,7 @@ def test_travel_speed_is_told_apart_and_where_it_is_not_kept(dome):
     ).sum() == 0 and "as the axes can" not in by_name
     machine = dataclasses.replace(source.cell.machine, max_speed=np.full(6, np.radians(2.0)))
     slow = dataclasses.replace(source, cell=dataclasses.replace(source.cell, machine=machine))
-    (chart,) = process.travel(slow, rows(slow))
+    (chart,) = joints.travel(slow, rows(slow))
     kept = {one.name: one.y for one in chart.curves}["as the axes can"]
     assert 0.0 < np.nanmin(kept) < np.nanmax(kept) < 8.0
 
@@ -154,15 +154,15 @@ def test_travel_speed_is_told_apart_and_where_it_is_not_kept(dome):
 def test_spacing_is_that_of_the_layers(dome):
     source, _ = dome
     values = np.concatenate(spacing.between_layers(source.toolpath))
-    (chart,) = process.spacing(source, (0, len(source.toolpath.layers) - 1))
+    (chart,) = joints.spacing(source, (0, len(source.toolpath.layers) - 1))
     bars = chart.bars
     np.testing.assert_allclose(
         bars.heights, 100.0 * np.histogram(values, bars.edges)[0] / len(values), rtol=1e-9
     )
     assert bars.heights.sum() == pytest.approx(100.0) and bars.edges[0] < 9.0 < bars.edges[-1]
     assert chart.band == pytest.approx((8.1, 9.9)) and chart.upright[0][0] == 9.0
-    assert process.spacing(source, (0, 0)) == ()
-    (some,) = process.spacing(source, (1, 1))
+    assert joints.spacing(source, (0, 0)) == ()
+    (some,) = joints.spacing(source, (1, 1))
     one = spacing.between_layers(source.toolpath)[0]
     np.testing.assert_allclose(
         some.bars.heights, 100.0 * np.histogram(one, some.bars.edges)[0] / len(one), rtol=1e-9
@@ -170,21 +170,21 @@ def test_spacing_is_that_of_the_layers(dome):
 
 
 def test_what_a_bead_model_predicts(modelled):
-    told = predicted.beads(modelled.toolpath)
-    height, drift = process.heights(modelled, (1, 3))
+    told = notes.beads(modelled.toolpath)
+    height, drift = joints.heights(modelled, (1, 3))
     for number, kind in enumerate(("min", "mean", "max")):
         assert curve([height], 0, number).y.tolist() == [
             row["height_mm"][kind] for row in told["layers"][1:]
         ]
     assert drift.curves[0].y.tolist() == [row["drift_mm"] for row in told["layers"][1:]]
     assert height.curves[0].x.tolist() == [1.0, 2.0, 3.0] and height.marks[0][0] == 2.0
-    speed, width, _ = process.spread(modelled, (0, 3))
+    speed, width, _ = joints.spread(modelled, (0, 3))
     assert (
         speed.bars.heights.sum() == pytest.approx(100.0)
         and width.across()[0] < 4.8
         and width.across()[1] > 5.2
     )
-    measured = bead_table.read_table("csw")
+    measured = wire.read_table("csw")
     model = bead_model.fit(*measured)
     (fit,) = catalogue.picture("fit", modelled).charts
     for radius, line, dots in zip(np.unique(measured.radius), fit.curves[::2], fit.curves[1::2]):
@@ -211,7 +211,7 @@ def test_volumes_and_sections_of_plane_layers(modelled):
     part = box((-20, -15, 0), (20, 15, 13), "block")
     solids = prepare_stack([part], SolidParameters(), "block")
     toolpath = planned(part, fill="lines", contour=True)
-    source = Source(toolpath, deposit.deposit_motion(toolpath), ProcessParameters(), solids=solids)
+    source = Source(toolpath, timeline.deposit_motion(toolpath), ProcessParameters(), solids=solids)
     volume, share = catalogue.picture("volumes", source).charts
     of_part, laid = (one.y for one in volume.curves)
     np.testing.assert_allclose(

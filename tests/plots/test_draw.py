@@ -11,9 +11,9 @@ import pytest
 
 from freecad_am.plots import catalogue, draw, files
 from freecad_am.plots.chart import Chart, Curve, Picture, Quantity
-from freecad_am.plots.envelope import envelope
+from freecad_am.plots.draw import envelope
+from freecad_am.plots.joints import PATH
 from freecad_am.plots.look import DARK, LIGHT, PAGE, VARIABLES
-from freecad_am.plots.rows import PATH
 
 TIME, ANGLE = Quantity("time", "s"), Quantity("angle", "deg")
 

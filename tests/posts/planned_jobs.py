@@ -16,7 +16,7 @@ from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters
-from freecad_am.core.planning.beads import moving_tool
+from freecad_am.core.planning.beads import steps
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
@@ -302,7 +302,7 @@ def written(way, max_points=2000, lift=LIFT, retreat=0.0, ramps=()):
     post, kind, feed, name = way
     cell, beads, motion = planned(name, lift, retreat, ramps)
     if post == "staubli" and kind == "cartesian" and cell.setup == "part-on-robot":
-        motion = moving_tool.refined_to_chord_error(motion, cell, CHORD_ERROR, beads)
+        motion = steps.refined_to_chord_error(motion, cell, CHORD_ERROR, beads)
     parameters = ProgramParameters(
         post=post, motion=kind, max_points=max_points, nc=NcParameters(feed=feed)
     )

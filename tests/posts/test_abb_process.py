@@ -24,8 +24,8 @@ from freecad_am.core.read_moves import Event
 from freecad_am.objects.program import refuse
 from freecad_am.posts import catalogue
 from freecad_am.posts.abb import post as abb
-from freecad_am.posts.lines import lines_of as found_lines
-from freecad_am.read_back import leads
+from freecad_am.posts.catalogue import lines_of as found_lines
+from freecad_am.read_back.events import MOST_DIGITS, timed
 from freecad_am.verify import verify
 from tests.posts.fanuc_programs import with_tool
 from tests.posts.planned_jobs import CHORD_ERROR, PROCESS, planned
@@ -503,7 +503,7 @@ def test_rounding_moves_no_switch_by_more_than_half_a_millisecond_and_slower_mov
                 for event in abb.read(abb.write(program)).events
                 if event.kind == "off"
             }
-            assert abs(early - lead) <= leads.MOST_DIGITS + 1e-12
+            assert abs(early - lead) <= MOST_DIGITS + 1e-12
     slow = ending_at(told(of, "ahead", ahead=0.02), 0.09)
     with pytest.raises(InputError) as error:
         abb.write(slow)
@@ -515,13 +515,11 @@ def test_a_way_is_as_long_ahead_as_the_tip_takes_for_it_on_that_very_move():
     ways = ((1, 0.5), (2, 0.5), (3, 0.5), (4, 0.0))
     events = tuple(Event(row, "off", (1.0, "do"), 0.00005, before=way) for row, way in ways)
     other = Event(2, "on", (1.0, "do"), 0.001, ahead=0.03)
-    first, second, third, fourth, fifth = leads.timed(
-        (*events, other), np.array([10.0, 0.05, 0.0, 0.0])
-    )
+    first, second, third, fourth, fifth = timed((*events, other), np.array([10.0, 0.05, 0.0, 0.0]))
     assert (first.ahead, first.digits, first.before) == (0.05, 5e-6, None)
     assert (second.ahead, second.digits) == (
         10.0,
-        leads.MOST_DIGITS,
+        MOST_DIGITS,
     )  # digits explain no more than that
     assert np.isnan(third.ahead) and (fourth.ahead, fourth.digits) == (0.0, 0.0) and fifth is other
 

@@ -8,7 +8,7 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.posts import catalogue
-from freecad_am.posts.lines import lines_of
+from freecad_am.posts.catalogue import lines_of
 from tests.posts.planned_jobs import SPANNING, WAYS, written
 
 NUMBER = re.compile(rb"-?\d+\.\d+")

@@ -7,7 +7,7 @@ import string
 import pytest
 
 from freecad_am.core.issues import InputError
-from freecad_am.objects.fields.naming import name_for, proposed_name, refusal, taken_name
+from freecad_am.objects.fields.rows import name_for, proposed_name, refusal, taken_name
 from freecad_am.posts import catalogue
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from freecad_am.core.issues import ERROR
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters, StartParameters
-from freecad_am.core.planning.beads import moving_tool
+from freecad_am.core.planning.beads import steps
 from freecad_am.core.planning.program.build import rows_from
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
@@ -57,7 +57,7 @@ def resumed(way, start):
     post, kind, feed, name = way
     cell, beads, motion = planned(name)
     if post == "staubli" and kind == "cartesian" and cell.setup == "part-on-robot":
-        motion = moving_tool.refined_to_chord_error(motion, cell, CHORD_ERROR, beads)
+        motion = steps.refined_to_chord_error(motion, cell, CHORD_ERROR, beads)
     parameters = ProgramParameters(
         post=post, motion=kind, max_points=2000, nc=NcParameters(feed=feed), start_at=start
     )

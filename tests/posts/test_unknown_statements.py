@@ -13,7 +13,7 @@ from freecad_am.core.issues import ERROR, WARNING, InputError
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.planning.program.build import build_header
 from freecad_am.posts import catalogue
-from freecad_am.read_back import driven
+from freecad_am.read_back import followed
 from freecad_am.read_back.selected import selection_findings
 from tests.posts.planned_jobs import written
 
@@ -311,7 +311,7 @@ def findings(way, files, expected):
     cell, _, _, _ = written(way)
     read = catalogue.load(way[0]).read(files)
     kept = build_header(cell, ProgramParameters(post=way[0]), catalogue.controller(way[0]), "check")
-    motion = driven.driven(cell, kept, read)
+    motion = followed.driven(cell, kept, read)
     return [
         one for one in selection_findings(motion, read, expected)
         if one.issue.code == "FRAME_NUMBER"

@@ -18,7 +18,7 @@ from freecad_am import api
 from freecad_am.brep.files import apart, three_mf
 from freecad_am.brep.files.read import read_mesh, read_shape
 from freecad_am.core.issues import InputError
-from freecad_am.objects.shapes import document_file
+from freecad_am.objects.shapes import linked_files
 from freecad_am.objects.shapes.part_file import part_shape
 from tests.robust import damage
 
@@ -339,7 +339,7 @@ def with_document_type(sound, path, name="Document.xml", blanks=0):
 @pytest.mark.parametrize("blanks", [0, 200_000, 5_000_000])
 def test_documents_of_entities_are_refused_before_they_are_opened(sound, tmp_path, blanks):
     path = with_document_type(sound, tmp_path / "bomb.FCStd", blanks=blanks)
-    for read in (lambda: part_shape(str(path)), lambda: document_file.opened(str(path), "bomb")):
+    for read in (lambda: part_shape(str(path)), lambda: linked_files.opened(str(path), "bomb")):
         error = refused(read)
         assert error.code == "BAD_FILE" and (
             "document type" in error.message or "begin as XML" in error.message

@@ -8,8 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from freecad_am.core.issues import InputError
-
+from ...core.issues import InputError
 from .job import Job
 
 MAX_DEFLATED_BYTES = 4_000_000  # bytes of results, beyond which they are not deflated once more

@@ -3,22 +3,66 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 from typing import Any
 
-from freecad_am.core.geometry.curves.bead_curves import POINT_FILES
-from freecad_am.core.issues import InputError
-from freecad_am.core.parameters import field as f
-from freecad_am.core.parameters.build_direction import BuildDirectionParameters
-from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.parameters.strategy import LayerParameters
-from freecad_am.core.process.model import bead_table
-from freecad_am.core.strategies.families import AUTO, KINDS, NEEDED, NONE, family_of
-from freecad_am.sections import fields, quantity
-
-from . import classes as job_classes
+from ...core.geometry.curves.bead_curves import POINT_FILES
+from ...core.issues import InputError
+from ...core.parameters import bead_classes
+from ...core.parameters import field as f
+from ...core.parameters.build_direction import BuildDirectionParameters
+from ...core.parameters.process import ProcessParameters
+from ...core.parameters.strategy import LayerParameters
+from ...core.process.model import wire
+from ...core.strategies.families import AUTO, KINDS, NEEDED, NONE, family_of
+from ...sections import fields, quantity
 from . import material
 from .part_source import PartSource, part_of
+
+
+def as_text(section: dict[str, Any]) -> dict[str, Any]:
+    """The section `process` with its classes as their text. InputError naming class and key."""
+    classes = section.get("classes")
+    if classes in (None, {}) or classes == bead_classes.NONE:
+        return {key: value for key, value in section.items() if key != "classes"}
+    if not isinstance(classes, dict):
+        raise InputError(
+            "BAD_VALUE",
+            bead_classes.WHERE,
+            "{} is not understood; write classes below it such as contour: {{travel_speed: "
+            "8 mm/s, schedule: 3}}",
+            quantity.shown(classes),
+        )
+    fields.known_keys(classes, bead_classes.CLASSES, bead_classes.WHERE)
+    parameters_by_name = {
+        name: fields.build(
+            bead_classes.BeadClass,
+            _flat({} if class_section is None else class_section, name),
+            f"{bead_classes.WHERE}.{name}",
+        )
+        for name, class_section in classes.items()
+    }
+    for name, parameters in parameters_by_name.items():
+        bead_classes.made(name, parameters.own_values())
+    return {**section, "classes": bead_classes.text_of(parameters_by_name)}
+
+
+def _flat(class_section: Any, name: str) -> Any:
+    """What a class says, with `start: {length: ...}` as start_length and so on."""
+    if not isinstance(class_section, dict):
+        return class_section
+    flat: dict[str, Any] = {}
+    for key, value in class_section.items():
+        if key in (bead_classes.START, bead_classes.END):
+            where = f"{bead_classes.WHERE}.{name}.{key}"
+            phase_keys = [field.name for field in dataclasses.fields(bead_classes.PhaseParameters)]
+            section = fields.mapping(value, where)
+            fields.known_keys(section, phase_keys, where)
+            flat |= {f"{key}_{inner}": entry for inner, entry in section.items()}
+        else:
+            flat[key] = value
+    return flat
 
 
 def kept_clear(kind: str) -> tuple[str, ...]:
@@ -33,12 +77,12 @@ def process_of(section: Any, strategy: LayerParameters | None = None) -> Process
     any value. strategy: None for a program of several features, which may differ, or if not chosen
     yet. InputError, also from its bead table.
     """
-    process_section = job_classes.as_text(material.filled_in(fields.mapping(section, "process")))
+    process_section = as_text(material.filled_in(fields.mapping(section, "process")))
     if strategy is not None and "bead_width" in process_section and family_of(strategy).filled:
         process_section = {"fill_width": "bead_width", **process_section}
     process = fields.build(ProcessParameters, process_section, "process")
     if process.bead_model != "none":
-        bead_table.load(process.bead_model)
+        wire.load(process.bead_model)
     return process
 
 

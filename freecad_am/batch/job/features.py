@@ -7,15 +7,18 @@ import dataclasses
 from dataclasses import dataclass
 from typing import Any
 
-from freecad_am.core.issues import InputError
-from freecad_am.core.parameters.build_direction import BuildDirectionParameters
-from freecad_am.core.parameters.filled import SolidParameters
-from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.parameters.strategy import LayerParameters
-from freecad_am.core.strategies.families import AUTO, KINDS, NONE, Family, family_of
-from freecad_am.sections import fields, tree
+import numpy as np
 
-from . import auto_layers
+from ...core.issues import InputError
+from ...core.parameters import field as f
+from ...core.parameters.build_direction import BuildDirectionParameters
+from ...core.parameters.filled import SolidParameters
+from ...core.parameters.process import ProcessParameters
+from ...core.parameters.strategy import LayerParameters
+from ...core.process.model import wire
+from ...core.process.model.wire import model_wire_feed
+from ...core.strategies.families import AUTO, KINDS, NONE, Family, family_of
+from ...sections import fields, quantity, tree
 from .feature_sections import (
     direction_as_text,
     kept_clear,
@@ -26,6 +29,61 @@ from .feature_sections import (
 )
 from .part_source import PartSource, faces_of, fixtures_of, guide_of, part_of
 from .scan_source import ScanSource, scan_of, split
+
+WORD = "auto"
+HEIGHT, SPACING = "layer_height", "bead_spacing"
+
+
+def asked(section: Any) -> bool:
+    """Whether a section `strategy` leaves layer height or spacing to the model."""
+    return isinstance(section, dict) and WORD in (section.get(HEIGHT), section.get(SPACING))
+
+
+def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, Any]:
+    """The section with numbers in place of the words. The layer height is the height of a straight
+    bead. The spacing is chosen so that spacing times layer height equals the wire volume per
+    millimetre of bead: then the fed wire fills the layer. InputError BAD_VALUE without a bead
+    model, or if the spacing would exceed the bead width.
+    """
+    key = HEIGHT if section.get(HEIGHT) == WORD else SPACING
+    model = wire.process_model(process)
+    if model is None:
+        raise InputError(
+            "BAD_VALUE",
+            f"strategy.{key}",
+            "auto needs a bead model, and the job has none; give a length, a process.bead_model "
+            "or a process.material with one",
+        )
+    speed = model.straight_speed(process.bead_width)
+    section_with_numbers = dict(section)
+    if section_with_numbers.get(HEIGHT) == WORD:
+        height = float(model.heights(np.array([speed]), np.array([np.inf]))[0])
+        section_with_numbers[HEIGHT] = f"{height!r} mm"
+    if section_with_numbers.get(SPACING) == WORD:
+        height = quantity.read(
+            section_with_numbers.get(HEIGHT, 1.0), f.LENGTH, f"strategy.{HEIGHT}"
+        )
+        if not height > 0.0:
+            raise InputError(
+                "BAD_VALUE",
+                f"strategy.{HEIGHT}",
+                "{:g} mm is out of range; give more than 0 mm",
+                height,
+            )
+        spacing = process.wire.section * model_wire_feed(process, model) / speed / height
+        if spacing > process.bead_width:
+            raise InputError(
+                "BAD_VALUE",
+                f"strategy.{SPACING}",
+                "layers of {:.4g} mm need beads {:.4g} mm apart to hold the wire fed, but beads "
+                "are {:g} mm wide; use higher layers or wider beads",
+                height,
+                spacing,
+                process.bead_width,
+            )
+        section_with_numbers[SPACING] = f"{spacing!r} mm"
+    return section_with_numbers
+
 
 # what a job calls the links of a feature, which the window picks in a document
 _KEYS = {
@@ -71,9 +129,9 @@ def one_feature(values: dict[str, Any], name: str) -> JobFeature:
     if values.get("part") is None:
         raise InputError("NO_PART", "part", "there is no part; write part: {file: shape.step}")
     part_section = fields.mapping(values["part"], "part")
-    if auto_layers.asked(values.get("strategy")):
+    if asked(values.get("strategy")):
         process = process_of(values.get("process") or {})
-        values = {**values, "strategy": auto_layers.resolved(values["strategy"], process)}
+        values = {**values, "strategy": resolved(values["strategy"], process)}
     section = values.get("strategy")
     if isinstance(section, dict) and section.get("kind") == AUTO.kind:
         return _left_open(values, section, name)

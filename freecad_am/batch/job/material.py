@@ -10,13 +10,13 @@ import os
 from pathlib import Path
 from typing import Any
 
-from freecad_am.core.geometry.located import is_there
-from freecad_am.core.issues import InputError
-from freecad_am.core.parameters import bead_classes
-from freecad_am.core.parameters import field as f
-from freecad_am.core.process.model import bead_table
-from freecad_am.sections import fields, quantity, tree
-from freecad_am.sections.paths import absolute, folder_of
+from ...core.geometry.located import is_there
+from ...core.issues import InputError
+from ...core.parameters import bead_classes
+from ...core.parameters import field as f
+from ...core.process.model.wire import BUILT_IN, load
+from ...sections import fields, quantity, tree
+from ...sections.paths import absolute, folder_of
 
 KEY = "process.material"
 FOLDER = Path(__file__).resolve().parents[2] / "materials"
@@ -189,9 +189,9 @@ def _schedules(value: Any) -> dict[str, Any]:
 def _beads(values: dict[str, Any], file: Path, slowest: float | None, fastest: float | None) -> str:
     """The bead table, which fits the wire feed and the speeds of the file."""
     name = fields.text(values["beads"], "beads").strip()
-    if name not in bead_table.BUILT_IN:
+    if name not in BUILT_IN:
         name = absolute(name, folder_of(str(file)))
-    model = bead_table.load(name)
+    model = load(name)
     low, high = model.speeds
     if slowest is not None and fastest is not None and (fastest < low or slowest > high):
         raise InputError(

@@ -8,11 +8,11 @@ import re
 from dataclasses import dataclass, replace
 from typing import Any
 
-from freecad_am.core.geometry.located import is_there
-from freecad_am.core.geometry.mesh.file_unit import MESHES, refuse_scale
-from freecad_am.core.issues import InputError, Text
-from freecad_am.core.parameters import field as f
-from freecad_am.sections import fields, quantity
+from ...core.geometry.located import is_there
+from ...core.geometry.mesh.file_unit import MESHES, refuse_scale
+from ...core.issues import InputError, Text
+from ...core.parameters import field as f
+from ...sections import fields, quantity
 
 _EDGE = re.compile(r"Edge[1-9]\d*", re.ASCII)
 _FACE = re.compile(r"Face[1-9]\d*", re.ASCII)

@@ -6,12 +6,12 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
-from freecad_am.core.geometry.located import is_there
-from freecad_am.core.issues import InputError
-from freecad_am.core.parameters import field as f
-from freecad_am.core.parameters.inspection import AUTO, BEST, NONE, UNITS, InspectionParameters
-from freecad_am.core.parameters.scan import PREFIX, ScanParameters
-from freecad_am.sections import fields as job_fields
+from ...core.geometry.located import is_there
+from ...core.issues import InputError
+from ...core.parameters import field as f
+from ...core.parameters.inspection import AUTO, BEST, NONE, UNITS, InspectionParameters
+from ...core.parameters.scan import PREFIX, ScanParameters
+from ...sections import fields as job_fields
 
 FITS = (AUTO, BEST, NONE)
 SOURCE_KEYS = ("scan", "scan_unit", "scan_fit", "scan_pairs")

@@ -10,9 +10,8 @@ import os
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from freecad_am.core.issues import InputError, Text
-from freecad_am.posts import earlier as earlier_posts
-
+from ...core.issues import InputError, Text
+from ...posts import earlier as earlier_posts
 from .. import supervised
 from . import staging
 

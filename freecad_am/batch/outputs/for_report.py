@@ -14,7 +14,8 @@ def results(stages: Any, programs: Sequence[str]) -> Any:
     """What the stages came to, as far as they got, for the report."""
     from freecad_am import api
     from freecad_am.objects.checks import preflight
-    from freecad_am.report.asked import Results
+
+    from ...report.figures import Results
 
     path = stages.joint_path
     survey = functools.cache(preflight.survey_of(stages.toolpath, path, stages.job.program))
@@ -31,10 +32,10 @@ def results(stages: Any, programs: Sequence[str]) -> Any:
 
 def job(read_job: Job, stages: Any) -> Any:
     """The job in the form of its report."""
-    from freecad_am.report import asked
+    from ...report import figures
 
     features = tuple(
-        asked.Feature(
+        figures.Feature(
             feature_read.name,
             feature_read.strategy,
             feature_read.build_direction,
@@ -43,7 +44,7 @@ def job(read_job: Job, stages: Any) -> Any:
         )
         for feature_read, feature in zip(read_job.features, stages.features, strict=True)
     )
-    return asked.Job(read_job.name, features, read_job.process, read_job.joints, read_job.cell)
+    return figures.Job(read_job.name, features, read_job.process, read_job.joints, read_job.cell)
 
 
 def _result(obj: Any) -> Any:

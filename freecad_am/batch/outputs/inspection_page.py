@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.inspection import table
-from freecad_am.core.inspection.bands import band_of, bands, css
-from freecad_am.core.types import Array
-from freecad_am.report.colour_key import key_of
-from freecad_am.report.style import STYLE
-from freecad_am.report.svg import Plot
+from ...core.inspection import table
+from ...core.inspection.bands import band_of, bands, css
+from ...core.types import Array
+from ...report.scan_figures import key_of
+from ...report.style import STYLE
+from ...report.svg import Plot
 
 _MAX_POINTS = 6000  # points of a map
 _TILT = np.radians(30.0)  # viewing angle of the map, from above

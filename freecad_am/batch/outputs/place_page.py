@@ -7,11 +7,10 @@ from html import escape
 
 import numpy as np
 
-from freecad_am.core.placement.moved import outer
-from freecad_am.core.placement.place import Placed, ranked
-from freecad_am.core.types import Array
-from freecad_am.report.style import STYLE
-from freecad_am.report.svg import Plot
+from ...core.placement.place import Placed, outer, ranked
+from ...core.types import Array
+from ...report.style import STYLE
+from ...report.svg import Plot
 
 _BEST = 20  # poses in the table
 _MOST_MAPS = 60

@@ -15,8 +15,6 @@ from typing import Any
 from .. import run as planning
 from .. import versions
 from ..console import Session, escaped
-from . import journal as row_journal
-from . import process as row_process
 from . import table
 
 FIGURES = (
@@ -54,9 +52,7 @@ def run(path: str, job_path: str, output: str | None, how: How, session: Session
         "out",
         os.path.splitext(os.path.basename(path))[0],
     )
-    journal = row_journal.Journal(
-        folder, versions.code() + str(versions.found_versions()), how.resume
-    )
+    journal = table.Journal(folder, versions.code() + str(versions.found_versions()), how.resume)
     results: dict[int, dict[str, Any]] = {}
     waiting = []
     for row in rows:
@@ -90,7 +86,7 @@ def run(path: str, job_path: str, output: str | None, how: How, session: Session
 
 
 def _planned(
-    rows: list[table.Row], folder: str, how: How, session: Session, journal: row_journal.Journal
+    rows: list[table.Row], folder: str, how: How, session: Session, journal: table.Journal
 ) -> Iterable[tuple[table.Row, dict[str, Any]]]:
     """Rows with their results, as they end; finished rows are written to the journal."""
     if not how.scheduler or not rows:
@@ -99,7 +95,7 @@ def _planned(
 
 
 def _planned_there(
-    rows: list[table.Row], folder: str, how: How, session: Session, journal: row_journal.Journal
+    rows: list[table.Row], folder: str, how: How, session: Session, journal: table.Journal
 ) -> Iterator[tuple[table.Row, dict[str, Any]]]:
     from .. import cluster
 
@@ -108,7 +104,7 @@ def _planned_there(
 
 
 def _planned_here(
-    rows: list[table.Row], folder: str, how: How, session: Session, journal: row_journal.Journal
+    rows: list[table.Row], folder: str, how: How, session: Session, journal: table.Journal
 ) -> Iterator[tuple[table.Row, dict[str, Any]]]:
     waiting = list(reversed(rows))
     running: dict[Any, tuple[table.Row, Any]] = {}
@@ -116,8 +112,8 @@ def _planned_here(
         while waiting or running:
             while waiting and len(running) < how.processes:
                 row = waiting.pop()
-                receiver, process = row_process.start_row(
-                    row_process.Order(
+                receiver, process = table.start_row(
+                    table.Order(
                         row.label,
                         row.tree().values,
                         row.path,
@@ -128,18 +124,18 @@ def _planned_here(
                 running[receiver] = (row, process)
             for receiver in multiprocessing.connection.wait(list(running)):
                 row, process = running[receiver]
-                result = row_process.received(receiver, process)
+                result = table.received(receiver, process)
                 journal.keep(row, how.dry, result)
                 del running[receiver]
                 yield row, result
             session.check()
     finally:
         for _, process in running.values():
-            row_process.ask_to_stop(process)
+            table.ask_to_stop(process)
         for receiver, (row, process) in running.items():
-            row_process.stop(process)
+            table.stop(process)
             if (
-                last_outcome := row_process.last_result(receiver)
+                last_outcome := table.last_result(receiver)
             ) is not None:  # it was done in this moment
                 journal.keep(row, how.dry, last_outcome)
 

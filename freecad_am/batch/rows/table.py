@@ -6,17 +6,172 @@ from __future__ import annotations
 import contextlib
 import copy
 import csv
+import hashlib
 import io
+import json
+import multiprocessing
 import os
+import signal
+import sys
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from freecad_am.core.geometry import located
-from freecad_am.core.issues import InputError, Text
-from freecad_am.sections import tree
-
-from .. import run
+from ...core import copies
+from ...core.geometry import located
+from ...core.issues import AmError, InputError, Issue, Text, has_errors
+from ...sections import tree
+from .. import run, supervised
+from .. import run as planning
+from ..console import Session
 from ..job import job
+from ..outputs import staging
+from ..outputs.folder import REPORT
+
+GRACE = 1.0  # s that a process has to end on request
+CHECKED = "checked"  # status of a row that was not planned
+
+
+@dataclass(frozen=True)
+class Order:
+    """The task of a process: plan the job with the `values` read from the file `path` into a
+    folder, or only check it for errors (`dry`). label: the job's name in messages.
+    """
+
+    label: str
+    values: dict[str, Any]
+    path: str
+    folder: str
+    dry: bool
+
+
+def start_row(order: Order) -> tuple[Any, Any]:
+    """Start the process of a row; return the receiving end of the pipe for its result, and the
+    process.
+    """
+    context: Any = multiprocessing.get_context(
+        "fork" if sys.platform.startswith("linux") else "spawn"
+    )
+    receiver, sender = context.Pipe(duplex=False)
+    process = context.Process(target=_carry_out, args=(order, sender))
+    process.outputs = order.folder
+    process.start()
+    sender.close()
+    return receiver, process
+
+
+def received(receiver: Any, process: Any) -> dict[str, Any]:
+    """The result of a row whose process has ended: exit, message, output lines, and `figures`."""
+    try:
+        result: dict[str, Any] = receiver.recv()
+    except EOFError:
+        process.join()
+        error = supervised.crash("row", process.exitcode)
+        result = {"exit": error.exit_status, "message": error.message, "lines": [error.line()]}
+    receiver.close()
+    process.join()
+    return result
+
+
+def last_result(receiver: Any) -> dict[str, Any] | None:
+    """The result of a process that has been stopped; None if it had none yet."""
+    try:
+        return receiver.recv() if not receiver.closed and receiver.poll() else None
+    except EOFError:
+        return None
+    finally:
+        receiver.close()
+
+
+def ask_to_stop(process: Any) -> None:
+    """Ask a process to end, without waiting."""
+    if process.is_alive():
+        os.kill(process.pid, signal.SIGINT)
+
+
+def stop(process: Any) -> None:
+    """End a process and remove its unfinished files, if the geometry kernel keeps it from doing so."""
+    ask_to_stop(process)
+    process.join(GRACE)
+    if process.is_alive():
+        process.kill()
+        process.join()
+        if os.path.isdir(process.outputs):
+            with contextlib.suppress(OSError):
+                staging.clear(process.outputs)
+
+
+def _carry_out(order: Order, sender: Any) -> None:
+    """The work of the process."""
+    made_by = multiprocessing.parent_process()
+    assert made_by is not None and made_by.pid is not None
+    copies.end_with(made_by.pid)
+    quiet = _Quiet()
+    status, message, result = 1, "", {}
+    try:
+        status, result = _planned(order, quiet)
+    except KeyboardInterrupt:
+        status, message = 130, "interrupted"
+    except AmError as error:
+        status, message = error.exit_status, error.message
+        quiet.say(error.line())
+    except Exception as error:
+        message = f"{type(error).__name__}: {error}"
+        quiet.say(
+            f"error[INTERNAL] {' '.join(message.split())}; this is our fault, please report it"
+        )
+    sender.send({"exit": status, "message": message or quiet.first, "lines": quiet.lines, **result})
+    sender.close()
+    os._exit(0)
+
+
+def _planned(order: Order, quiet: Session) -> tuple[int, dict[str, Any]]:
+    """The exit status and the figures."""
+    job_read = job.from_tree(tree.Tree(order.label, order.values), order.path)
+    if order.dry:
+        with planning.named_by_keys(job_read):
+            planning.check(job_read)
+        return 0, {"status": CHECKED}
+    result = planning.run(job_read, order.folder, quiet)
+    return result.exit_status, figures(result.report)
+
+
+def figures(report: dict[str, Any]) -> dict[str, Any]:
+    """The figures of a report for the summary of a batch."""
+    joints = report["joints"] or {}
+    return {
+        "status": report["status"],
+        **report["counts"],
+        "length_mm": report["length_mm"],
+        "duration_s": report["duration_s"],
+        "spacing_min_mm": report["spacing_mm"]["min"],
+        "spacing_max_mm": report["spacing_mm"]["max"],
+        "condition_min": joints.get("condition_min"),
+    }
+
+
+class _Quiet(Session):
+    """Collects the messages of a row, to be written together when it is done."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._handle(signal.SIGINT)
+        self._handle(signal.SIGTERM)
+        self.lines: list[str] = []
+        self.first = ""
+
+    def say(self, line: str) -> None:
+        self.lines.append(line)
+
+    def progress(self, text: str) -> None:
+        self.check()
+
+    def issues(self, findings: Iterable[Issue]) -> None:
+        all_findings = list(findings)
+        if has_errors(all_findings):
+            self.first = next(issue.message for issue in all_findings if issue.level == "error")
+        super().issues(all_findings)
+
 
 SETTING = "part.set."
 
@@ -158,3 +313,99 @@ def _put(values: dict[str, Any], column: str, value: Any, changed: tree.Tree) ->
             values[key] = {}
         values = values[key]
     values[keys[-1]] = value
+
+
+NAME = ".rows.jsonl"
+FINAL_STATUSES = (0, 3)  # exit statuses of rows that are not tried again
+
+
+class Journal:
+    """The journal of a folder. resume: whether its entries count; else it starts empty."""
+
+    def __init__(self, folder: str, made_by: str, resume: bool) -> None:
+        """made_by: what the results depend on besides jobs and their files."""
+        self._folder, self._made_by, self._path = folder, made_by, os.path.join(folder, NAME)
+        self._files: dict[str, str] = {}
+        self._known = dict(self._lines()) if resume else {}
+        if not resume:
+            with contextlib.suppress(OSError):
+                os.remove(self._path)
+
+    def known(self, row: Row, dry: bool) -> dict[str, Any] | None:
+        """The result of a row that was done before; None without one."""
+        entry = self._known.get(self._digest(row, dry))
+        if (
+            entry is None
+            or entry["folder"] != row.folder
+            or (not dry and entry["report"] != self._report(row))
+        ):
+            return None
+        result: dict[str, Any] = entry["result"]
+        return result
+
+    def keep(self, row: Row, dry: bool, result: dict[str, Any]) -> None:
+        """Write down what a row has come to, whose outputs are in place."""
+        if result["exit"] not in FINAL_STATUSES:
+            return
+        stored = {name: value for name, value in result.items() if name != "lines"}
+        line = json.dumps(
+            {
+                "digest": self._digest(row, dry),
+                "folder": row.folder,
+                "report": "" if result.get("status") == CHECKED else self._report(row),
+                "result": stored,
+            }
+        )
+        with contextlib.suppress(OSError):  # then the row is done again
+            os.makedirs(self._folder, exist_ok=True)
+            flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
+            with open(os.open(self._path, flags, 0o644), "a", encoding="utf-8") as stream:
+                stream.write(line + "\n")
+
+    def _lines(self) -> list[tuple[str, dict[str, Any]]]:
+        """The entries of the file; an unfinished line of a killed batch is left out."""
+        entries = []
+        try:
+            with open(self._path, encoding="utf-8", errors="replace") as stream:
+                for text in stream:
+                    with contextlib.suppress(ValueError, TypeError, KeyError):
+                        line = json.loads(text)
+                        (
+                            line["result"]["exit"],
+                            line["result"]["message"],
+                            line["folder"],
+                            line["report"],
+                        )
+                        entries.append((str(line["digest"]), line))
+        except OSError:
+            return []
+        return entries
+
+    def _digest(self, row: Row, dry: bool) -> str:
+        files = {name: self._file(name) for name in sorted(row.files)}
+        content = json.dumps(
+            [self._made_by, row.tree().values, os.path.abspath(row.path), files, dry],
+            sort_keys=True,
+        )
+        return hashlib.sha256(content.encode()).hexdigest()
+
+    def _file(self, name: str) -> str:
+        """The digest of a file, computed once per batch; '' without a file."""
+        if name not in self._files:
+            self._files[name] = digest(name)
+        return self._files[name]
+
+    def _report(self, row: Row) -> str:
+        """The digest of a row's report, which is written last of its outputs."""
+        return digest(os.path.join(self._folder, row.folder, REPORT)) or "none"
+
+
+def digest(path: str) -> str:
+    """The SHA-256 of a file; '' if it cannot be read."""
+    if not os.path.isfile(path):
+        return ""
+    try:
+        with open(path, "rb") as stream:
+            return hashlib.sha256(stream.read()).hexdigest()
+    except OSError:
+        return ""

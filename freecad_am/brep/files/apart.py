@@ -12,7 +12,9 @@ process.
 from __future__ import annotations
 
 import contextlib
+import io
 import os
+import pickle
 import select
 import signal
 import sys
@@ -22,11 +24,86 @@ from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 import FreeCAD
+import Mesh
+import Part
 
 from ...core import copies
 from ...core.issues import InputError, Text, Word
 from ..kernel import process as kernel_process
-from . import answers
+
+AGAIN = "it is sound: read it again, here"  # IGES may give a zero the other sign in the binary form
+
+
+class _Inexact(Exception):
+    """A shape is not quite the same in the binary form."""
+
+
+class _Pickler(pickle.Pickler):
+    """Writes shapes and meshes to a file of their own."""
+
+    def __init__(self, stream: Any, geometry: str) -> None:
+        super().__init__(stream, protocol=pickle.HIGHEST_PROTOCOL)
+        self.geometry = geometry
+
+    def persistent_id(self, value: Any) -> str | None:
+        if isinstance(value, Part.Shape):
+            value.exportBinary(self.geometry)
+            again = Part.Shape()
+            again.importBinary(self.geometry)
+            if again.exportBrepToString() != value.exportBrepToString():
+                raise _Inexact
+            return "shape"
+        if isinstance(value, Mesh.Mesh):
+            value.write(self.geometry, "BMS")
+            return "mesh"
+        return None
+
+
+class _Unpickler(pickle.Unpickler):
+    def __init__(self, stream: Any, geometry: str) -> None:
+        super().__init__(stream)
+        self.geometry = geometry
+
+    def persistent_load(self, kind: str) -> Any:
+        if kind == "shape":
+            shape = Part.Shape()
+            shape.importBinary(self.geometry)
+            return shape
+        mesh = Mesh.Mesh()
+        with open(self.geometry, "rb") as stream:
+            mesh.read(stream, "BMS")
+        return mesh
+
+
+def write_answer(
+    answer_file: str,
+    geometry: str,
+    reader: Callable[..., Any],
+    path: str | os.PathLike[str],
+    arguments: tuple[Any, ...],
+) -> None:
+    """In the other process: run `reader` and write its result or InputError into the files."""
+    try:
+        answer: Any = (True, reader(path, *arguments))
+    except InputError as error:
+        answer = (False, (error.code, error.where, error.message))
+    text = io.BytesIO()
+    try:
+        _Pickler(text, geometry).dump(answer)
+    except _Inexact:
+        text = io.BytesIO(pickle.dumps((True, AGAIN)))
+    with open(answer_file, "wb") as stream:
+        stream.write(text.getbuffer())
+
+
+def read_answer(answer_file: str, geometry: str) -> Any:
+    """Return the result of the other process; raises its InputError."""
+    with open(answer_file, "rb") as stream:
+        sound, answer = _Unpickler(stream, geometry).load()
+    if sound:
+        return answer
+    raise InputError(*answer)
+
 
 if sys.platform != "win32":
     import resource
@@ -68,7 +145,7 @@ def read_apart(
             exit_code, used = copy.wait()
             if exit_code:
                 raise _refused(where, exit_code, used, *limits)
-            result = answers.read_answer(*copy.files)
+            result = read_answer(*copy.files)
     else:
         with _answer_files() as files:
             question = (*files, reader.__module__, reader.__qualname__, path, arguments, *limits)
@@ -77,10 +154,8 @@ def read_apart(
                 return reader(path, *arguments)
             if how[0]:
                 raise _refused(where, *how, *limits)
-            result = answers.read_answer(*files)
-    return (
-        reader(path, *arguments) if isinstance(result, str) and result == answers.AGAIN else result
-    )
+            result = read_answer(*files)
+    return reader(path, *arguments) if isinstance(result, str) and result == AGAIN else result
 
 
 def _limits(size: float, patience: float) -> tuple[float, float]:
@@ -121,7 +196,7 @@ def answer(
     _is_apart = True
     reader = getattr(importlib.import_module(module), function)
     if sys.platform == "win32":
-        answers.write_answer(answer_file, geometry, reader, path, arguments)
+        write_answer(answer_file, geometry, reader, path, arguments)
         return
     copies.take_no_signals()
     spent = resource.getrusage(resource.RUSAGE_SELF)
@@ -138,7 +213,7 @@ def answer(
             resource.setrlimit(
                 kind, (value if hard == resource.RLIM_INFINITY else min(value, hard), hard)
             )
-        answers.write_answer(answer_file, geometry, reader, path, arguments)
+        write_answer(answer_file, geometry, reader, path, arguments)
 
 
 def _size(path: str | os.PathLike[str]) -> float:
@@ -220,7 +295,7 @@ def _limited(seconds: float, memory: float, *what: Any) -> None:
     _limit(resource.RLIMIT_CPU, round(seconds))
     _limit(resource.RLIMIT_AS, _pages(0) + round(memory * MB))
     try:
-        answers.write_answer(*what)
+        write_answer(*what)
     except MemoryError:
         os._exit(NO_MEMORY)
 

@@ -14,8 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
+from ...core.types import Array
 from ..revolution.cylindrical import AxisFrame, pieces_of
 
 SAMPLES = 721

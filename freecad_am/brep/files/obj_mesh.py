@@ -14,11 +14,10 @@ from pathlib import Path
 
 import numpy as np
 
-from freecad_am.core.types import Array, Index
-
-from ...core.geometry.mesh.facets import doubled_areas
+from ...core.geometry.mesh.collapsed import doubled_areas
 from ...core.geometry.mesh.polygon import triangulate
 from ...core.issues import NOTE, InputError, Issue, Text
+from ...core.types import Array, Index
 
 CONTENT = "FILE_CONTENT"
 CONTINUED = re.compile(rb"\\[ \t]*\r?\n")  # a line that goes on in the next one

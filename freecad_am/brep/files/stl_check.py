@@ -12,9 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
 from ...core.issues import NOTE, InputError, Issue, Text
+from ...core.types import Array
 
 CONTENT = "FILE_CONTENT"
 HEAD, RECORD = 84, 50  # bytes of the head of a binary file, and of a triangle

@@ -20,10 +20,9 @@ from xml.parsers import expat
 
 import numpy as np
 
-from freecad_am.core.types import Array, Index
-
 from ...core.issues import NOTE, InputError, Issue, Text, Word
-from . import mesh_difference
+from ...core.types import Array, Index
+from . import three_mf_roles
 from . import three_mf_roles as roles
 from .three_mf_roles import NEGATIVE, PART, Volume
 
@@ -241,7 +240,7 @@ class _Package:
             return points, corners
         count = len(corners) + len(tool.corners)
         self.cut += count
-        max_triangles = mesh_difference.MAX_TRIANGLES
+        max_triangles = three_mf_roles.MAX_TRIANGLES
         if count > max_triangles or self.cut > MAX_CUT:
             raise InputError(
                 "UNSUPPORTED_FILE",
@@ -253,7 +252,7 @@ class _Package:
                 count if count > max_triangles else self.cut,
                 max_triangles if count > max_triangles else MAX_CUT,
             )
-        remainder = mesh_difference.difference(points, corners, tool.points, tool.corners)
+        remainder = three_mf_roles.difference(points, corners, tool.points, tool.corners)
         if remainder is None:
             raise InputError(
                 "UNSUPPORTED_FILE",

@@ -12,11 +12,10 @@ import numpy as np
 import Part
 from scipy.spatial import cKDTree
 
-from freecad_am.core.types import Array, Index
-
 from ...core.geometry.formatting import place
 from ...core.geometry.walls.surface import dot
 from ...core.issues import InputError, Text
+from ...core.types import Array, Index
 
 # since FreeCAD 1.0 some faults are a plain RuntimeError, their base class
 FAULTS = (Part.OCCError, FreeCAD.Base.CADKernelError, RuntimeError)

@@ -9,8 +9,7 @@ import FreeCAD  # noqa: F401  before Part, which crashes without
 import numpy as np
 import Part
 
-from freecad_am.core.types import Array, Mask
-
+from ...core.types import Array, Mask
 from .cylindrical import as_array, edge_points
 
 Axis = tuple[Array, Array]

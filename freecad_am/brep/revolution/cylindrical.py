@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
-from ...core.geometry.curves.sampling import Curve, sample_curve
+from ...core.geometry.curves.profile import Curve, sample_curve
+from ...core.types import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import Part
 
-from freecad_am.core.types import Array, Index, Mask
-
+from ...core.types import Array, Index, Mask
 from .cylindrical import AxisFrame, as_array
 from .patch import planar
 

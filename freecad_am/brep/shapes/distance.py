@@ -9,10 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.types import Array, Index
-
 from ...core.geometry.mesh.solid import Search, SolidMesh
 from ...core.issues import InputError
+from ...core.types import Array, Index
 from ..kernel.process import in_kernel_process
 from .tessellate import divided
 

@@ -14,13 +14,12 @@ import FreeCAD
 import numpy as np
 import Part
 
-from freecad_am.core.types import Array, Integers, Mask
-
 from ...core.collision.inside import inside_of
 from ...core.geometry.columns import dots
 from ...core.geometry.mesh.solid import Search, SolidMesh
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
+from ...core.types import Array, Integers, Mask
 from ..kernel.process import in_kernel_process
 from .tessellate import triangles_of
 

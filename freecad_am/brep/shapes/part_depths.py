@@ -9,14 +9,13 @@ from typing import Any
 import numpy as np
 import Part
 
-from freecad_am.core.types import Array
-
 from ...core.collision.depths import grain, measured
 from ...core.geometry.curves.profile import RevolvedWall
-from ...core.geometry.mesh.facets import doubled_areas
+from ...core.geometry.mesh.collapsed import doubled_areas
 from ...core.geometry.mesh.solid import SolidMesh, divide_triangles
 from ...core.geometry.obstacles import Body
 from ...core.geometry.walls.part_depths import PartDepths, Surface
+from ...core.types import Array
 from ..kernel.limits import FAULTS
 from ..kernel.process import in_kernel_process
 from ..sections_agree import sections_agree

@@ -11,15 +11,14 @@ import numpy as np
 import Part
 from scipy.spatial import cKDTree
 
-from freecad_am.core.types import Array, Index, Mask
-
 from ...core.geometry.formatting import place
 from ...core.geometry.mesh.refined import Edges, boundary
+from ...core.geometry.walls.mesh_wall import connected_parts
 from ...core.geometry.walls.patch_wall import PatchWall
-from ...core.geometry.walls.rims import connected_parts
 from ...core.geometry.walls.surface import dot, normals
 from ...core.geometry.walls.surface_wall import SurfaceWall
 from ...core.issues import InputError
+from ...core.types import Array, Index, Mask
 from .sheet import SEWN
 
 CREASE = np.radians(1.0)  # of the normals of two faces along their common edge

@@ -11,13 +11,12 @@ import FreeCAD
 import numpy as np
 import Part
 
-from freecad_am.core.types import Array
-
 from ...core.geometry.formatting import format_deviation
 from ...core.geometry.step_count import step_count
 from ...core.geometry.walls.surface import dot
 from ...core.geometry.walls.surface_wall import TABLE, TORUS, Placed, SurfaceWall
 from ...core.issues import NOTE, InputError, Issue, Text
+from ...core.types import Array
 from ..shapes.no_solid import no_solid
 from .patch_wall import sound
 from .wall import Tube, tubes

@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 import Part
 
-from freecad_am.core.types import Array
-
 from ...core.geometry.formatting import place
 from ...core.geometry.step_count import step_count
 from ...core.geometry.walls.patch_wall import FirstCurve, PatchWall
 from ...core.issues import InputError
+from ...core.types import Array
 
 ON_WALL = 1e-3  # mm
 NODE_TOLERANCE_MM = 1e-5  # mm between nodes, at the THIRDS of each arc

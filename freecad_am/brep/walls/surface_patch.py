@@ -7,12 +7,141 @@ from typing import Any
 
 import numpy as np
 import Part
+from scipy.interpolate import CubicSpline
+from scipy.spatial import cKDTree
 
-from freecad_am.core.geometry.angles import TURN
-from freecad_am.core.types import Array
-
+from ...core.geometry.angles import TURN
+from ...core.geometry.step_count import step_count
 from ...core.geometry.walls.patch import CONE, CYLINDER, PLANE, SPHERE, SPLINE, TORUS, Patch
+from ...core.geometry.walls.surface import dot
 from ...core.issues import InputError
+from ...core.types import Array, Index, Mask
+
+STEPS = 8
+NODE_MM = 1e-4  # mm between a vertex and the node of a tessellation that it came from
+MAX_MOVE_SHARE = (
+    0.7  # of half an edge; its middle is not moved farther than this on a smooth surface
+)
+
+
+class Places:
+    """Move the new middles of edges onto their faces and edges.
+
+    It keeps the parameters of all vertices on spline faces: where a surface comes near itself the nearest
+    point may be the wrong one, so each is sought from its neighbours'. `nodes` in the constructor: for
+    each face the parameters (k, 2) of the first vertices (n, 3), in any order.
+    """
+
+    def __init__(
+        self, shape: Any, patches: list[Patch], nodes: list[Array], vertices: Array, edge: float
+    ) -> None:
+        self.patches, self.curves = patches, _Curves(shape, edge)
+        self.uv: dict[int, Array] = {}
+        for k, patch in enumerate(patches):
+            if patch.kind != SPLINE:
+                continue
+            self.uv[k] = np.full((len(vertices), 2), np.nan)
+            if len(nodes[k]):
+                off, nearest_node = cKDTree(patch.at(nodes[k])[0]).query(vertices)
+                self.uv[k][off < NODE_MM] = nodes[k][nearest_node[off < NODE_MM]]
+
+    def middles(self, points: Array, adjacent: Index, ends: Index) -> Array:
+        """The middles (n, 3) of the edges between the vertices `ends` (n, 2), moved; they become the next vertices.
+
+        adjacent: the faces (n, 2) on either side, -1 for none.
+        """
+        inner = adjacent[:, 0] == adjacent[:, 1]
+        placed = points.copy()
+        placed[~inner] = self.curves.nearest(points[~inner])
+        for k in np.unique(adjacent[inner, 0]):
+            members = np.flatnonzero(inner & (adjacent[:, 0] == k))
+            if k not in self.uv:
+                placed[members] = self.patches[k].at(self.patches[k].inverse(points[members]))[0]
+        for k, uv in self.uv.items():
+            parameters = np.full((len(points), 2), np.nan)
+            members = np.flatnonzero((adjacent == k).any(axis=1))
+            parameters[members] = self._near(k, placed[members], ends[members], inner[members])
+            on_face = members[inner[members]]
+            placed[on_face] = self.patches[k].at(parameters[on_face])[0]
+            self.uv[k] = np.vstack([uv, parameters])
+        return placed
+
+    def _near(self, k: int, points: Array, ends: Index, inner: Mask) -> Array:
+        """Parameters of the points on patch k, next to the parameters of the ends of their edges;
+        inner: mask of points to move.
+        """
+        patch, (start_uv, end_uv) = self.patches[k], (self.uv[k][ends[:, side]] for side in (0, 1))
+        for axis, period in enumerate(patch.periods):
+            if period > 0.0:
+                end_uv[:, axis] -= period * np.round((end_uv[:, axis] - start_uv[:, axis]) / period)
+        start = 0.5 * (start_uv + end_uv)
+        has_start = np.isfinite(start).all(axis=1)
+        uv_found = np.empty_like(start)
+        uv_found[has_start] = patch.inverse(points[has_start], start[has_start])
+        half = 0.5 * np.linalg.norm(patch.at(start_uv)[0] - patch.at(end_uv)[0], axis=1)
+        is_lost = ~has_start
+        is_lost[has_start] = ~(
+            np.linalg.norm(patch.at(uv_found[has_start])[0] - points[has_start], axis=1)
+            < MAX_MOVE_SHARE * half[has_start]
+        )
+        uv_found[is_lost] = patch.inverse(points[is_lost])
+        # an edge across a narrow tube: the nearest place to its middle may be an end, and no halving would end
+        tips = [patch.at(side[is_lost])[0] for side in (start_uv, end_uv)]
+        farther = [
+            np.max([np.linalg.norm(patch.at(uv_point)[0] - tip, axis=1) for tip in tips], axis=0)
+            for uv_point in (uv_found[is_lost], start[is_lost])
+        ]
+        halfway = (inner & has_start)[is_lost] & (farther[1] < farther[0])
+        uv_found[np.flatnonzero(is_lost)[halfway]] = start[is_lost][halfway]
+        return uv_found
+
+    def parameters(self, k: int, vertices: Array, used: Index) -> Array:
+        """Parameters (n, 2) on patch k of the vertices with the numbers `used` (n,)."""
+        patch = self.patches[k]
+        if k not in self.uv:
+            return patch.inverse(vertices[used])
+        uv_found = self.uv[k][used]
+        is_lost = ~np.isfinite(uv_found).all(axis=1)
+        uv_found[is_lost] = patch.inverse(vertices[used[is_lost]])
+        return uv_found
+
+
+class _Curves:
+    """The edges of a shape as splines, for the nearest points on them."""
+
+    def __init__(self, shape: Any, edge: float) -> None:
+        self.splines, points, spline_numbers, parameters = [], [], [], []
+        for curve in shape.Edges:
+            if curve.Degenerated or curve.Length < 1e-9:
+                continue
+            low, high = curve.ParameterRange
+            count = min(step_count(4.0 * curve.Length, edge, 32), 4000) + 1
+            t = np.linspace(low, high, count)
+            samples = np.array([tuple(curve.valueAt(parameter)) for parameter in t.tolist()])
+            spline_numbers.append(np.full(count, len(self.splines)))
+            self.splines.append(CubicSpline(t, samples))
+            points.append(samples)
+            parameters.append(t)
+        self.tree = cKDTree(np.vstack(points))
+        self.which, self.at = np.concatenate(spline_numbers), np.concatenate(parameters)
+
+    def nearest(self, points: Array) -> Array:
+        """Nearest points (n, 3) on the edges."""
+        if not len(points):
+            return points
+        nearest_sample = self.tree.query(points)[1]
+        feet = np.empty_like(points)
+        for k in np.unique(self.which[nearest_sample]):
+            on_spline = self.which[nearest_sample] == k
+            spline, t, p = self.splines[k], self.at[nearest_sample[on_spline]], points[on_spline]
+            for _ in range(STEPS):
+                point, slope, bend = (spline(t, order) for order in range(3))
+                rate = dot(slope, slope)
+                t = t + dot(p - point, slope) / np.maximum(rate - dot(p - point, bend), 0.1 * rate)
+                t = np.clip(t, spline.x[0], spline.x[-1])
+            feet[on_spline] = spline(t)
+        return feet
+
 
 ERROR = 5e-5  # mm that a patch may be off its face
 KINK = np.radians(1.0)  # a surface that turns more across a line of knots has an edge there

@@ -9,11 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.geometry.angles import TURN
-from freecad_am.core.types import Array
-
+from ...core.geometry.angles import TURN
 from ...core.geometry.walls.surface_wall import CONE, TABLE, TORUS, Placed, own_surface
 from ...core.issues import InputError, Word
+from ...core.types import Array
 
 AGREEMENT_MM = 1e-6  # mm; faces of one surface agree within this
 TABLE_ERROR = 5e-5  # mm, between the places a table was taken from

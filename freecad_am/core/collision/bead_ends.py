@@ -10,20 +10,50 @@ it had above that height, so nothing more needs an exemption, wherever the move 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import lru_cache
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from functools import cached_property, lru_cache
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from ..types import Array, Index, Mask
-from .by_numbers import ByNumbers
 from .deposit import build_deposit
 from .frustum import side_height
-from .nozzle import Nozzle, exempt_height, travelling
 from .obstacles import Obstacles
+from .scene import Nozzle, exempt_height, travelling
 from .tolerances import ABOVE_FACES, CHORD
+
+
+class ByNumbers:
+    """A dataclass (frozen, without an == of its own) that is compared by the numbers and names in its fields."""
+
+    @cached_property
+    def _numbers(self) -> Hashable:
+        return _numbers(self)
+
+    def __eq__(self, other: object) -> bool:
+        return (
+            type(self) is type(other)
+            and isinstance(other, ByNumbers)
+            and self._numbers == other._numbers
+        )
+
+    def __hash__(self) -> int:
+        return hash(self._numbers)
+
+
+def _numbers(value: object) -> Hashable:
+    """All numbers and names in a value, to be compared."""
+    if isinstance(value, np.ndarray):
+        return value.shape, value.tobytes()
+    if isinstance(value, (list, tuple)):
+        return tuple(_numbers(entry) for entry in value)
+    if is_dataclass(value):
+        return tuple(_numbers(getattr(value, entry.name)) for entry in fields(value))
+    assert isinstance(value, Hashable)
+    return value
+
 
 # length of the pieces into which the deposit is divided, mm, near nozzles and near links
 GRAIN, LINK_GRAIN = 1.5, 5.0

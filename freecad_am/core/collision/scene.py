@@ -15,19 +15,209 @@ tells by how many mm a way is clear.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
-from ..geometry.columns import lengths
+from ..geometry.columns import lengths, sides
 from ..geometry.obstacles import Body
 from ..types import Array, Index, Mask
-from .bodies import Bodies, build_bodies
 from .deposit import InParts
-from .frustum import Frustum
-from .nozzle import Nozzle
+from .frustum import Frustum, side_height
+from .inside import Inside, inside_of
 from .obstacles import Obstacles
 from .separation import middles, shortest_vectors
+from .tolerances import ABOVE_FACES, CHORD, FACES, HALFWAY
+
+PIECE = 8.0  # mm, longest edge of a triangle once it is cut up: slender triangles have large balls
+REMEMBERED = 1_000  # triangles of bodies that are kept as they are cut up
+MOST_PIECES = 60_000  # of all bodies; where there would be more, the pieces are longer
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """Triangles, and closed bodies within the reach of the solids to check; present at any moment."""
+
+    triangles: Obstacles
+    solids: tuple[Inside, ...]
+
+    def find_touching(self, solid: Frustum, tip: Array, axis: Array) -> Mask:
+        """Return whether (k,) solids with the tip (k, 3) and the unit axis (k, 3) meet a triangle or are
+        inside a closed body.
+
+        A solid that meets no triangle of a closed body is entirely inside or outside: one point of its
+        axis decides.
+        """
+        hits = self.triangles.find_touching(solid, tip, axis)
+        rows = np.flatnonzero(~hits)
+        hits[rows] = self._inside(solid.rows(rows), tip[rows], axis[rows])
+        return hits
+
+    def distance(self, solid: Frustum, tip: Array, axis: Array, reach: float) -> Array:
+        """(k,) mm from solids to the nearest body, 0 where they meet one or are inside it, at most `reach`."""
+        distances = self.triangles.distance(solid, tip, axis, reach=reach)
+        rows = np.flatnonzero(distances > 0.0)
+        distances[rows[self._inside(solid.rows(rows), tip[rows], axis[rows])]] = 0.0
+        return distances
+
+    def _inside(self, solid: Frustum, tip: Array, axis: Array) -> Mask:
+        hits = np.zeros(len(tip), dtype=bool)
+        if not self.solids or not np.any(solid.high > solid.low):
+            return hits
+        low = np.broadcast_to(solid.low, len(tip))[:, None]
+        ends = [tip + height * axis for height in (low, solid.high)]
+        for body in self.solids:
+            rows = np.flatnonzero(~hits & body.may_hold(ends[0]) & body.may_hold(ends[1]))
+            if len(rows):
+                hits[rows] = body.holds(0.5 * (ends[0][rows] + ends[1][rows]))
+        return hits
+
+
+def build_bodies(
+    bodies: Sequence[Body], around: Array, reach: float, max_edge: float = PIECE
+) -> Bodies:
+    """The triangles of bodies no farther than `reach` (mm) from the box about the points `around` (n, 3), and the inside of
+    those that are closed; a body with an opening counts by its triangles alone. max_edge: mm, the longest edge of a triangle
+    once it is cut up."""
+    if not bodies:
+        return Bodies(Obstacles(np.zeros((0, 3, 3))), ())
+    low, high = around.min(axis=0) - reach, around.max(axis=0) + reach
+    corners = np.concatenate([body.corners() for body in bodies])
+    if len(corners) <= REMEMBERED and (corners >= low).all() and (corners <= high).all():
+        triangles = _build_all(corners.tobytes(), max_edge)
+    else:
+        triangles = Obstacles(_cut_up(corners, low, high, max_edge))
+    # only a body whose box reaches as far has room for a whole nozzle about one of the points
+    nearby = [
+        body
+        for body in bodies
+        if len(body.vertices)
+        and (body.vertices.min(axis=0) <= high).all()
+        and (body.vertices.max(axis=0) >= low).all()
+    ]
+    return Bodies(triangles, tuple(solid for solid in map(inside_of, nearby) if solid is not None))
+
+
+@lru_cache(maxsize=1)
+def _build_all(corners: bytes, max_edge: float) -> Obstacles:
+    """All triangles of bodies, cut up, once for the same ones: most jobs have their platform alone, and plan and look at
+    it several times."""
+    triangles = np.frombuffer(corners).reshape(-1, 3, 3)
+    return Obstacles(_cut_up(triangles, np.full(3, -np.inf), np.full(3, np.inf), max_edge))
+
+
+def _cut_up(corners: Array, low: Array, high: Array, max_edge: float) -> Array:
+    """Triangles (m, 3, 3) in pieces, as far as these meet a box."""
+    count = len(corners)
+    while True:
+        corners = corners[_in_box(corners, low, high)]
+        edges = sides(corners)
+        # halves of the longest edges first, so that where there is no room for more the largest are cut
+        longest = np.maximum(np.maximum(edges[:, 0], edges[:, 1]), edges[:, 2])
+        long = longest > max(max_edge, 0.5 * float(longest.max(initial=0.0)))
+        if not long.any() or len(corners) + int(long.sum()) > max(MOST_PIECES, 2 * count):
+            return corners
+        corners = np.concatenate(
+            [corners[~long], _halves(corners[long], edges[long].argmax(axis=1))]
+        )
+
+
+def _in_box(corners: Array, low: Array, high: Array) -> Mask:
+    """(m,) whether the boxes of triangles (m, 3, 3) meet another one; axis by axis, in a fifth of the time of reductions."""
+    hits = np.ones(len(corners), dtype=bool)
+    for axis in range(3):
+        a, b, c = (corners[:, k, axis] for k in range(3))
+        hits &= (np.minimum(np.minimum(a, b), c) <= high[axis]) & (
+            np.maximum(np.maximum(a, b), c) >= low[axis]
+        )
+    return hits
+
+
+def _halves(corners: Array, edge: Index) -> Array:
+    """Triangles cut in two through the middle of an edge each."""
+    row = np.arange(len(corners))
+    a, b, c = (corners[row, (edge + k) % 3] for k in range(3))
+    middle = 0.5 * (a + b)
+    return np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+
+
+LEAST_UPRIGHT = 0.25  # mm that the lower side of a nozzle at least rises with a mm along its axis, where it leans
+
+
+@dataclass(frozen=True)
+class Nozzle:
+    """The same nozzle less what touches where it deposits, and less what bodies and beads are off their true places."""
+
+    bodies: Frustum
+    deposit: Frustum
+
+    @property
+    def reach(self) -> float:
+        """Largest distance of a point of the nozzle from the tip, mm."""
+        return max(self.bodies.reach, self.deposit.reach)
+
+    @property
+    def foot(self) -> float:
+        """Diameter of the lower end to check against deposit, mm: around it is the current bead."""
+        return float(np.max(2.0 * (self.deposit.radius + self.deposit.slope * self.deposit.low)))
+
+    def rows(self, index: Index) -> Nozzle:
+        """The nozzles of some of the rows, where they differ."""
+        return Nozzle(self.bodies.rows(index), self.deposit.rows(index))
+
+    def halfway(self) -> Nozzle:
+        """The nozzle to check halfway between points where it is clear."""
+        return self.larger(-HALFWAY)
+
+    def larger(self, by: float) -> Nozzle:
+        """The nozzle with its side and its upper end `by` mm farther out."""
+        return Nozzle(
+            *(
+                replace(
+                    solid,
+                    radius=solid.radius + by * np.hypot(1.0, solid.slope),
+                    high=solid.high + by,
+                )
+                for solid in (self.bodies, self.deposit)
+            )
+        )
+
+
+def exempt_height(radius: float, slope: float, bead_height: float, lean: float = 0.0) -> float:
+    """Height (mm) over the tip plane below which contact with deposit is exempt. lean: rad between tool
+    axis and build direction.
+
+    The tip is in the bead that it prints, and adjacent beads overlap that bead by intention: up to
+    the bead's height they may be around the nozzle, also below the lower side of a leaning one. The
+    minimum is the height at which the nozzle's side is one tip diameter from the tip.
+    """
+    upright = max(float(np.cos(lean) - slope * np.sin(lean)), LEAST_UPRIGHT)
+    return max(side_height(radius, slope), (bead_height + radius * float(np.sin(lean))) / upright)
+
+
+def depositing(
+    radius: float, slope: float, length: float, bead_height: float, lean: float = 0.0
+) -> Nozzle:
+    """The nozzle while it deposits: radius of its tip and length mm, slope: tangent of its half angle,
+    the height mm of the highest bead, and its intended lean, rad. Bodies are exempt only as far as
+    the nozzle touches its support.
+    """
+    return Nozzle(
+        Frustum(radius, slope, side_height(radius, slope) + ABOVE_FACES, length),
+        Frustum(radius, slope, exempt_height(radius, slope, bead_height, lean), length),
+    )
+
+
+def travelling(radius: float, slope: float, length: float, exempt: float | Array = 0.0) -> Nozzle:
+    """The nozzle on a rapid. exempt: mm over the tip that are exempt, one value or (k,), one for each
+    position: on retract and approach `exempt_height` at the deposit point less the distance of the
+    tip from it, at least 0.
+    """
+    return Nozzle(
+        Frustum(max(radius - FACES, 0.0), slope, np.maximum(exempt, FACES), length),
+        Frustum(max(radius - CHORD, 0.0), slope, np.maximum(exempt, CHORD), length),
+    )
 
 
 @dataclass(frozen=True)

@@ -8,17 +8,80 @@ loops about what would be beads in the middle. Nothing crosses; every second con
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from ..geometry.curves.plane_curve import nearest_among
 from ..geometry.regions.region import Region, along
+from ..geometry.regions.several import grow_regions, select_longer, shrink_region, subtract_regions
 from ..types import Array, Mask
-from .contours import centres, levels, rounds
-from .curve import Beads, PlaneCurve, long_enough, start_curve
+from .centre import (
+    Beads,
+    PlaneCurve,
+    centre_beads,
+    contours_of,
+    long_enough,
+    outermost,
+    start_curve,
+)
 from .rings import AdjacentRings, Ring, crossed, side_by_side
+
+
+@dataclass(frozen=True)
+class Levels:
+    """regions[k]: the regions whose borders are the contours k; gaps[k]: the open regions inside that have room for the allowed gap."""
+
+    regions: tuple[tuple[Region, ...], ...]
+    gaps: tuple[tuple[Region, ...], ...]
+    thin: list[PlaneCurve]  # beads in regions narrower than a bead
+
+
+def levels(region: Region, inner: tuple[Region, ...], beads: Beads) -> Levels:
+    """The contours of a region, each parallel to its border, not to the contour before, so that errors do not add. Short contours are
+    left out, for the beads in the middle. inner: allowed positions of bead middles.
+    """
+    half, error = 0.5 * beads.spacing, beads.chord_error
+    inner, thin = outermost(region, inner, beads)
+    regions, gaps = [], []
+    k = 0
+    while inner:
+        regions.append(inner)
+        open_ = region.grown(-beads.inset - (2 * k + 1) * half, error)
+        inner = select_longer(
+            shrink_region(region, beads.inset + (2 * k + 2) * half, error), beads.shortest
+        )
+        gaps.append(subtract_regions(open_, grow_regions(inner, half, error), beads.gap))
+        k += 1
+    return Levels(tuple(regions), tuple(gaps), thin)
+
+
+def contours(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[PlaneCurve]:
+    """Closed contours from outside in, then the beads in their middle. InfeasibleError THIN_REGION, see `Beads`."""
+    contour_levels = levels(region, inner, beads)
+    return rounds(contour_levels, beads) + centres(contour_levels, beads)
+
+
+def rounds(contour_levels: Levels, beads: Beads) -> list[PlaneCurve]:
+    """The contours, from outside in."""
+    return [
+        curve
+        for k, regions in enumerate(contour_levels.regions)
+        for curve in contours_of(regions, beads, k)
+    ]
+
+
+def centres(contour_levels: Levels, beads: Beads) -> list[PlaneCurve]:
+    """The beads in the gaps of contours, and in thin places."""
+    curves = list(contour_levels.thin)
+    for k, gaps in enumerate(contour_levels.gaps):
+        curves += [
+            start_curve(curve, beads)
+            for curve in centre_beads(gaps, beads, k + 1, contour_levels.regions[0])
+        ]
+    return curves
+
 
 REACH = 1.7  # spacings; contours farther apart are not joined
 TRIES = 64  # places at which two contours may be joined

@@ -14,8 +14,7 @@ from ..geometry.curves.plane_curve import length
 from ..geometry.regions.region import Region, measure_bands, simplified
 from ..geometry.regions.strip import Strip
 from ..types import Array
-from .curve import Beads, PlaneCurve
-from .strip_closing import near_windows
+from .centre import Beads, PlaneCurve, near_windows
 
 COARSE = 0.01  # of half a bead; finest chord error of beads round a hub
 DOT = 1e-6  # of a dot's length: the line about which its disc is drawn

@@ -6,21 +6,133 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from scipy.optimize import brentq
+
+from ..geometry.curves.plane_curve import length
+from ..geometry.regions.medial import spine_round
 from ..geometry.regions.region import Region
+from ..geometry.regions.several import grow_regions, halves
 from ..geometry.regions.strip import Strip
-from ..issues import InputError
+from ..issues import InfeasibleError, InputError
 from ..types import Array
-from .balanced_ring import balanced
-from .centre import closing_beads, open_regions
-from .connected import connect_contours
-from .contours import contours
-from .curve import Beads, PlaneCurve, long_enough
-from .lines import frame, lines
-from .sparse import Infill, sparse
+from .centre import (
+    FINE,
+    Beads,
+    PlaneCurve,
+    centre_beads,
+    closing_beads,
+    contours_of,
+    dot,
+    long_enough,
+    open_regions,
+    open_windows,
+    start_curve,
+    strip_closing,
+)
+from .connected import connect_contours, contours
+from .sparse import Infill, frame, lines, sparse
 from .spiral import spiral
-from .strip_closing import open_windows
 from .strip_lines import lines_along, lines_round
-from .strips import strip_contours
+
+AFRESH = 4  # contours made from the same borders; farther in, windows would get too narrow and errors are small yet
+
+
+def strip_contours(
+    strip: Strip, inner: tuple[Strip | Region, ...], beads: Beads
+) -> list[PlaneCurve]:
+    """Contours as in `contours`: from both borders and from the holes inwards, then beads in the gaps; one bead in the middle of a
+    strip narrower than a bead. InfeasibleError THIN_REGION if beads refuse thin regions.
+    """
+    if not inner and beads.thin == "refuse":
+        raise InfeasibleError(
+            "THIN_REGION",
+            "filling",
+            "a region around the hub is narrower than a bead ({:.3g} mm) everywhere; use thin = "
+            "single, a narrower bead or a margin",
+            2.0 * beads.inset,
+        )
+    if not inner:
+        return _centre(strip, beads, 0)
+    half, error = 0.5 * beads.spacing, beads.chord_error
+    curves: list[PlaneCurve] = []
+    start: tuple[Strip | Region, ...] = (strip,)
+    k = first_ring = 0
+    while inner:
+        curves += contours_of(inner, beads, k)
+        if k - first_ring == AFRESH:
+            start, first_ring = grow_regions(inner, -half, error), k + 1
+        k += 1
+        last_inner, inner = (
+            inner,
+            grow_regions(
+                start, -(half if first_ring else beads.inset) - 2 * (k - first_ring) * half, error
+            ),
+        )
+    for region in grow_regions(last_inner, -half, error):
+        if isinstance(region, Strip) and region.grown(-0.5 * beads.gap, error):
+            curves += _centre(region, beads, k)
+    curves = long_enough(curves, beads.shortest)
+    return curves + [
+        start_curve(curve, beads) for curve in strip_closing(strip, curves, beads, k, "centre")
+    ]
+
+
+def _centre(strip: Strip, beads: Beads, ring: int) -> list[PlaneCurve]:
+    """A bead round the hub in the middle of a thin strip."""
+    points = spine_round(
+        strip, 0.25 * beads.gap, FINE * beads.spacing, beads.chord_error, beads.spacing
+    )
+    if points is None:  # somewhere too narrow for a bead
+        return centre_beads(halves(strip), beads, ring, ())
+    return [
+        PlaneCurve(
+            points[:: -1 if beads.clockwise else 1],
+            True,
+            "centre",
+            ring,
+            -1 if beads.clockwise else 1,
+        )
+    ]
+
+
+LESS = 0.98  # of the area of a region; what feeds less is not enough
+EXACT = 1e-4  # of half a bead's width
+
+
+def balanced(region: Region, curves: Sequence[PlaneCurve], beads: Beads) -> list[PlaneCurve]:
+    """The curves that fill a region, or one ring instead of a single curve no farther from the middle than it is wide that feeds too
+    little; a dot if that ring is too short for a bead.
+    """
+    if len(curves) > 1 or any(curve.dot for curve in curves) or len(region.borders()) > 1:
+        return list(curves)
+    fed = sum(2.0 * beads.inset * length(curve.points, curve.closed) for curve in curves)
+    if region.area > math.pi * (2.0 * beads.inset) ** 2 or fed >= LESS * region.area:
+        return list(curves)
+    if not region.grown(-beads.inset, beads.chord_error):
+        return list(curves)  # narrower than a bead, which has rules of its own
+    ring = _ring(region, beads)
+    if ring is None:
+        return list(curves)
+    if length(ring, True) < beads.shortest:
+        return [dot(region, beads)]
+    return [start_curve(PlaneCurve(ring, True, "contour", 0, dot=True), beads)]
+
+
+def _ring(region: Region, beads: Beads) -> Array | None:
+    """The parallel curve (n, 2) inside the border of a region that feeds its area; None unless it is one piece."""
+
+    def inside(depth: float) -> Array | None:
+        regions = region.grown(-depth, beads.chord_error)
+        return regions[0].borders()[0] if len(regions) == 1 else None
+
+    def lacking(depth: float) -> float:
+        border = inside(depth)
+        return 0.0 if border is None else region.area - 2.0 * beads.inset * length(border, True)
+
+    if not lacking(0.0) < 0.0 < lacking(beads.inset):
+        return None
+    return inside(float(brentq(lacking, 0.0, beads.inset, xtol=EXACT * beads.inset)))
+
 
 PATTERNS = (
     "contours",

@@ -14,10 +14,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.plane_curve import arcs, dense, divided_by_step, nearest_among
-from ..geometry.regions.region import DIGITS, WIDTH, Region
-from ..geometry.regions.telling import select_significant
+from ..geometry.regions.region import DIGITS, WIDTH, Region, select_significant
 from ..types import Array, Index, Mask
-from .curve import Beads, PlaneCurve
+from .centre import Beads, PlaneCurve
 
 THICKNESS_MARGIN = 1.002  # of the thickness, in addition to the error of its measure: a contour in the middle is not a thin loop
 PLACES = 0.25  # of the spacing, distance between samples of widths

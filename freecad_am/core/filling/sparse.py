@@ -3,16 +3,245 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from ..geometry.regions.region import Region
-from ..geometry.regions.several import grow_regions, select_wider, shrink_region, subtract_regions
-from .centre import closing_beads
-from .curve import Beads, PlaneCurve, contours_of
-from .lattice import families, gyroid, honeycomb
-from .lines import Frame, rows
+import numpy as np
+
+from ..geometry.curves.plane_curve import rotate_points
+from ..geometry.regions.region import Region, simplified
+from ..geometry.regions.several import (
+    grow_regions,
+    select_longer,
+    select_wider,
+    shrink_region,
+    subtract_regions,
+)
+from ..geometry.step_count import round_down, round_up, step_count
+from ..types import Array
+from .centre import Beads, PlaneCurve, closing_beads, contours_of, outermost
 from .zigzag import in_rows
+
+FAMILIES = {"lines": 1, "zigzag": 1, "grid": 2, "triangles": 3}  # of parallel lines, evenly turned
+GYROID_LENGTH = 15.449443  # mean length of the sections of a unit gyroid (2 pi wide), within its square of 4 pi^2
+SHARPEST = 6.0  # factor of the chords per period of the gyroid, the root of period by chord error, before simplification
+ROUNDING = 3e-12  # of the largest coordinate
+
+
+def families(
+    region: Region, pattern: str, spacing: float, density: float, angle: float
+) -> Iterator[list[list[Array]]]:
+    """Family by family of the straight patterns, row by row the pieces (2, 2) of lines in a region, at an angle, rad."""
+    count = FAMILIES[pattern]
+    for number in range(count):
+        yield straight(region, count * spacing / density, angle + number * math.pi / count)
+
+
+def straight(region: Region, period: float, angle: float) -> list[list[Array]]:
+    """Pieces (2, 2) of the lines at whole periods (mm) from the origin, at an angle, rad, in a region; row by row."""
+    borders = [rotate_points(border, -angle) for border in region.borders()]
+    low, high = float(borders[0][:, 1].min()), float(borders[0][:, 1].max())
+    rows_ = []
+    for k in range(round_up(low / period), round_down(high / period) + 1):
+        x = crossings(borders, k * period)
+        ends = np.stack([x, np.full(len(x), k * period)], axis=1).reshape(-1, 2, 2)
+        rows_.append(
+            [rotate_points(segment, angle) for segment in ends if segment[1, 0] > segment[0, 0]]
+        )
+    return rows_
+
+
+def crossings(borders: list[Array], level: float) -> Array:
+    """Where borders (n, 2) cross a height, ascending; an even number. Points at that height within rounding errors count as below
+    it, so that a border along it is on the same side whatever its last bits.
+    """
+    positions = []
+    for border in borders:
+        following = np.roll(border, -1, axis=0)
+        below = border[:, 1] <= level + ROUNDING * float(np.abs(border).max())
+        k = np.flatnonzero(below != np.roll(below, -1))
+        a, b = border[k], following[k]
+        share = np.clip((level - a[:, 1]) / (b[:, 1] - a[:, 1]), 0.0, 1.0)
+        positions.append(a[:, 0] + share * (b[:, 0] - a[:, 0]))
+    return np.sort(np.concatenate(positions))
+
+
+def honeycomb(region: Region, spacing: float, density: float, angle: float) -> list[Array]:
+    """Lines (n, 2) that bound hexagons about the region: two lines along the same side are a spacing apart.
+
+    A side of a mm, flat ones and slanted ones in turn: 4 a of bead on 3 a of line, lines a sqrt(3) / 2 + spacing apart.
+    """
+    side = (4.0 / (3.0 * density) - 1.0) * spacing * 2.0 / math.sqrt(3.0)
+    slant = 0.5 * math.sqrt(3.0) * side
+    period, row_distance = 3.0 * side, slant + spacing
+    (left_edge, low), (right, high) = _box(region, angle)
+    cells = np.arange(math.floor(left_edge / period) - 1, math.ceil(right / period) + 1)
+    corners = np.array([[0.0, 0.0], [side, 0.0], [1.5 * side, slant], [2.5 * side, slant]])
+    line = (corners + period * np.stack([cells, 0.0 * cells], axis=1)[:, None]).reshape(
+        -1, 2
+    ) - np.array([0.0, 0.5 * slant])
+    lines = []
+    for k in range(math.floor(low / row_distance) - 1, math.ceil(high / row_distance) + 2):
+        mirrored = line * np.array([1.0, -1.0 if k % 2 else 1.0]) + np.array(
+            [0.0, k * row_distance]
+        )
+        lines.append(rotate_points(mirrored, angle))
+    return lines
+
+
+def gyroid_period(spacing: float, density: float) -> float:
+    """Period, mm, of a gyroid whose sections have the requested density in the mean over the heights."""
+    return GYROID_LENGTH * spacing / (2.0 * math.pi * density)
+
+
+def gyroid(
+    region: Region, spacing: float, density: float, angle: float, height: float, chord_error: float
+) -> list[Array]:
+    """The section at a height (mm) of sin x cos y + sin y cos z + sin z cos x = 0 as lines (n, 2) about a region.
+
+    For a given z each line is a function of x, or of y, whichever its normal is nearer to: A cos y + B sin y = C is solved
+    for y, so that points are exactly on the surface. Lines meet only where z is an odd multiple of pi / 4.
+    """
+    unit = gyroid_period(spacing, density) / (2.0 * math.pi)
+    z = height / unit
+    low, high = (edge / unit for edge in _box(region, angle))
+    of_x = math.cos(z) ** 2 >= 0.5
+    along, across = (0, 1) if of_x else (1, 0)
+    step = (
+        2.0
+        * math.pi
+        / (4 * math.ceil(0.25 * math.sqrt(SHARPEST * 2.0 * math.pi * unit / chord_error)))
+    )
+    t = step * np.arange(math.floor(low[along] / step) - 1, math.ceil(high[along] / step) + 2)
+    if of_x:
+        a, b, c = np.sin(t), np.full(len(t), math.cos(z)), -math.sin(z) * np.cos(t)
+    else:
+        a, b, c = np.full(len(t), math.sin(z)), np.cos(t), -math.cos(z) * np.sin(t)
+    middle = np.unwrap(np.arctan2(b, a))
+    half = np.arccos(np.clip(c / np.hypot(a, b), -1.0, 1.0))
+    lines = []
+    first_turn = math.floor((low[across] - float(middle.max())) / (2.0 * math.pi)) - 1
+    last_turn = math.ceil((high[across] - float(middle.min())) / (2.0 * math.pi)) + 1
+    for turn in range(first_turn, last_turn + 1):
+        for branch in (middle - half, middle + half):
+            value = branch + 2.0 * math.pi * turn
+            flat = np.stack([t, value] if of_x else [value, t], axis=1) * unit
+            lines.append(rotate_points(simplified(flat, chord_error), angle))
+    return lines
+
+
+def _box(region: Region, angle: float) -> tuple[Array, Array]:
+    """Lowest and highest coordinates (2,) of a region in axes turned by an angle, rad."""
+    border = rotate_points(region.borders()[0], -angle)
+    return border.min(axis=0), border.max(axis=0)
+
+
+LINK_INSET_SPACINGS = 0.4  # of the spacing; a link on the edge of a contour's bead is half on it, one at 0.5 leaves its corners open
+MAX_NARROWING, MAX_WIDENING = (
+    0.01,
+    0.002,
+)  # of the spacing; lines are moved no more than that so that they come out even
+
+
+class Frame(NamedTuple):
+    """Room for lines. curves: the contours round the lines, if any; regions: the borders between which lines are spread; ends: the
+    regions that lines run through, which reach onto the contour; thin: beads in regions narrower than a bead.
+    """
+
+    curves: list[PlaneCurve]
+    regions: tuple[Region, ...]
+    ends: tuple[Region, ...]
+    thin: list[PlaneCurve]
+
+
+def frame(region: Region, inner: tuple[Region, ...], beads: Beads, walls: int) -> Frame:
+    """The room for lines: half a bead inside the border, or a spacing inside of the last of `walls` contours deposited first, on
+    which they end. inner: allowed positions of bead middles.
+    """
+    half, error = 0.5 * beads.spacing, beads.chord_error
+    inner, thin = outermost(region, inner, beads)
+    if not walls or not inner:
+        return Frame([], inner, inner, thin)
+    curves = []
+    for k in range(walls):
+        if k:
+            inner = select_longer(
+                shrink_region(region, beads.inset + 2 * k * half, error), beads.shortest
+            )
+        curves += contours_of(inner, beads, k)
+        if not inner:
+            break
+    return Frame(
+        curves, grow_regions(inner, -2.0 * half, error), grow_regions(inner, -half, error), thin
+    )
+
+
+def lines(
+    framed: Frame, beads: Beads, angle: float, walls: int, longest_link: float | None
+) -> list[PlaneCurve]:
+    """Lines at an angle (rad) within a frame of `walls` contours, every other one reversed.
+
+    First and last line are half a bead inside the border (with walls: a spacing inside of the last), and the rest at the spacing
+    from these. If the breadth is not a multiple of the spacing the lines move evenly by at most MAX_NARROWING and MAX_WIDENING;
+    otherwise the remainder is in the middle and has its own line. With walls, lines end on the last.
+
+    longest_link: mm; lines are linked to zigzags along the border of the beads' room, so that no link is outside; next to contours
+    links are inside of their beads, to reduce over-deposition. None: no line is linked.
+    """
+    inside = LINK_INSET_SPACINGS * beads.spacing if walls else 0.0
+    return in_rows(rows(framed, beads, angle), framed.ends, beads, walls, longest_link, inside)
+
+
+def rows(framed: Frame, beads: Beads, angle: float) -> list[list[Array]]:
+    """Level by level the segments (2, 2) of lines, all in the direction of the angle (rad)."""
+    if (
+        not framed.regions or not framed.ends
+    ):  # too narrow for lines; such regions get beads along their middle
+        return []
+    borders = [
+        rotate_points(border, -angle) for region in framed.ends for border in region.borders()
+    ]
+    height = np.concatenate(
+        [rotate_points(region.borders()[0], -angle)[:, 1] for region in framed.regions]
+    )
+    rows_ = []
+    for level in levels_between(float(height.min()), float(height.max()), beads):
+        x = crossings(borders, level)
+        ends = np.stack([x, np.full(len(x), level)], axis=1).reshape(-1, 2, 2)
+        rows_.append(
+            [rotate_points(segment, angle) for segment in ends if segment[1, 0] > segment[0, 0]]
+        )
+    return rows_
+
+
+def levels_between(low: float, high: float, beads: Beads) -> Array:
+    """Heights of lines from `low` to `high`, see `lines`."""
+    spacing, breadth = beads.spacing, high - low
+    hair = 1e-7 * spacing + 1e-12 * max(
+        abs(low), abs(high)
+    )  # lines along the border cross it for sure
+    if breadth <= 4.0 * hair:
+        return np.array([0.5 * (low + high)])
+    count = step_count(breadth, (1.0 + MAX_WIDENING) * spacing)
+    if breadth / count >= (1.0 - MAX_NARROWING) * spacing:
+        levels = np.linspace(low, high, count + 1)
+    else:
+        count_ = round_down(breadth / spacing)
+        below, above = (count_ + 2) // 2, (count_ + 1) // 2
+        low_levels, high_levels = (
+            low + spacing * np.arange(below),
+            high - spacing * np.arange(above)[::-1],
+        )
+        levels = (
+            np.r_[low_levels, 0.5 * (low_levels[-1] + high_levels[0]), high_levels]
+            if len(high_levels)
+            else np.array([low, high])
+        )
+    clipped: Array = np.clip(levels, low + hair, high - hair)
+    return clipped
+
 
 SPARSE = ("contours", "lines", "zigzag", "grid", "triangles", "honeycomb", "gyroid")
 LEAST_HEIGHT = 2.0  # spacings; where less is between tops and bottoms beads cover the whole

@@ -11,9 +11,8 @@ import numpy as np
 from ..geometry.curves.plane_curve import cut_at_length, doubled_area, length, nearest, start_at
 from ..geometry.regions.region import Region
 from ..types import Array
-from .centre import closing_beads
-from .contours import centres, levels
-from .curve import Beads, PlaneCurve, long_enough
+from .centre import Beads, PlaneCurve, closing_beads, long_enough
+from .connected import centres, levels
 
 PROBES = 64  # samples of a ring in the search for its neighbours
 PARALLEL_GAP = (

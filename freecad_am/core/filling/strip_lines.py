@@ -15,9 +15,8 @@ from ..geometry.regions.several import grow_regions
 from ..geometry.regions.strip import Strip
 from ..geometry.step_count import round_down, round_up, step_count
 from ..types import Array, Mask
-from .curve import Beads, PlaneCurve, contours_of, long_enough
-from .lines import levels_between
-from .strip_closing import strip_closing
+from .centre import Beads, PlaneCurve, contours_of, long_enough, strip_closing
+from .sparse import levels_between
 
 PROBE, HALVES = (
     0.1,

@@ -10,7 +10,7 @@ import numpy as np
 from ..geometry.curves.plane_curve import length, nearest
 from ..geometry.regions.region import Region, simplified
 from ..types import Array
-from .curve import Beads, PlaneCurve
+from .centre import Beads, PlaneCurve
 
 LINK = 3.0  # of the spacing
 BOWED = 1.02  # of the straight way between its ends; a longer link stays on the border, for farther in it might leave it

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.profile import RevolvedWall
-from ..geometry.mesh.facets import doubled_areas
+from ..geometry.mesh.collapsed import doubled_areas
 from ..geometry.on_hub import SolidsOnHub
 from ..geometry.walls.patch_wall import PatchWall
 from ..geometry.walls.surface import dot

@@ -30,7 +30,7 @@ from .arrangement import OF_ROBOTS, arrangement_of
 from .cell import Cell, resolve
 from .inverse import opw
 from .limits import margins
-from .links import cylinders as link_cylinders
+from .links import external_links
 from .links.contact import ArmContact
 from .machines import machine as machines
 
@@ -95,7 +95,7 @@ def search_cell(
         leanings = [
             _directions(LEANING[:steepest], ROUND) for steepest in range(len(LEANING), 0, -1)
         ]
-    cylinders = link_cylinders.robot_cylinders(cell.robot.chain)
+    cylinders = external_links.robot_cylinders(cell.robot.chain)
     for touched in (cylinders, ()):
         for axes in leanings:
             best = _best(cell, axes, branches, touched)

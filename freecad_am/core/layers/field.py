@@ -10,18 +10,16 @@ from ..geometry.curves.guide import Guide
 from ..geometry.developable import Developable
 from ..geometry.on_hub import Group, SolidsOnHub
 from ..parameters.filled import DevelopableParameters, FilledParameters, SolidParameters
-from ..slicing.solids.equidistant import Facets
+from ..slicing.solids.equidistant import Facets, cut
 from ..slicing.solids.plane_sections import PlaneCuts
-from ..slicing.solids.unrolled import cut
 from ..types import Array
 from .along import field as along
 from .along.field import AlongCuts
 from .curved import field as curved
-from .over_and_under import mark_buried, report_overhangs
 from .planes import field as planes
-from .planes.layer import PlaneLayer
+from .planes.field import PlaneLayer
 from .rotary import field as rotary
-from .surface import Slice
+from .surface import Slice, mark_buried, report_overhangs
 
 
 class Stack(NamedTuple):

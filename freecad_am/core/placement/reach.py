@@ -14,8 +14,8 @@ from ..geometry import frames
 from ..geometry.angles import TURN
 from ..geometry.step_count import step_count
 from ..kinematics.cell import Cell
-from ..planning.limit_rows import LimitRows, limit_rows
 from ..planning.plan import Progress
+from ..planning.task import LimitRows, limit_rows
 from ..types import Array
 
 DIRECTIONS, TURNS = 32, 12  # unit vectors that are tried, and rotations about each

@@ -10,8 +10,7 @@ import numpy as np
 from ..parameters.cell import Pose
 from ..parameters.external import PART, externals
 from ..parameters.place import PLATFORM, POINT
-from .moved import outer
-from .place import Placed
+from .place import Placed, outer
 
 HEAD = (
     "x_mm",

@@ -21,9 +21,8 @@ from . import nozzle_obstacles
 from .arm.kept import Cylinders
 from .beads.retreat import turns_back
 from .joint_path import BeadPath, JointPath
-from .rapids.findings import findings
-from .rapids.retract_ways import Leg
-from .rapids.ways import RapidWays, Way
+from .rapids.retracts import Leg
+from .rapids.ways import RapidWays, Way, findings
 
 RAPID_SHARE = 0.8  # of an axis's largest speed that a rapid move may ask for
 OF_ALL = ("layer", "bead", "bead_class")  # what is the same for all rows of a part

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..collision.nozzle import depositing
-from ..collision.scene import scene
+from ..collision.scene import depositing, scene
 from ..geometry import frames
 from ..issues import ERROR, Issue, Text, Word
 from ..kinematics.cell import Cell

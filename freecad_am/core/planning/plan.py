@@ -15,7 +15,7 @@ from ..kinematics.inverse import opw
 from ..parameters.cell import NO_SHAPE
 from ..parameters.joints import OF_CELL, JointParameters
 from ..toolpath import Bead, Toolpath
-from . import comparison
+from . import criteria
 from .arm import clear as arm_clear
 from .arm.kept import ArmKept, Cylinders, build_arm_clearance
 from .beads import phases
@@ -24,8 +24,7 @@ from .beads.overlap import extend_past_seam
 from .beads.retreat import go_back
 from .beads.speeds import corners_slowed, rings_slowed, too_fast
 from .certificate import closing
-from .external import rule as external_rule
-from .external import track
+from .external import optimised, track
 from .external.level import ways
 from .findings import findings, out_of_reach
 from .joint_path import BeadPath, JointPath
@@ -161,7 +160,7 @@ def _in_branches(
 ) -> JointPath:
     """The joint path, external axes as the beads have them, in the first of the branches that serves."""
     (beads, bead_ids), cell, parameters = placed, base_task.cell, base_task.parameters
-    together, notes = external_rule.asked(parameters, cell)
+    together, notes = optimised.asked(parameters, cell)
     task = dataclasses.replace(base_task, branch=branches[0])
     paths, issues = _planned(task, beads, bead_ids, progress)
     failed = _failed(paths, issues, bead_ids)
@@ -348,7 +347,7 @@ def _optimise_external(
         finished, issues_found = _finished(task, paths)
         return finished, first_issues + issues_found
 
-    return external_rule.choose_better(
+    return optimised.choose_better(
         task,
         level,
         planned,
@@ -430,7 +429,7 @@ def _compared(
     return {
         "method": method,
         "feasible": not has_errors(issues),
-        **comparison.figures(compared_task, paths),
+        **criteria.figures(compared_task, paths),
         "planning_time_s": time.perf_counter() - started,
         "issues": [issue.as_dict() for issue in issues if issue.level != WARNING][:20],
     }

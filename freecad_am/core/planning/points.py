@@ -11,7 +11,7 @@ import numpy as np
 
 from ..geometry.angles import TURN, shortest
 from ..kinematics.cell import Cell
-from ..kinematics.pose_frames import PoseFrames
+from ..kinematics.limits import PoseFrames
 from ..toolpath import Bead
 from ..types import Array, Integers, Mask
 

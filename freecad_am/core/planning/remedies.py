@@ -23,8 +23,8 @@ from . import other_cells
 from .beads.speeds import share_of_speed
 from .external import remedies as external_remedies
 from .joint_path import JointPath
+from .other_cells import POINTS, Tried, some_of
 from .plan import Progress
-from .tried import POINTS, Tried, some_of
 
 REMEDY, NO_REMEDY = "REMEDY", "NO_REMEDY"
 CHANGES = 16  # that are tried, about

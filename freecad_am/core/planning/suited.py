@@ -17,9 +17,9 @@ from ..parameters.cell import CellParameters
 from ..toolpath import Toolpath
 from . import other_cells
 from .external.remedies import NOT_LEVEL
+from .other_cells import LAYERS, POINTS, Tried
 from .plan import Progress
 from .remedies import LONGEST_SEARCH
-from .tried import LAYERS, POINTS, Tried
 
 
 def suited(job: Tried, progress: Progress, failed_layers: Collection[int] = ()) -> CellParameters:

@@ -10,12 +10,12 @@ from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..parameters.process import ProcessParameters
 from ..process.deposit.balance import Balance
-from ..simulation.arm import ArmTouches
 from ..simulation.rapid_look import RapidsLooked
+from ..simulation.watch import ArmTouches
 from ..strategies.clearance.look import Looked
 from ..toolpath import Toolpath
 from ..types import Array
-from . import clearance, deposit, joints, payload, written
+from . import clearance, deposit, payload, written
 from .promise import Promise
 from .written import ReadBack
 
@@ -85,7 +85,7 @@ def _motion_promises(evidence: Evidence) -> list[Promise]:
     ):
         return [Promise(what, "not checked: there is no joint path", None) for what in OF_MOTION]
     return [
-        *joints.promises(motion, cell, evidence.condition, evidence.threshold),
+        *clearance.promises(motion, cell, evidence.condition, evidence.threshold),
         clearance.rapids(evidence.issues, rapids),
         clearance.arm(motion, cell, evidence.arm, evidence.true_shapes),
         *clearance.external_links(

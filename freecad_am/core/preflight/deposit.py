@@ -11,9 +11,9 @@ from ..geometry.fitted import REMAINS
 from ..issues import WARNING, Issue, Text
 from ..parameters.process import ProcessParameters
 from ..process.deposit import balance as deposit_balance
-from ..process.deposit import layer_heights, on_part, spacing, support
+from ..process.deposit import on_part, spacing, support
 from ..process.deposit.balance import MM3, Balance
-from ..process.model import wire, wire_taken
+from ..process.model import wire
 from ..toolpath import Toolpath
 from ..types import Array
 from .promise import PERCENT, Place, Promise, issue_place, select_issues
@@ -30,7 +30,7 @@ def layers(
     what = "Layers are one layer height apart"
     how = "distance in space of each point to the layer below, against what the strategy allows"
     if toolpath.filled and not spacing.is_plane(toolpath):
-        known_distances = layer_heights.over_layers(toolpath)
+        known_distances = on_part.over_layers(toolpath)
         how = "height of each point over the nearest place of the layer below, along the build direction there"
     distances = [
         values
@@ -211,14 +211,14 @@ def wire_feed(toolpath: Toolpath, process: ProcessParameters) -> Promise:
     mismatches = [
         (off, Place(int(numbers[layer]), bead, None))
         for feature_toolpath, numbers in features
-        if (largest_mismatch := wire_taken.off_most(feature_toolpath, process))
+        if (largest_mismatch := wire.off_most(feature_toolpath, process))
         for off, layer, bead in [largest_mismatch]
     ]
     schedule_classes = sorted(
         {
             name
             for feature_toolpath, _ in features
-            for name in wire_taken.by_schedules(feature_toolpath, process)
+            for name in wire.by_schedules(feature_toolpath, process)
         }
     )
     off, where = max(mismatches, key=lambda mismatch: mismatch[0], default=(0.0, None))

@@ -20,7 +20,7 @@ from ..motion import Motion
 from ..parameters.process import ProcessParameters
 from ..toolpath import Toolpath
 from ..types import Array
-from .deposit import volumes
+from .timeline import volumes
 
 CODE = "PAYLOAD"
 KG = 1e-6  # of a mm3 at 1 g/cm3

@@ -8,12 +8,65 @@ side the linear axes really carry; the drawing shows fixed table bearings and a 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ..geometry import frames
+from ..kinematics.cell import Cell
 from ..kinematics.chain import Chain
+from ..kinematics.inverse.five_axis import TURNING, FiveAxis
 from ..kinematics.links.solids import BRIGHT, DARK, Solid, box, capsule, cylinder
-from ..types import Array
+from ..motion import Motion
+from ..types import Array, ArrayLike, Index
+
+MIN_HEIGHT_MM = 1e-3  # mm; what ends below its path is drawn as lying on it
+
+
+def heights(deposited: Array, position: Array, layer: Index) -> Array:
+    """(n,) mm above points (n, 3) of layers (n,) at which the surface of a deposit is: that of the nearest piece of the same
+    layer. laid: (m, 5) places of pieces, their layers, and mm of the surface above them. NaN in layers without pieces."""
+    surface_heights = np.full(len(position), np.nan)
+    piece_layers = deposited[:, 3].astype(np.intp)
+    for number in np.unique(layer).tolist():
+        piece_rows, point_rows = (
+            np.flatnonzero(piece_layers == number),
+            np.flatnonzero(layer == number),
+        )
+        if len(piece_rows):
+            nearest = np.asarray(cKDTree(deposited[piece_rows, :3]).query(position[point_rows])[1])
+            surface_heights[point_rows] = np.maximum(
+                deposited[piece_rows[nearest], 4], MIN_HEIGHT_MM
+            )
+    return surface_heights
+
+
+@dataclass(frozen=True, eq=False)
+class Rates:
+    """Columns (n, axes) of the n rows of a motion, rad or mm per s, s^2 and s^3; NaN in rapid moves and where unreachable.
+
+    speed: mean over the segment that ends at the row. acceleration: at the row, from the segment before it to that after it,
+    NaN at both ends of a bead. jerk: from the row before to the row.
+    """
+
+    speed: Array
+    acceleration: Array
+    jerk: Array
+
+
+def rates(motion: Motion) -> Rates:
+    """The rates of a motion at the speed that is asked for."""
+    within = motion.deposit & (motion.point > 0) & (motion.duration > 0.0)
+    time = np.where(within, motion.duration, np.nan)[:, None]
+    speed = np.diff(motion.joints, axis=0, prepend=motion.joints[:1]) / time
+    # rows of a bead are consecutive and the first is NaN, so differences across its ends are NaN
+    between = 0.5 * (time[:-1] + time[1:])
+    acceleration, jerk = np.full_like(speed, np.nan), np.full_like(speed, np.nan)
+    acceleration[:-1] = np.diff(speed, axis=0) / between
+    jerk[1:-1] = np.diff(acceleration[:-1], axis=0) / (0.5 * (between[:-1] + between[1:]))
+    return Rates(speed, acceleration, jerk)
+
 
 # mm: radius of the table where nothing lies on it, and of the head's joints
 RADIUS = 130.0
@@ -145,3 +198,69 @@ def _cradle(
             )
         )
     return np.asarray(lowest)
+
+
+# rotations about the nozzle that are looked at for a robot at rest
+_ROTATIONS = 24
+
+
+@dataclass(frozen=True, eq=False)
+class Placing:
+    """Poses in the world, mm. links: (axes + 1, 4, 4), the robot's own. part: (4, 4), its own coordinates. nozzle: (4, 4),
+    the tip, its Z pointing into the nozzle. platform: (4, 4), what the part stands on. external_links: (k, 4, 4), the links of
+    positioner and track that are known."""
+
+    links: Array
+    part: Array
+    nozzle: Array
+    platform: Array
+    external_links: Array
+
+
+def placing(cell: Cell, joints: ArrayLike) -> Placing:
+    """Where links, part and nozzle are for a joint vector (axes,)."""
+    chain, values = cell.robot.chain, np.asarray(joints, float)
+    links = cell.links(values)
+    flange = links[-1] @ chain.flange
+    carried = flange @ cell.carried
+    on_robot = not cell.torch_stands
+    platform = cell.station if on_robot else carried
+    nozzle = carried @ frames.pose(frames.about_x(np.pi), np.zeros(3)) if on_robot else cell.station
+    stands = links[standing_link(chain)]
+    if cell.external is not None:
+        stands = cell.world(values[None])[0] @ frames.inverse(cell.robot.base)
+    to_world = frames.inverse(stands)
+    return Placing(
+        links=to_world @ links,
+        part=to_world @ platform @ frames.inverse(cell.mount),
+        nozzle=to_world @ nozzle,
+        platform=to_world @ platform,
+        external_links=to_world @ cell.external_link_frames(values[None])[0],
+    )
+
+
+def at_rest(cell: Cell, point: ArrayLike) -> Array:
+    """(axes,) joints with which the nozzle stands upright, by the platform, on a point (3,) of the part.
+
+    A robot takes the rotation and branch with the most room to its limits; all axes are 0 where it does not reach. Turning
+    axes of a machine with rotary axes are at 0.
+    """
+    target, chain = np.asarray(point, float), cell.machine.chain
+    if not cell.machine.free:
+        on_flange, _ = cell.to_flange(target[None], cell.mount[None, :3, 2])
+        return np.asarray(
+            FiveAxis(chain).place_points(np.zeros((1, TURNING)), on_flange, cell.station)[0]
+        )
+    arm = cell.robot.arm
+    assert arm is not None  # a cell has no other robots
+    rotations = np.linspace(0.0, 2.0 * np.pi, _ROTATIONS, endpoint=False)
+    external = np.zeros((_ROTATIONS, chain.axes))
+    targets, axes = np.tile(target, (_ROTATIONS, 1)), np.tile(cell.mount[:3, 2], (_ROTATIONS, 1))
+    flange = cell.flange_poses(targets, axes, rotations, external)
+    branches = range(8) if cell.branch is None else (cell.branch,)
+    solutions = np.concatenate([arm.inverse_branch(flange, branch) for branch in branches])
+    solutions = np.arctan2(np.sin(solutions), np.cos(solutions))
+    solutions = np.pad(solutions, ((0, 0), (0, chain.axes - solutions.shape[1])))
+    margin = np.nan_to_num(cell.limits.smallest(solutions).margin, nan=-np.inf)
+    best = int(np.argmax(margin))
+    return np.asarray(solutions[best]) if np.isfinite(margin[best]) else np.zeros(chain.axes)

@@ -10,8 +10,7 @@ import numpy as np
 from ..motion import Motion
 from ..parameters.process import ProcessParameters
 from ..toolpath import Toolpath
-from .deposit import fed_volume, volumes
-from .timeline import Timeline
+from .timeline import Timeline, fed_volume, volumes
 
 MM3_PER_CM3 = 1000.0
 

@@ -12,7 +12,22 @@ import numpy as np
 from scipy.sparse import csc_matrix, diags, identity
 from scipy.sparse.linalg import splu
 
+from ..issues import InputError
+from ..parameters.strategy import MOST_LAYERS
 from ..types import Array
+
+
+def refuse_too_many(layers: int, height: float, label: str) -> None:
+    """InputError LAYER_HEIGHT once there are as many layers as may be."""
+    if layers >= MOST_LAYERS:
+        raise InputError(
+            "LAYER_HEIGHT",
+            label,
+            "more than {} layers of {:g} mm: use a larger layer height",
+            MOST_LAYERS,
+            height,
+        )
+
 
 WEIGHTS = 10.0 ** np.arange(-2, 10)  # of smoothness against the exact distance
 HEAVY = 7  # from this weight on the turn is much less, or the band stops it: GAIN by IDLE more is what a search goes on for

@@ -6,12 +6,24 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from ..geometry.implicit import Implicit
+from ..geometry.columns import Implicit
+from ..geometry.curves.space_curve import SpaceCurve
 from ..geometry.walls.surface import Surface, dot
 from ..issues import InputError
 from ..types import Array
-from .refinement import ROUNDS, finer_grid
-from .tubes.wall_layer import WallLayer
+from .tubes.smooth_spacing import WallLayer
+
+TOLERANCE_MM = 1e-5  # mm; a tenth of the tolerance at the points; it bounds interpolation_error
+MIN_ARC_SHARE = 1e-5  # of the period; no arc is halved below this
+ROUNDS = 14
+
+
+def finer_grid(curve: SpaceCurve, within: float = TOLERANCE_MM) -> Array:
+    """Parameters in the middle of the arcs that are off by more than `within` mm."""
+    coarse = (curve.interpolation_error() > within) & (curve.span > MIN_ARC_SHARE * curve.period)
+    middle: Array = curve.w[:-1][coarse] + 0.5 * curve.span[coarse]
+    return middle
+
 
 SCAN = 200  # samples along each line v = const that are tested for inside and outside
 HALVINGS = 60

@@ -16,10 +16,9 @@ from ..process.model.bead_model import BeadModel
 from ..process.order import IslandOrder, RankedBead, add_waits, order_beads
 from ..toolpath import Bead, Toolpath
 from .progress import Progress, silent
-from .solids.beads import MadeBead, bead_of
+from .solids.beads import MadeBead, bead_of, layer_volumes, twice_volume
 from .solids.filling import Pictures, bead_width, over_fed, spaced
 from .solids.notes import notes
-from .solids.volumes import layer_volumes, twice_volume
 
 REPORTED_DISTORTION = 0.02  # distortion that is reported
 

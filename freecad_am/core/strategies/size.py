@@ -15,11 +15,11 @@ from scipy.spatial import cKDTree
 
 from ..geometry.curves.profile import RevolvedWall
 from ..geometry.formatting import at_least, count
-from ..geometry.mesh.facets import doubled_areas
+from ..geometry.mesh.collapsed import doubled_areas
 from ..geometry.mesh.solid import SolidMesh
 from ..geometry.on_hub import SolidsOnHub
 from ..issues import NOTE, InputError, Issue, Text, Word
-from ..layers.curved.grid import step_of
+from ..layers.curved.field import step_of
 from ..parameters.filled import GEODESIC, OFFSET, CladdingParameters, FilledParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import (

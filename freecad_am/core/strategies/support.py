@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..geometry.curves.guide import Guide
-from ..geometry.mesh.facets import doubled_areas
+from ..geometry.mesh.collapsed import doubled_areas
 from ..geometry.mesh.solid import Search, SolidMesh
 from ..geometry.obstacles import Body
 from ..geometry.on_hub import Base, SolidsOnHub

@@ -17,7 +17,7 @@ from PySide import QtCore, QtGui
 
 from ...objects.work import progress
 from ..signals import connect
-from ..texts.translation import tr, translated
+from ..texts.in_language import tr, translated
 from .worker import Worker
 
 NAME = "RoboticAM_Progress"

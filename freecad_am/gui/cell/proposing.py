@@ -14,17 +14,29 @@ from ...core.issues import AmError, InputError
 from ...core.kinematics.arrangement import arrangement_of
 from ...core.kinematics.machines.machine import Machine
 from ...core.kinematics.proposed_cell import cell_of
+from ...core.kinematics.urdf.cell import texts_of_machine
+from ...core.kinematics.urdf.machine import WHOLE_CELL
 from ...core.parameters.cell import CellParameters
 from ...objects import user_machines
 from ...objects.fields.rows import flat
 from ...objects.planned import suited_cell
 from ...objects.work.progress import Cancelled
 from ..background.busy import carry_out
-from ..background.later import Background, Later
-from ..background.worker import Worker
+from ..background.worker import Background, Later, Worker
 from ..panels.preview import PreviewPanel
-from ..texts.translation import tr, translated
+from ..texts.in_language import tr, translated
 from ..views.preview import Draft
+
+
+def whole_cell(machine: object, external: object) -> tuple[str, str] | None:
+    """What the fields of machine and external axes hold of a URDF that has them all; None where that is not asked for.
+
+    Raises InputError BAD_URDF where robot, track and positioner cannot be told apart, BAD_VALUE for what is no URDF.
+    """
+    if not isinstance(external, str) or external.strip() != WHOLE_CELL:
+        return None
+    return texts_of_machine(machine)
+
 
 MACHINE, SETUP, POINT, BRANCH = "cell_machine", "cell_setup", "cell_deposition_point", "cell_branch"
 ARM, OBSTACLES, EXTERNAL = "cell_arm_clearance", "cell_obstacles", "cell_external"

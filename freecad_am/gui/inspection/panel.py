@@ -8,18 +8,232 @@ from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
+import numpy as np
 from PySide import QtCore, QtGui
 
 from ... import api
-from ...core.inspection.inspect import Inspected
+from ...core.inspection.bands import band_of, bands
+from ...core.inspection.figures import Spread
+from ...core.inspection.inspect import PREDICTED, Inspected
+from ...core.inspection.point_file import MESHES, TABLES
 from ...core.inspection.table import rows
-from ...core.issues import AmError
-from ...objects.inspection import Inspection
+from ...core.issues import AmError, InputError
+from ...objects.fields.preferences import scale_of
+from ...objects.inspection import KINDS, Inspection
+from ...objects.stage import stage_of
+from ...objects.stage_parts import Link
+from .. import colours, recorded
 from ..panels.stage import StagePanel, show
-from ..texts.translation import tr, translated, translated_error
+from ..path.colouring import round_numbers
+from ..picking.pick_field import Input
+from ..picking.picking import usable
+from ..picking.shape_inputs import meant
+from ..texts.in_language import tr, translated, translated_error
 from ..widgets.fold import Fold
-from .histogram import Histogram
-from .inputs import FileChoice, PlannedChoice
+
+
+class PlannedChoice(Input):
+    """A feature, a toolpath, or an object with a shape or mesh: the present one, else the selected one or that of the job
+    that is selected, else the last feature."""
+
+    def __init__(self, link: Link, present: Any) -> None:
+        self.link, self.label = link, tr("Planned")
+        self.document = App.ActiveDocument if present is None else present.Document
+        self.widget = QtGui.QComboBox()
+        self.widget.setObjectName("Planned")
+        self.widget.setToolTip(translated(link.help))
+        self.widget.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
+        self.widget.setMinimumContentsLength(8)
+        found = offered(self.document)
+        for obj in found:
+            self.widget.addItem(obj.Label, obj.Name)
+        selected = [obj for obj in meant(self.document.Name) if obj in found]
+        features = [
+            obj for obj in found if stage_of(obj) is not None and stage_of(obj).kind == "feature"
+        ]
+        wanted = next(
+            iter([*([present] if present is not None else selected), *features[-1:], *found]), None
+        )
+        if wanted is not None:
+            self.widget.setCurrentIndex(max(0, self.widget.findData(wanted.Name)))
+
+    def choose_toolpath(self) -> None:
+        """The last toolpath, where none is chosen."""
+        paths = [k for k in range(self.widget.count()) if self._kind(k) == "toolpath"]
+        if paths and self.widget.currentIndex() not in paths:
+            self.widget.setCurrentIndex(paths[-1])
+
+    def _kind(self, index: int) -> str:
+        obj = self.document.getObject(self.widget.itemData(index))
+        stage = None if obj is None else stage_of(obj)
+        return "" if stage is None else str(stage.kind)
+
+    def show_stored(self, stored: Any) -> None:
+        self.widget.setCurrentIndex(-1 if stored is None else self.widget.findData(stored.Name))
+
+    @property
+    def missing(self) -> str:
+        return (
+            ""
+            if self.widget.count()
+            else tr("This document has nothing to compare with; open the part first.")
+        )
+
+    def arguments(self) -> dict[str, str]:
+        name = self.widget.currentData() if self.widget.count() else ""
+        chosen = self.document.getObject(name) if name else None
+        if name and chosen is None:
+            raise InputError(
+                "NO_INPUT", "Inspection", "Planned is missing, as it was deleted; choose another"
+            )
+        return {"planned": "None" if chosen is None else recorded.reference(chosen)}
+
+
+class FileChoice(Input):
+    """The file of measured points, typed or chosen."""
+
+    def __init__(self, path: str) -> None:
+        self.label = tr("File")
+        self.widget = QtGui.QWidget()
+        grid = QtGui.QGridLayout(self.widget)  # the path has the whole width, buttons are below
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setVerticalSpacing(2)
+        self.line = QtGui.QLineEdit(path)
+        self.line.setObjectName("FilePath")
+        kinds = ", ".join((*TABLES, *MESHES))
+        help = tr("The measured points, or a scanned mesh: {}").format(kinds)
+        self.button = QtGui.QPushButton(tr("Choose…"))
+        self.button.setObjectName("ChooseFile")
+        self.button.setAutoDefault(False)
+        self.button.clicked.connect(self._choose)
+        for widget in (self.widget, self.line, self.button):
+            widget.setToolTip(help)
+            widget.setWhatsThis(help)
+        self.predict = QtGui.QPushButton(tr("Predicted"))
+        self.predict.setObjectName("PredictedDeposit")
+        self.predict.setAutoDefault(False)
+        self.predict.setToolTip(
+            tr("No measurement: compare the deposit predicted for the toolpath")
+        )
+        self.predict.setWhatsThis(self.predict.toolTip())
+        self.predict.clicked.connect(lambda *_: self.line.setText(PREDICTED))
+        grid.addWidget(self.line, 0, 0, 1, 2)
+        for column, widget in enumerate((self.button, self.predict)):
+            grid.addWidget(widget, 1, column)
+            widget.setSizePolicy(QtGui.QSizePolicy.Ignored, QtGui.QSizePolicy.Fixed)
+        self.widget.setObjectName("File")
+
+    def stored(self, obj: Any) -> Any:
+        return obj.File
+
+    def show_stored(self, stored: Any) -> None:
+        self.line.setText(stored)
+
+    @property
+    def missing(self) -> str:
+        return "" if self.line.text().strip() else tr("Choose the file of the measured points.")
+
+    def _choose(self, *_: Any) -> None:
+        present = self.line.text().strip()
+        first = os.path.dirname(present or App.ActiveDocument.FileName)
+        some = " ".join(f"*{ending} *{ending.upper()}" for ending in (*TABLES, *MESHES))
+        path, _ = QtGui.QFileDialog.getOpenFileName(
+            Gui.getMainWindow(),
+            tr("Measured points"),
+            first,
+            f"{tr('Points and meshes')} ({some});;{tr('All files')} (*)",
+        )
+        if path:
+            self.line.setText(path)
+
+    def arguments(self) -> dict[str, str]:
+        return {"file": repr(self.line.text().strip())}
+
+
+def offered(document: Any) -> list[Any]:
+    """What points can be compared with, in the order of the tree."""
+    found = []
+    for obj in [] if document is None else document.Objects:
+        stage = stage_of(obj)
+        if (stage is not None and stage.kind in KINDS) or (stage is None and usable(obj)):
+            found.append(obj)
+    return found
+
+
+HEIGHT = 130
+_SIDE, _TOP, _FOOT, _FAINT = 12, 6, 34, 90
+
+
+class Histogram(QtGui.QWidget):
+    """How many points have what deviation, and where the tolerance ends."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("DeviationHistogram")
+        self.setMinimumHeight(HEIGHT)
+        self.spread: Spread | None = None
+        self.tolerance = 1.0
+
+    def set(self, spread: Spread, tolerance: float) -> None:
+        """Show other deviations."""
+        self.spread, self.tolerance = spread, tolerance
+        self.update()
+
+    def sizeHint(self) -> Any:
+        """Called by Qt."""
+        return QtCore.QSize(240, HEIGHT)
+
+    def paintEvent(self, event: Any) -> None:
+        """Called by Qt."""
+        if self.spread is None:
+            return
+        painter = QtGui.QPainter(self)
+        edges, counts = self.spread.edges, self.spread.counts
+        low, high = min(float(edges[0]), -self.tolerance), max(float(edges[-1]), self.tolerance)
+        area = QtCore.QRectF(_SIDE, _TOP, self.width() - 2 * _SIDE, self.height() - _TOP - _FOOT)
+
+        def across(value: float) -> float:
+            return float(area.left() + (value - low) / (high - low) * area.width())
+
+        shades = [QtGui.QColor.fromRgbF(*one.colour) for one in bands(self.tolerance)]
+        which = band_of(0.5 * (edges[:-1] + edges[1:]), self.tolerance)
+        most = max(int(counts.max()), 1)
+        for start, end, count, band in zip(edges[:-1], edges[1:], counts, which, strict=True):
+            tall = area.height() * int(count) / most
+            left = across(float(start))
+            bar = QtCore.QRectF(
+                left, area.bottom() - tall, max(across(float(end)) - left - 0.5, 0.5), tall
+            )
+            painter.fillRect(bar, shades[int(band)])
+        self._axis(painter, area, across, low, high)
+        painter.end()
+
+    def _axis(self, painter: Any, area: Any, across: Any, low: float, high: float) -> None:
+        ink = colours.ink()
+        faint = QtGui.QColor(ink)
+        faint.setAlpha(_FAINT)
+        painter.setPen(QtGui.QPen(faint, 1.0, QtCore.Qt.DashLine))
+        for limit in (-self.tolerance, self.tolerance):
+            painter.drawLine(
+                QtCore.QPointF(across(limit), area.top()),
+                QtCore.QPointF(across(limit), area.bottom()),
+            )
+        painter.setPen(ink)
+        painter.drawLine(area.bottomLeft(), area.bottomRight())
+        line = painter.fontMetrics().height()
+        factor, unit = scale_of(high, "mm")
+        for number in np.asarray(round_numbers(factor * low, factor * high, 0.0)).tolist():
+            box = QtCore.QRectF(across(number / factor) - 30.0, area.bottom() + 2.0, 60.0, line)
+            painter.drawText(box, QtCore.Qt.AlignHCenter, f"{number:g}")
+        most = int(self.spread.counts.max())
+        text = (
+            tr("deviation, {} (most: 1 point)").format(unit)
+            if most == 1
+            else tr("deviation, {} (most: {} points)").format(unit, most)
+        )
+        box = QtCore.QRectF(0.0, self.height() - line - 1.0, self.width(), line)
+        painter.drawText(box, QtCore.Qt.AlignHCenter, text)
+
 
 _LINES = 3  # pixels between the lines of the table
 _INDENT = "\u2003"  # before figures under the name of their place

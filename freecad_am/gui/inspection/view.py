@@ -10,11 +10,11 @@ from pivy import coin
 
 from ...core.inspection.bands import PAST_EDGES, bands, colours
 from ...core.inspection.inspect import Inspected
-from ...objects.fields import shown_units
+from ...objects.fields import preferences
 from ..nodes.lines import fill, unshaded
 from ..path import legend
 from ..path.colouring import Scale
-from ..texts.translation import marked
+from ..texts.in_language import marked
 from ..views.base import StageView
 
 
@@ -65,7 +65,7 @@ class InspectionView(StageView):
 
 def scale_of(value: Inspected) -> Scale:
     """The legend of an inspection: its bands, the most outside first."""
-    factor, unit = shown_units.scale_of(value.tolerance, "mm")
+    factor, unit = preferences.scale_of(value.tolerance, "mm")
     classes = tuple(
         (band.text, band.colour)
         for band in reversed(bands(float(f"{factor * value.tolerance:.3g}")))

@@ -10,18 +10,16 @@ from typing import Any
 import numpy as np
 from PySide import QtGui
 
-from freecad_am.core.types import Array
-
 from ...core.geometry import frames
 from ...core.issues import InputError
 from ...core.kinematics.chain import Chain
 from ...core.kinematics.machines import pendant, pose_figures
 from ...core.kinematics.machines.pendant import Deviation, Suspect
-from ..background.later import Later
+from ...core.types import Array
+from ..background.worker import Later
 from ..colours import GOOD, PLAIN, WRONG, set_role
-from ..texts.translation import tr
-from .figure_table import FigureTable, shown
-from .page import Page, axis_names, choice, error_text, heading
+from ..texts.in_language import tr
+from .figure_table import FigureTable, Page, axis_names, choice, error_text, heading, shown
 
 LEAST, FIRST = 3, 5  # poses that a machine needs, rows that are there at first
 

@@ -24,9 +24,8 @@ from ...core.kinematics.urdf.read import Urdf
 from ...core.kinematics.urdf.reference import reference
 from ...core.parameters.external import ROBOT
 from ...objects import user_machines
-from ..texts.translation import tr
-from .figure_table import FigureTable
-from .page import Page, choice, error_text
+from ..texts.in_language import tr
+from .figure_table import FigureTable, Page, choice, error_text
 
 LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
 MOST_AXES = 6

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import FreeCAD as App
@@ -12,29 +12,154 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ... import api
-from ...core.issues import AmError, Issue
-from ...core.parameters.filled import GEODESIC
-from ...objects.fields import saved_cells
+from ...brep.kernel import limits as kernel
+from ...brep.revolution.wall import find_wall
+from ...brep.shapes import part_depths
+from ...brep.walls.wall_on import named_faces
+from ...core.issues import AmError, InputError, Issue
+from ...core.parameters.cell import CellParameters
+from ...core.parameters.filled import GEODESIC, PLANES, DevelopableParameters
+from ...core.process.deposit import balance as deposit_balance
+from ...objects.developable_feature import found_in
+from ...objects.fields import preferences, saved_cells
+from ...objects.planned.proposed_family import COARSE
+from ...objects.shapes.bodies import Taken, snapshot_of
 from ...objects.work.progress import Cancelled
 from .. import icons, recorded
 from ..background.busy import carry_out
-from ..background.later import Background
-from ..background.worker import Worker
+from ..background.worker import Background, Worker
 from ..colours import PLAIN, WRONG, set_role
 from ..panels.stage import CLOSED
 from ..picking import picking
 from ..picking.picking import Pick
 from ..signals import connect
-from ..texts.translation import sentence, tr, translated, translated_error
+from ..texts.in_language import sentence, tr, translated, translated_error
 from ..widgets import choices, suggestions
 from ..widgets.fold import Fold
-from ..widgets.upright import upright
-from ..widgets.wheel import scrolls
-from . import after, before, proposal
-from .as_macro import arguments
-from .fields import HowItStands, JobName, Sizes, label, machines, shown
-from .left_out import left_out
-from .proposal import CLADDING, CURVES, DEVELOPABLE, REVOLUTION, SOLID, SURFACE, JobProposal
+from ..widgets.upright import scrolls, upright
+from . import proposal
+from .proposal import (
+    CLADDING,
+    CURVES,
+    DEVELOPABLE,
+    REVOLUTION,
+    SOLID,
+    SURFACE,
+    HowItStands,
+    JobName,
+    JobProposal,
+    Sizes,
+    label,
+    machines,
+    shown,
+)
+
+
+def left_out(found: JobProposal, width: float) -> Callable[[], tuple[Issue, ...]]:
+    """The work, which touches no document, that finds what of the part would not be deposited as it is understood, by beads
+    of a width, mm.
+    What refuses the job is told by who makes it."""
+    parts, ground = [snapshot_of(pick.obj) for pick in found.parts], found.ground
+    names = found.parts[0].names
+    own = ground is not None and ground.obj == found.parts[0].obj
+    under = None if ground is None or own else snapshot_of(ground.obj)
+
+    def work() -> tuple[Issue, ...]:
+        try:
+            return deposit_balance.issues(_balance(found, parts, names, under, width))
+        except (InputError, *kernel.FAULTS):
+            return ()
+
+    return work
+
+
+def _balance(
+    found: JobProposal,
+    parts: Sequence[Taken],
+    names: tuple[str, ...],
+    under: Taken | None,
+    width: float,
+) -> deposit_balance.Balance | None:
+    first, depths = parts[0], None
+    if found.kind == DEVELOPABLE:
+        chosen = () if found.ground is None else found.ground.names
+        base = None if under is None or not chosen else (under, chosen)
+        faces = chosen if under is None else ()
+        solids = found_in(parts, faces, under, base, DevelopableParameters(chord_error=COARSE))
+        return deposit_balance.feature_balance(solids, width)
+    if found.kind not in (REVOLUTION, SURFACE) or first.shape is None:
+        return None
+    shape = first.shape.copy(False)
+    if found.kind == REVOLUTION:
+        depths = part_depths.revolved_depths(
+            shape, find_wall(shape, names, label=first.label), first.label
+        )
+    else:
+        faces = tuple(name for name, _ in named_faces(shape, names, first.label))
+        depths = part_depths.face_depths(
+            shape, faces, first.label, None if under is None else under.body()
+        )
+    return None if depths is None else deposit_balance.wall_balance(depths, width)
+
+
+def arguments(found: JobProposal, machine: str, asked: bool) -> dict[str, str]:
+    """Keywords and their values as text, of what was proposed, or asked for, for a machine or a saved cell. Where curved
+    layers that were proposed cannot be carried out planes are laid, as in jobs with `kind: auto`."""
+    first = found.parts[0]
+    given = {"source": recorded.reference(first.obj)}
+    if found.kind != REVOLUTION:
+        given["kind"] = repr(found.kind)
+    if found.layers == GEODESIC:
+        given["layers"] = repr(found.layers)
+        if not asked:
+            given["layers_otherwise"] = repr(PLANES)
+    if found.mend:
+        given["mend"] = repr(found.mend)
+    if found.kind in (DEVELOPABLE, SOLID):
+        given.update(_of_solids(found))
+    else:
+        given["faces"] = repr(list(first.names))
+        if found.ground is not None:
+            given["substrate"] = recorded.reference(found.ground.obj)
+    if saved_cells.is_file_of_cell(machine):
+        given["cell"] = repr(machine)
+    elif machine != CellParameters().machine:
+        given["machine"] = repr(machine)
+    if preferences.post():
+        given["post"] = repr(preferences.post())
+    if preferences.process():
+        given["process"] = repr(preferences.process())
+    return given
+
+
+def _of_solids(found: JobProposal) -> dict[str, str]:
+    """Solids and what they stand on, which may be one with them, as a macro says it."""
+    first, *further = (pick.obj for pick in found.parts)
+    given, ground = {}, found.ground
+    if further:
+        given["further"] = f"[{', '.join(recorded.reference(obj) for obj in further)}]"
+    if ground is not None and ground.obj == first:
+        given["faces"] = repr(list(ground.names))
+    elif ground is not None:
+        given["substrate"] = recorded.reference(ground.obj)
+        if ground.names:
+            given["base_faces"] = repr(list(ground.names))
+    return given
+
+
+def machine(document: Any) -> str:
+    """The machine of the last cell of a document, else the one by default."""
+    cells = api.stages_of(document, "cell")
+    return str(cells[-1].Machine) if cells else preferences.machine()
+
+
+def setup(document: Any, name: str) -> str:
+    """The set-up of the last cell of a document where that has the machine, else ''."""
+    with contextlib.suppress(ReferenceError, RuntimeError, NameError):  # the document is closed
+        cells = api.stages_of(document, "cell")
+        return str(cells[-1].Setup) if cells and cells[-1].Machine == name else ""
+    return ""
+
 
 FILLED = (SOLID, DEVELOPABLE, CLADDING)  # families whose beads have a spacing
 WIDEST_LABEL = (
@@ -83,7 +208,7 @@ class JobPanel:
         self.ground = shown(
             "Ground", tr("Substrate: click it with Ctrl in the tree or the 3D view")
         )
-        self.machine = machines(before.machine(self.document), self.document)
+        self.machine = machines(machine(self.document), self.document)
         self.stands = HowItStands()
         self.name = JobName()
         self.sizes = Sizes()
@@ -286,7 +411,7 @@ class JobPanel:
         self.sizes.platform.widget.setEnabled(not saved_cells.is_file_of_cell(name))
         if name != self.followed:
             self.followed = name
-            self.stands.propose(before.setup(self.document, name) or suggestions.setup_for(name))
+            self.stands.propose(setup(self.document, name) or suggestions.setup_for(name))
         without = suggestions.no_post(name, self.stands.chosen())
         self.no_post.setText(without)
         self.no_post.setVisible(bool(without))
@@ -322,9 +447,9 @@ class JobPanel:
         else:
             self.close()
             made = [obj for obj in api.stages_of(self.document) if obj.Name not in known]
-            after.show_alone(made)
-            after.show_machine(made, bool(self.stands.chosen()))
-            after.tell_next(made, self.found.layers)
+            proposal.show_alone(made)
+            proposal.show_machine(made, bool(self.stands.chosen()))
+            proposal.tell_next(made, self.found.layers)
             return True
         return False
 

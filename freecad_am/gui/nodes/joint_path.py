@@ -8,9 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 from pivy import coin
 
-from freecad_am.core.types import Array
-
 from ...core.planning.joint_path import BeadPath
+from ...core.types import Array
 from ..path.colouring import UNREACHABLE, by_machine
 from ..path.legend import Legend
 from .lines import Lines, Points

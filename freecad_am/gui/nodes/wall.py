@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 from pivy import coin
 
-from freecad_am.core.types import Array
-
 from ...core.issues import InputError
+from ...core.types import Array
 from ...objects.shapes.bodies import Taken, snapshot_of
 from .lines import DASHED, Faces, Lines
 

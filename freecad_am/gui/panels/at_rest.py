@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..nodes.cell import Rest
-from ..texts.translation import tr
+from ..texts.in_language import tr
 
 
 def stands(rest: Rest) -> str:

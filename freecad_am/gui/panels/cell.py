@@ -18,12 +18,20 @@ from ...objects import user_machines
 from ...objects.cell import Cell
 from ...objects.stage import stage_of
 from ...objects.stage_parts import Outcome
-from ..background.later import Later
-from ..cell.proposing import EXTERNAL, MACHINE, OF_ROBOTS, PLATFORM, SETUP, TOOL, ProposingPanel
-from ..cell.whole_cell import whole_cell
+from ..background.worker import Later
+from ..cell.proposing import (
+    EXTERNAL,
+    MACHINE,
+    OF_ROBOTS,
+    PLATFORM,
+    SETUP,
+    TOOL,
+    ProposingPanel,
+    whole_cell,
+)
 from ..nodes.cell import CellNodes, Scenery, at_the_end, with_machine
-from ..picking.selection import meant
-from ..texts.translation import tr, translated
+from ..picking.shape_inputs import meant
+from ..texts.in_language import tr, translated
 from ..views.cell import toolpath_of
 from ..views.preview import Aside, Draft
 from ..widgets import suggestions

@@ -27,8 +27,8 @@ from ...objects.stage_parts import Outcome
 from ...objects.work import progress
 from ..nodes.joint_path import JointPathNodes
 from ..path.colouring import CONDITION, MARGIN, RATIO
-from ..picking import inputs
-from ..texts.translation import tr, translated
+from ..picking import shape_inputs
+from ..texts.in_language import tr, translated
 from ..views.preview import Aside, Draft
 from .preview import PreviewPanel, stale_lines
 
@@ -66,7 +66,7 @@ class JointPathPanel(PreviewPanel):
         self.aside = Aside()
         super().__init__(
             tr("Joint path") if obj is None else obj.Label,
-            inputs.of(JointPath, obj),
+            shape_inputs.of(JointPath, obj),
             obj,
             JointPathNodes(),
         )
@@ -78,7 +78,7 @@ class JointPathPanel(PreviewPanel):
         return next(
             one
             for one in self.choices
-            if isinstance(one, inputs.StageChoice) and one.link.kind == "cell"
+            if isinstance(one, shape_inputs.StageChoice) and one.link.kind == "cell"
         )
 
     def _fit(self, *_: Any) -> None:

@@ -11,14 +11,13 @@ from PySide import QtCore, QtGui
 
 from ...core.issues import AmError, InputError, values_in
 from ...core.parameters.field import check_value
-from ...objects.fields import expressions
+from ...objects.fields import rows
 from ...objects.stage import Stage
 from ..colours import PLAIN, WRONG, set_role
-from ..picking.an_input import Input
-from ..texts.translation import translated, translated_error
+from ..picking.pick_field import Input
+from ..texts.in_language import translated, translated_error
 from ..widgets import fields
-from ..widgets.fold import Fold
-from ..widgets.messages import Messages
+from ..widgets.fold import Fold, Messages
 from ..widgets.present import present
 from ..widgets.upright import around
 
@@ -137,9 +136,9 @@ class Noted:
         """What the expression in a field gives, or what is wrong with what it holds; None where there is nothing to tell."""
         try:
             value = field.value
-            if field.row.form not in expressions.FOLLOW:
+            if field.row.form not in rows.FOLLOW:
                 return None
-            if expressions.is_expression(value):
+            if rows.is_expression(value):
                 found = self._evaluated(field, value)
                 return f"= {getattr(found, 'UserString', found)}", False
             check_value(field.row.spec, field.row.inner(value, field.label), field.label)
@@ -150,7 +149,7 @@ class Noted:
     def _evaluated(self, field: fields.Field, value: str) -> Any:
         """An expression's value now, in the unit that a plain entry would have."""
         around = self.obj if self.obj is not None else next(iter(self.document.Objects), None)
-        found = expressions.evaluated(value, around, field.label)
+        found = rows.evaluated(value, around, field.label)
         field.row.inner(found, field.label)  # refuses another dimension
         return found
 

@@ -15,18 +15,18 @@ from ...core.preflight.promise import Place, Promise
 from ...core.simulation.timeline import timeline
 from ...core.simulation.totals import Totals, totals
 from ...objects.checks import preflight
-from ...objects.fields import naming
+from ...objects.fields import rows
 from ...objects.program import Job, Program, Written, posted
 from ...objects.stage_parts import Outcome
 from ...objects.staleness import UP_TO_DATE
 from ...posts import catalogue
 from ..path import dock
-from ..picking import inputs
-from ..picking.selection import meant
+from ..picking import shape_inputs
+from ..picking.shape_inputs import meant
 from ..program.listing import listing
 from ..program.preflight_list import PreflightList, summary
 from ..simulation import wording
-from ..texts.translation import tr, translated
+from ..texts.in_language import tr, translated
 from ..views.preview import Draft
 from ..widgets import suggestions
 from .preview import PreviewPanel, stale_lines
@@ -65,10 +65,10 @@ class ProgramPanel(PreviewPanel):
     stage, draft = Program, "Program"
 
     def __init__(self, obj: Any = None) -> None:
-        self.name = inputs.NameChoice("" if obj is None else obj.ProgramName)
+        self.name = shape_inputs.NameChoice("" if obj is None else obj.ProgramName)
         super().__init__(
             tr("Program") if obj is None else obj.Label,
-            [*inputs.of(Program, obj), self.name],
+            [*shape_inputs.of(Program, obj), self.name],
             obj,
             None,
         )
@@ -78,7 +78,7 @@ class ProgramPanel(PreviewPanel):
                 if text:
                     self.places[name][0].show(text)
             self.name.widget.setText(
-                naming.name_for(_part_label(), found[0] or suggestions.usual_post())
+                rows.name_for(_part_label(), found[0] or suggestions.usual_post())
             )
         self._add_text()
         self.places[POST][0].widget.editTextChanged.connect(self._fit_post)

@@ -6,34 +6,207 @@ from __future__ import annotations
 import contextlib
 import functools
 import weakref
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
+from weakref import WeakMethod
 
 import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-from ...core.issues import AmError, InputError
-from ...objects.fields import expressions, preferences
+from ... import api
+from ...core.issues import AmError, InputError, summarised
+from ...objects.fields import preferences
 from ...objects.fields.link_targets import is_there
-from ...objects.fields.rows import group_of, rows
+from ...objects.fields.rows import FOLLOW, Row, group_of, of, rows
+from ...objects.results.findings import issues_of, message_of, reason_of
 from ...objects.shapes.chosen import is_warned
 from ...objects.stage import Stage
+from ...objects.staleness import FAILED, INFEASIBLE
 from ...objects.work.progress import Cancelled
 from .. import icons, recorded
-from ..background.later import Later
+from ..background.worker import Later
 from ..colours import PLAIN, WRONG
-from ..picking.an_input import Input
+from ..picking.pick_field import Input
 from ..signals import connect
+from ..texts.in_language import marked, tr, translated
 from ..texts.labels import without_key
-from ..texts.translation import marked, tr, translated
 from ..widgets import fields, suggestions
-from ..widgets.fold import Fold
-from ..widgets.messages import Messages
-from ..widgets.upright import upright
-from ..widgets.wheel import scrolls
-from . import closing, parts, present, standing
+from ..widgets.fields import Field
+from ..widgets.fold import Fold, Messages
+from ..widgets.upright import scrolls, upright
 from .noted import Noted, lines_of
+
+_GONE = (RuntimeError, ReferenceError, NameError)
+
+
+class Watch:
+    """An observer of documents. It knows the panel by its widget alone: FreeCAD takes that away with the panel."""
+
+    def __init__(self) -> None:
+        self.form: Any = None
+        self.document = ""
+        self.follow_undo: Callable[[], Callable[[], None] | None] = lambda: (
+            None
+        )  # gives it as long as the panel is there
+
+    def slotDeletedDocument(self, document: Any) -> None:
+        """A document is about to go; once it is gone, so does the panel."""
+        if self.form is not None and document.Name == self.document:
+            QtCore.QTimer.singleShot(0, self._close)
+
+    def slotUndoDocument(self, document: Any) -> None:
+        """Something was undone or done again; once FreeCAD is through with it, the panel shows that."""
+        if self.form is not None and document.Name == self.document:
+            QtCore.QTimer.singleShot(0, self._follow)
+
+    slotRedoDocument = slotUndoDocument
+
+    def _follow(self) -> None:
+        follow = self.follow_undo()
+        with contextlib.suppress(*_GONE):  # it is closed already
+            if self.form is not None and follow is not None:
+                follow()
+
+    def _close(self) -> None:
+        form, self.form = self.form, None
+        with contextlib.suppress(*_GONE):  # it is closed already
+            if form is not None and form.window() is not form and Gui.Control.activeDialog():
+                Gui.Control.closeDialog()
+
+    def forget(self, *_: Any) -> None:
+        """The panel is closed."""
+        self.form = None
+
+
+_watches: list[Watch] = []
+
+
+def with_document(panel: Any) -> None:
+    """Close a panel that was just opened when its document is closed."""
+    if not _watches:
+        _watches.append(Watch())
+        App.addDocumentObserver(_watches[0])
+    watch = _watches[0]
+    watch.form, watch.document = (
+        panel.form,
+        panel.document.Name if panel.document is not None else "",
+    )
+    follow = getattr(panel, "follow_undo", None)
+    watch.follow_undo = (lambda: None) if follow is None else WeakMethod(follow)
+    panel.form.destroyed.connect(watch.forget)
+
+
+MOST_ISSUES = 6
+
+
+def own_lines(obj: Any) -> list[str]:
+    """The status of a stage, its message and its findings."""
+    found = summarised(issues_of(obj))
+    message = [translated(message_of(obj))] if obj.Message and not found else []
+    lines = [
+        tr("{}: {}").format(
+            " ".join(filter(None, (translated(issue.level), translated(issue.where)))),
+            translated(issue.message),
+        )
+        for issue in found
+    ]
+    return [tr("Status: {}").format(translated(obj.Status)), *message, *_first(lines)]
+
+
+def lines_of_followers(obj: Any) -> list[str]:
+    """Which of the stages that follow failed or cannot be carried out, and why; none that only waits for another one."""
+    followers = set(obj.InListRecursive)
+    wrong = [
+        one
+        for one in api.stages_of(obj.Document)
+        if one.Status in (FAILED, INFEASIBLE) and (one is obj or one in followers)
+    ]
+    first = [one for one in wrong if one is not obj and not set(one.OutListRecursive) & set(wrong)]
+    texts = {FAILED: tr("{} failed: {}"), INFEASIBLE: tr("{} is infeasible: {}")}
+    return _first(
+        [texts[one.Status].format(one.Label, translated(reason_of(one))) for one in first]
+    )
+
+
+def _first(lines: list[str]) -> list[str]:
+    """As many lines as there is room for, and how many more there are."""
+    left = len(lines) - MOST_ISSUES
+    return lines if left <= 0 else [*lines[:MOST_ISSUES], tr("and {} more").format(left)]
+
+
+LONG = 12  # fields of a section that are not advanced, from which on it is divided
+PARTS = {
+    marked("Filling in detail"): (
+        "spacing_range_low",
+        "spacing_range_high",
+        "fill_density",
+        "solid_layers",
+        "fill_angle",
+        "fill_angle_step",
+        "contour",
+        "walls",
+        "margin",
+        "thin",
+    ),
+    marked("Order and waits"): ("starts", "order", "wait", "min_layer_time", "deflection"),
+    marked("Starts and ends of beads"): ("lead_on", "lead_off", "overlap", "retreat"),
+}
+_TITLES = {key: title for title, keys in PARTS.items() for key in keys}
+
+
+def titles(rows: Sequence[Row]) -> dict[str, str]:
+    """The heading of each field of a section that is put under one, by its key; none of short sections."""
+    own = [row for row in rows if len(row.path) == 1 or not isinstance(row.path[-1], str)]
+    if len([row for row in own if not row.spec.advanced]) < LONG:
+        return {}
+    return {
+        row.key: _TITLES[row.key] for row in own if row.key in _TITLES and not row.spec.advanced
+    }
+
+
+def values_of(obj: Any, section: Any) -> dict[str, Any]:
+    """Inner values of a section of a stage by row key."""
+    found = {}
+    for row in rows(section.cls):
+        try:
+            found[row.key] = row.inner(getattr(obj, row.name), row.name)
+        except AmError:  # what cannot be read is replaced by its default
+            found[row.key] = row.default
+    return found
+
+
+def entries(obj: Any, proxy: type[Stage], inputs: dict[str, Any]) -> dict[str, Any]:
+    """What the fields of a panel show of an object: parameters by place, in outer units or as the expression that they
+    follow, and inputs by label."""
+    found = dict(inputs)
+    for section in proxy.sections:
+        values = values_of(obj, section)
+        for row in rows(section.cls):
+            found[f"{section.prefix}_{row.key}"] = _followed(obj, row) or row.outer(values[row.key])
+    return found
+
+
+def show_other(
+    fields: Iterable[tuple[str, Field]],
+    choices: Sequence[Input],
+    before: dict[str, Any],
+    now: dict[str, Any],
+) -> None:
+    """Show what is another one now than before; what was entered elsewhere stays."""
+    for place, field in fields:
+        if now[place] != before[place]:
+            field.show(now[place])
+            field.applied()
+    for choice in choices:
+        if now[choice.label] != before[choice.label]:
+            choice.show_stored(now[choice.label])
+            choice.applied()
+
+
+def _followed(obj: Any, row: Row) -> str:
+    return of(obj, row) if row.form in FOLLOW else ""
+
 
 ADVANCED = marked("{}: advanced")
 BUTTON_PADDING = 26  # pixels beside its text
@@ -119,9 +292,9 @@ class StagePanel(Noted):
         self.judge_entries()
 
     def _add_section(self, section: Any) -> None:
-        current = None if self.obj is None else present.values_of(self.obj, section)
+        current = None if self.obj is None else values_of(self.obj, section)
         folds: dict[str, Fold] = {}
-        parted = parts.titles(rows(section.cls))
+        parted = titles(rows(section.cls))
         for row in rows(section.cls):
             nested = isinstance(row.path[-1], str) and len(row.path) > 1
             title = group = group_of(row) if nested else section.group
@@ -136,7 +309,7 @@ class StagePanel(Noted):
             value = (
                 preferences.proposed(section.prefix, row) if current is None else current[row.key]
             )
-            follows = "" if self.obj is None else expressions.of(self.obj, row)
+            follows = "" if self.obj is None else of(self.obj, row)
             field = fields.make(
                 row, value, suggestions.of(section.prefix, row.key), follows, section.prefix
             )
@@ -157,15 +330,15 @@ class StagePanel(Noted):
         """What the window cannot let follow an expression may do so all the same, from a macro: it is not changed here."""
         driven = dict(self.obj.ExpressionEngine) if self.obj is not None else {}
         expression = driven.get(field.row.name)
-        if expression and field.row.form not in expressions.FOLLOW:
+        if expression and field.row.form not in FOLLOW:
             field.widget.setEnabled(False)
             field.widget.setToolTip(tr("Driven by the expression {}").format(expression))
 
     def _show_findings(self) -> None:
         if self.obj is None:
             return
-        self.findings.setText("\n".join(standing.own_lines(self.obj)))
-        self.following.setText("\n".join(standing.lines_of_followers(self.obj)))
+        self.findings.setText("\n".join(own_lines(self.obj)))
+        self.following.setText("\n".join(lines_of_followers(self.obj)))
         self.following.setVisible(bool(self.following.text()))
         self.findings.show()
 
@@ -180,7 +353,7 @@ class StagePanel(Noted):
         fields_of = [(place, field) for place, (field, _, _) in self.places.items()]
         with contextlib.suppress(AmError, ReferenceError):  # an input that is gone is told by OK
             first, shown = self.first_inputs, self._inputs()
-            present.show_other(fields_of, self.choices, before, self.known)
+            show_other(fields_of, self.choices, before, self.known)
             self.first_inputs = {
                 key: first[key] if key in first and shown.get(key) == text != first[key] else text
                 for key, text in self._inputs().items()
@@ -188,7 +361,7 @@ class StagePanel(Noted):
         self._show_findings()
 
     def _entries(self) -> dict[str, Any]:
-        return present.entries(self.obj, self.proxy, self._stored())
+        return entries(self.obj, self.proxy, self._stored())
 
     def _stored(self) -> dict[str, Any]:
         """What the object has of the inputs, by their labels."""
@@ -307,4 +480,4 @@ def show(panel: Any) -> None:
         App.Console.PrintWarning(tr("Another task panel is open; close it first.") + "\n")
         return
     Gui.Control.showDialog(panel)
-    closing.with_document(panel)
+    with_document(panel)

@@ -10,13 +10,13 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ...core.issues import InputError
-from ...core.process.model import bead_model, bead_table
+from ...core.process.model import bead_model, wire
 from ...core.strategies.sequence import BY_FEATURE
 from ...objects.toolpath import Toolpath
-from ..background.later import Later
-from ..picking import inputs
+from ..background.worker import Later
+from ..picking import shape_inputs
 from ..signals import connect
-from ..texts.translation import tr, translated_error
+from ..texts.in_language import tr, translated_error
 from ..widgets.feature_order import FeatureOrder
 from ..widgets.fit_plot import FitPlot, fits_text, speeds_text
 from ..widgets.upright import around
@@ -35,8 +35,8 @@ class ToolpathPanel(StagePanel):
 
     def __init__(self, obj: Any = None) -> None:
         title = tr("Toolpath") if obj is None else obj.Label
-        feature, *others = inputs.of(Toolpath, obj)
-        assert isinstance(feature, inputs.StageChoice)
+        feature, *others = shape_inputs.of(Toolpath, obj)
+        assert isinstance(feature, shape_inputs.StageChoice)
         link = next(link for link in Toolpath.links if link.many)
         present, sequence = (
             (None, BY_FEATURE) if obj is None else (getattr(obj, link.name), obj.Sequence)
@@ -99,7 +99,7 @@ class ToolpathPanel(StagePanel):
         if name in ("", NONE):
             return
         try:
-            measured = bead_table.read_table(name)
+            measured = wire.read_table(name)
             model = bead_model.fit(*measured)
         except InputError as error:
             note.setText(translated_error(error))

@@ -8,15 +8,14 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
 from ...core.geometry.formatting import round_step
 from ...core.process.deposit.spacing import local_distances
 from ...core.toolpath import Bead, Toolpath
+from ...core.types import Array
 from ...objects.fields import preferences
-from ...objects.fields.shown_units import scale_of
+from ...objects.fields.preferences import scale_of
 from ..colours import ramp
-from ..texts.translation import marked, translated
+from ..texts.in_language import marked, translated
 
 Colour = tuple[float, float, float]
 

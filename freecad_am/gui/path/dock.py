@@ -3,25 +3,232 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
 import numpy as np
+from PySide import QtCore, QtGui
 
+from ...core.toolpath import Bead
+from ...objects.fields.preferences import in_user_units, quantity_text
 from ..background import redraw
-from ..docks import places
-from ..docks.follower import Follower
-from ..picking.selection import meant
+from ..docks import dock_area
+from ..docks.dock_area import Follower
+from ..picking.shape_inputs import meant
 from ..preferences import watch
-from ..texts.translation import tr, translated
-from ..widgets.scrolled import Scrolled
+from ..texts.in_language import tr, translated
+from ..widgets.steady import Scrolled, SteadyText, hold
 from . import path_view
 from .colouring import LAYER
-from .facts import facts
-from .form import PathForm, offer
 from .path_view import PathView
-from .slider_row import Row
+from .pieces import Rows
+
+
+class Row:
+    """A slider with arrows at its ends and its number beside it; `moved` is called when the user has moved it."""
+
+    def __init__(self, name: str, text: str, help: str, page: int) -> None:
+        self.label, self.slider, self.box = (
+            QtGui.QLabel(text),
+            QtGui.QSlider(QtCore.Qt.Horizontal),
+            QtGui.QSpinBox(),
+        )
+        self.back, self.on = QtGui.QToolButton(), QtGui.QToolButton()
+        for button, arrow, step in (
+            (self.back, QtCore.Qt.LeftArrow, -1),
+            (self.on, QtCore.Qt.RightArrow, 1),
+        ):
+            button.setArrowType(arrow)
+            button.setAutoRepeat(True)
+            button.clicked.connect(lambda *_, step=step: self.box.setValue(self.box.value() + step))
+        self.slider.setObjectName(f"{name}_slider")
+        self.box.setObjectName(f"{name}_spin")
+        self.back.setObjectName(f"{name}_back")
+        self.on.setObjectName(f"{name}_on")
+        self.slider.setPageStep(page)
+        for widget in (self.slider, self.box):
+            widget.setToolTip(help)
+        self.back.setToolTip(tr("One back"))
+        self.on.setToolTip(tr("One on"))
+        self.moved: Any = lambda row: None
+        self.slider.valueChanged.connect(self._slid)
+        self.box.valueChanged.connect(lambda *_: self.moved(self))
+
+    def add_to(self, grid: Any, row: int) -> None:
+        """Put it into a row of a grid of five columns."""
+        for column, widget in enumerate((self.label, self.back, self.slider, self.on, self.box)):
+            grid.addWidget(widget, row, column)
+        grid.setColumnStretch(2, 1)
+
+    def _slid(self, value: int) -> None:
+        if value != self.box.value():
+            self.box.setValue(value)  # which tells
+
+    def set(self, least: int, most: int, value: int) -> None:
+        """Bounds and value; tells nobody."""
+        for widget in (self.slider, self.box):
+            blocked = widget.blockSignals(True)
+            widget.setRange(least, most)
+            widget.setValue(value)
+            widget.blockSignals(blocked)
+        hold(self.box)  # as wide as its widest number so far
+
+    def value(self) -> int:
+        """What is entered."""
+        return int(self.box.value())
+
+    def most(self) -> int:
+        """The upper bound."""
+        return int(self.box.maximum())
+
+
+LINES = 3  # of what is told of a point, at most
+LABEL = 14  # letters of a choice that are to be seen, at least
+_LAYER_PAGE, _POINT_PAGE = 10, 100
+
+
+class PathForm(QtGui.QWidget):
+    """In the language of the window of now."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        column, self.controls = QtGui.QVBoxLayout(self), QtGui.QWidget()
+        column.setContentsMargins(9, 4, 9, 4)
+        column.setSpacing(3)
+        self.choice = _combo("path", tr("The toolpath or joint path to show"))
+        self.colouring = _combo("colouring", tr("Quantity shown by the colours of the beads"))
+        self.look = _combo(
+            "look", tr("Draw beads as lines, or as tubes of their width and layer height")
+        )
+        self.directions = QtGui.QCheckBox(tr("Build directions"))
+        self.directions.setObjectName("directions")
+        self.single = QtGui.QCheckBox(tr("One layer only"))
+        self.single.setObjectName("single")
+        self.all = QtGui.QPushButton(tr("Show all"))
+        self.all.setObjectName("all")
+        self.from_, self.to, self.point = (
+            Row("from", tr("From layer"), tr("The first layer shown"), _LAYER_PAGE),
+            Row("to", tr("To layer"), tr("The last layer shown"), _LAYER_PAGE),
+            Row(
+                "point",
+                tr("Point"),
+                tr("The last point shown, counted from 0 in the last layer"),
+                _POINT_PAGE,
+            ),
+        )
+        self.facts = SteadyText("facts", LINES)
+        column.addLayout(self._choices())
+        column.addWidget(self.controls)
+        grid = QtGui.QGridLayout(self.controls)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setVerticalSpacing(2)
+        for number, row in enumerate((self.from_, self.to, self.point)):
+            row.add_to(grid, number)
+        column.addWidget(self.facts)
+        column.addStretch(1)
+
+    def enable(self, there: bool) -> None:
+        """Whether there is a path to choose something of."""
+        for widget in (
+            self.controls,
+            self.colouring,
+            self.look,
+            self.directions,
+            self.single,
+            self.all,
+        ):
+            widget.setEnabled(there)
+
+    def _choices(self) -> Any:
+        lines = QtGui.QVBoxLayout()
+        what, how = QtGui.QHBoxLayout(), QtGui.QHBoxLayout()
+        for line, text, widget in (
+            (what, tr("Path"), self.choice),
+            (what, tr("Colours"), self.colouring),
+            (how, tr("Look"), self.look),
+        ):
+            line.addWidget(QtGui.QLabel(text))
+            line.addWidget(widget)
+        what.addStretch(1)
+        for box in (self.directions, self.single):
+            how.addWidget(box)
+        how.addStretch(1)
+        how.addWidget(self.all)
+        lines.addLayout(what)
+        lines.addLayout(how)
+        return lines
+
+
+def offer(combo: Any, names: list[str], chosen: int, label: Callable[[str], str] = str) -> None:
+    """Choices of a combo box, changed only where they differ."""
+    if [combo.itemData(index) for index in range(combo.count())] != list(names):
+        combo.clear()
+        for name in names:
+            combo.addItem(label(name), name)
+    combo.setCurrentIndex(chosen)
+
+
+def _combo(name: str, help: str) -> Any:
+    combo = QtGui.QComboBox()
+    combo.setObjectName(name)
+    combo.setToolTip(help)
+    combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToContents)
+    combo.setMinimumWidth(
+        LABEL * combo.fontMetrics().averageCharWidth()
+    )  # a long label widens no window
+    return combo
+
+
+def facts(rows: Rows, row: int) -> str:
+    """The bead that a row belongs to: its layer, number, kind, speed, width, length and time; and the row's place.
+
+    Numbers count from 0, as in messages, programs and `waypoints.csv`; of layers of several beads the number in the layer
+    is told too, by which the dock counts.
+    """
+    index = rows.bead_of(row)
+    bead, layer = rows.bead(index), int(rows.layers[index])
+    first, end = np.searchsorted(rows.layers, [layer, layer + 1])
+    at = row - int(rows.starts[index])
+    length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
+    time = float((length / bead.speed[1:]).sum())
+    x, y, z = bead.points[at]
+    low, high = rows.of_layers(layer, layer)
+    place = in_user_units(
+        tr("point {} (0 to {}) at {:.2f}, {:.2f}, {:.2f} mm").format(at, len(bead) - 1, x, y, z)
+    )
+    if end - first > 1:
+        place = tr("point {} (0 to {}) of the layer, of the bead {}").format(
+            row - low, high - low - 1, place
+        )
+    return " · ".join(
+        (
+            tr("Layer {} (0 to {})").format(layer, rows.layer_count - 1),
+            tr("bead {} (0 to {}), {}").format(
+                index - int(first), int(end - first) - 1, _kind(bead)
+            ),
+            quantity_text(float(bead.speed[max(at, 1)]), "mm/s"),
+            in_user_units(tr("{:.4g} mm wide").format(float(rows.width[row]))),
+            in_user_units(tr("{:.1f} mm long in {:.1f} s").format(float(length.sum()), time)),
+            place,
+        )
+    )
+
+
+def _kind(bead: Bead) -> str:
+    if bead.closing:
+        return tr("closes a gap")
+    names = {
+        "contour": tr("contour"),
+        "line": tr("line"),
+        "zigzag": tr("zigzag"),
+        "spiral": tr("spiral"),
+        "centre": tr("in the middle"),
+        "closing": tr("closes a gap"),
+    }
+    return names.get(bead.kind, tr("closed") if bead.closed else tr("open"))
+
 
 NAME = "RoboticAM_PathDock"
 VISIBILITY, GROUP_TOUCHED = (
@@ -36,7 +243,7 @@ class PathDock(Follower):
     def __init__(self) -> None:
         self.target: tuple[str, str] | None = None  # names of document and object
         self.filling = False
-        self.dock = places.dock(NAME, places.BELOW)
+        self.dock = dock_area.dock(NAME, dock_area.BELOW)
         self._build()
         self.dock.seen, self.dock.closed = self.fill, self._closed
         path_view.listen(lambda view: self.fill())

@@ -22,7 +22,7 @@ from .. import colours
 from ..colours import ramp
 from ..nodes.lines import unshaded
 from ..preferences import watch
-from ..texts.translation import tr, translated
+from ..texts.in_language import tr, translated
 from .colouring import DISTANCE, TOO_FAR, TOO_NEAR, Scale
 
 _FINE = 0.01  # mm; distances that differ by less are told to 1e-5 mm

@@ -3,17 +3,98 @@
 
 from __future__ import annotations
 
+import contextlib
+import weakref
 from collections.abc import Callable
 from typing import Any
 
-from PySide import QtGui
+import FreeCADGui as Gui
+from PySide import QtCore, QtGui
 
 from ...objects.stage_parts import Link
 from .. import recorded
-from ..texts.translation import tr, translated
-from .an_input import Input
-from .pick_button import pick_button
+from ..texts.in_language import tr, translated
 from .picking import EDGE, FACE, Pick, is_mesh
+
+
+def pick_button(text: str, name: str, help: str) -> Any:
+    """A narrow button beside the field of an input."""
+    button = QtGui.QToolButton()
+    button.setText(text)
+    button.setObjectName(name)
+    button.setToolTip(help)
+    button.setFocusPolicy(QtCore.Qt.TabFocus)
+    return button
+
+
+class NextClick:
+    """Calls `act`, a method, once something is selected, after `wait`; `widget`: whose end ends it.
+
+    The method is held weakly: its object holds this one, and a cycle would keep the fields of a closed panel.
+    """
+
+    def __init__(self, widget: Any, act: Callable[[], None]) -> None:
+        self.act, self.waits = weakref.WeakMethod(act), False
+        widget.destroyed.connect(self.stop)
+
+    def wait(self) -> None:
+        """Wait for the next click."""
+        if not self.waits:
+            self.waits = True
+            Gui.Selection.addObserver(self)
+
+    def stop(self, *_: Any) -> None:
+        """Wait no longer; once or more often."""
+        if self.waits:
+            self.waits = False
+            Gui.Selection.removeObserver(self)
+
+    def addSelection(self, *_: Any) -> None:
+        """Something was clicked; called by FreeCAD, which must first be done with it."""
+        QtCore.QTimer.singleShot(0, self._clicked)
+
+    setSelection = addSelection
+
+    def _clicked(self) -> None:
+        if self.waits:
+            self.stop()
+            act = self.act()
+            with contextlib.suppress(RuntimeError):  # the panel is closed
+                if act is not None:
+                    act()
+
+
+class Input:
+    """A row of the panel that gives arguments of the macro function."""
+
+    label = ""
+    link: Link
+    widget: Any = None
+    places: tuple[str, ...] = ()  # what errors call it, other than by its link
+
+    def tell(self, text: str) -> None:
+        """Something about it; the panel shows it under the widget."""
+
+    @property
+    def missing(self) -> str:
+        """What to do when there is nothing to choose, '' when there is."""
+        return ""
+
+    def arguments(self) -> dict[str, str]:
+        """Arguments by keyword as Python texts."""
+        raise NotImplementedError
+
+    def applied(self) -> None:
+        """What is entered is what the document has now."""
+
+    def stored(self, obj: Any) -> Any:
+        """What a stage in the document has of it."""
+        return getattr(obj, self.link.name)
+
+    def show_stored(self, stored: Any) -> None:
+        """Show what a stage in the document has, in place of what is there."""
+        raise NotImplementedError
+
 
 _LIST = "App::PropertyLinkList"
 

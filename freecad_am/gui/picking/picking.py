@@ -9,15 +9,15 @@ from typing import Any
 
 import FreeCADGui as Gui
 
-from ...brep.walls.standing import stand
+from ...brep.walls.patch_wall import stand
 from ...objects.fields.link_targets import links_to_nothing
 from ...objects.job_group import is_group
-from ...objects.shapes import marks, meshes, nested
+from ...objects.shapes import meshes, nested
 from ...objects.shapes.bodies import global_shape
 from ...objects.stage import stage_of
-from ..texts.translation import tr
+from ..texts.in_language import tr
 
-FACE, EDGE = marks.FACE, marks.EDGE
+FACE, EDGE = nested.FACE, nested.EDGE
 
 
 @dataclass(frozen=True)

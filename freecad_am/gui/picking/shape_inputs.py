@@ -9,12 +9,84 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtGui
 
+from ...objects.job_group import is_group, stages_in
+from ...objects.stage import Stage, stage_of
 from ...objects.stage_parts import Link
 from .. import recorded
-from ..texts.translation import tr, translated
+from ..texts.in_language import tr, translated
 from . import picking
-from .an_input import Input
-from .pick_button import NextClick, pick_button
+from .pick_field import Input, NextClick, pick_button
+
+# Of a job tools take a joint path where they can
+_ORDER = ("joint path", "cell", "feature", "toolpath", "program")
+
+
+def meant(document: str = "") -> list[Any]:
+    """The selected objects of a document, by its name, or of the active one, and behind them the other stages of their
+    jobs: joint paths, then the others in the order in which they are made."""
+    chosen = selected(document)
+    found = [obj for obj in chosen if not is_group(obj)]
+    for obj in chosen:
+        found += [stage for stage in _job(obj) if stage not in found]
+    return found
+
+
+def selected(document: str = "") -> list[Any]:
+    """The selected objects of a document, by its name, or of the active one."""
+    return list(Gui.Selection.getSelection(document) if document else Gui.Selection.getSelection())
+
+
+def job_named() -> str:
+    """The label of the job that the selection names, or of the stage where that is in none; '' where it names none."""
+    for obj in selected():
+        if _job(obj) or is_group(obj):
+            return str((obj if is_group(obj) else _group_of(obj) or obj).Label)
+    return ""
+
+
+def _job(obj: Any) -> list[Any]:
+    """The stages of a job, or of that of a stage: those in its group, first the ones that are linked with the stage, then
+    what they are made from elsewhere. Without a group those that are linked with the stage, the latest first."""
+    if is_group(obj):
+        linked, group = [], obj
+    elif stage_of(obj) is not None:
+        linked, group = _line(obj), _group_of(obj)
+    else:
+        return []
+    if group is None:
+        return sorted(linked, key=lambda stage: (_rank(stage), -stage.ID))
+    held = sorted(
+        stages_in(group), key=lambda stage: (_rank(stage), bool(linked) and stage not in linked)
+    )
+    return [*held, *(one for stage in held for one in _leading_to(stage) if one not in held)]
+
+
+def _group_of(stage: Any) -> Any:
+    return next((obj for obj in stage.InList if is_group(obj)), None)
+
+
+def _line(stage: Any) -> list[Any]:
+    """What a stage is made from, what is made from it, and what else that is made from. Of an inspection that of what it
+    measures."""
+    planned = getattr(stage, "Planned", None)
+    origin = stage if planned is None or stage_of(planned) is None else planned
+    lines = [_leading_to(obj) for obj in stage.Document.Objects if stage_of(obj) is not None]
+    return list(dict.fromkeys(one for line in lines if origin in line for one in line))
+
+
+def _leading_to(stage: Any) -> list[Any]:
+    """A stage and those that it is made from. Expressions count for nothing: jobs may share figures."""
+    found = [stage]
+    for obj in found:
+        inputs = [getattr(obj, link.name) for link in obj.Proxy.links]
+        every = [one for some in inputs for one in (some if isinstance(some, list) else [some])]
+        found += [one for one in every if stage_of(one) is not None and one not in found]
+    return found
+
+
+def _rank(stage: Any) -> int:
+    kind = stage.Proxy.kind
+    return _ORDER.index(kind) if kind in _ORDER else len(_ORDER)
 
 
 class ShapeChoice(Input):
@@ -244,3 +316,127 @@ class ObjectsChoice(ShapeChoice):
         if not self.objects and not self.explicit:
             return {}
         return {self.link.key: f"[{', '.join(recorded.reference(obj) for obj in self.objects)}]"}
+
+
+INSPECTION = "inspection"
+
+
+class StageChoice(Input):
+    """One of the stages of a kind in the active document; the present one, else the selected one or that of the job that
+    is selected, else the last."""
+
+    def __init__(self, link: Link, present: Any) -> None:
+        self.link, self.label = link, translated(link.label)
+        self.document = App.ActiveDocument
+        self.widget = QtGui.QComboBox()
+        self.widget.setObjectName(f"Input{link.name}")
+        self.widget.setToolTip(translated(link.help))
+        names = []
+        for obj in self.document.Objects:
+            stage = stage_of(obj)
+            if stage is not None and stage.kind == link.kind and not _compares_stages(obj):
+                names.append(obj.Name)
+                self.widget.addItem(obj.Label, obj.Name)
+        if not link.required:
+            self.widget.addItem(tr("none"), "")
+        wished = [obj.Name for obj in meant() if obj.Name in names]
+        last = (
+            [] if link.kind == INSPECTION else names[-1:]
+        )  # what is compared elsewhere is an input only if chosen
+        self.proposed = present.Name if present is not None else (wished or last or [""])[0]
+        self.widget.setCurrentIndex(max(0, self.widget.findData(self.proposed)))
+
+    def show_stored(self, stored: Any) -> None:
+        name = "" if stored is None else stored.Name
+        if name and self.widget.findData(name) < 0:  # it was not there when the panel was opened
+            self.widget.addItem(stored.Label, name)
+        self.widget.setCurrentIndex(self.widget.findData(name))
+
+    def follow(self, toolpath: StageChoice) -> None:
+        """Propose the cell that the chosen toolpath was made for, now and for another one, until a cell is chosen; one
+        that is selected itself stays."""
+        if not any(obj is self.value() for obj in selected()):
+            toolpath.widget.currentIndexChanged.connect(lambda *_: self._propose(toolpath))
+            self._propose(toolpath)
+
+    def _propose(self, toolpath: StageChoice) -> None:
+        cell = getattr(toolpath.value(), "Cell", None)
+        if (
+            cell is not None
+            and self.widget.currentData() == self.proposed
+            and self.widget.findData(cell.Name) >= 0
+        ):
+            self.proposed = cell.Name
+            self.widget.setCurrentIndex(self.widget.findData(cell.Name))
+
+    @property
+    def missing(self) -> str:
+        if not self.link.required or self.widget.count():
+            return ""
+        return tr(
+            "{0} is missing in this document. Create it first: button {0} in the toolbar."
+        ).format(self.label)
+
+    def value(self) -> Any:
+        """As the link of the stage holds it."""
+        name = self.widget.currentData() if self.widget.count() else ""
+        return self.document.getObject(name) if name else None
+
+    def arguments(self) -> dict[str, str]:
+        chosen = self.value()
+        return {self.link.key: "None" if chosen is None else recorded.reference(chosen)}
+
+
+def _compares_stages(obj: Any) -> bool:
+    """Whether an object is an inspection of what was planned, not of a part."""
+    return stage_of(getattr(obj, "Planned", None)) is not None
+
+
+class NameChoice(Input):
+    """The name of a program."""
+
+    places = ("name",)
+
+    def __init__(self, name: str) -> None:
+        self.label = tr("Name")
+        self.widget = QtGui.QLineEdit(name)
+        self.widget.setObjectName("ProgramName")
+        self.widget.setToolTip(
+            tr("Name of the program and of its files; the controller may reject some names")
+        )
+
+    def stored(self, obj: Any) -> Any:
+        return obj.ProgramName
+
+    def show_stored(self, stored: Any) -> None:
+        self.widget.setText(stored)
+
+    def arguments(self) -> dict[str, str]:
+        return {"name": repr(self.widget.text().strip())}
+
+
+def of(proxy: type[Stage], obj: Any = None) -> list[Input]:
+    """The inputs of a stage to be made, or of an existing one."""
+    found: list[Input] = []
+    for link in proxy.links:
+        present = None if obj is None else getattr(obj, link.name)
+        if link.kind and link.many:
+            continue
+        if link.kind:
+            found.append(StageChoice(link, present))
+        elif link.type_name == "App::PropertyLinkList":
+            found.append(ObjectsChoice(link, present))
+        elif link.type_name == "App::PropertyLink":
+            found.append(ObjectChoice(link, present))
+        else:
+            found.append(ShapeChoice(link, present, take_now=link.required))
+    if obj is None:
+        _match(found)
+    return found
+
+
+def _match(choices: list[Input]) -> None:
+    """A cell is proposed for the toolpath that runs in it."""
+    stages = {choice.link.kind: choice for choice in choices if isinstance(choice, StageChoice)}
+    if "toolpath" in stages and "cell" in stages:
+        stages["cell"].follow(stages["toolpath"])

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Callable
 from typing import Any
 
 import FreeCAD as App
@@ -12,23 +13,193 @@ from PySide import QtCore, QtGui
 
 from ...core.issues import AmError
 from ...core.kinematics import cell as cells
-from ...core.parameters.place import PlaceParameters
+from ...core.parameters.place import SIDES, PlaceParameters
 from ...core.placement.place import Placed
 from ...core.placement.reach import Reach, reach
 from ...objects import user_machines
 from ...objects.checks.placed import Placing, change_parameters, placing_of
-from ...objects.fields.shown_units import in_user_units
+from ...objects.fields.preferences import in_user_units
+from ...objects.fields.rows import flat, rows
 from ...objects.work import progress
 from ...objects.work.progress import Cancelled
 from .. import recorded
-from ..docks import places
-from ..docks.lookout import Lookout
+from ..background.worker import Background, Worker
+from ..colours import PLAIN, WRONG, set_role
+from ..docks import dock_area
+from ..docks.dock_area import Lookout
 from ..preferences import watch
-from ..texts.translation import tr, translated_error
+from ..texts.in_language import tr, translated, translated_error
+from ..widgets import fields
+from ..widgets.fold import Fold
 from . import figures
-from .form import Form
 from .scene import Scene
-from .work import Work
+
+SECTION, HIGH = "place", 160  # pixels of the table at least
+
+
+class Form(QtGui.QWidget):
+    """The widgets at their places; whoever makes it connects them. values: what the fields show, as a macro has them."""
+
+    def __init__(self, values: dict[str, Any]) -> None:
+        super().__init__()
+        column = QtGui.QVBoxLayout(self)
+        self.fields: dict[str, fields.Field] = {}
+        box, more = Fold(tr("Poses to try"), True), Fold(tr("More"), False)
+        current = flat(change_parameters(None, values))
+        for row in rows(PlaceParameters):
+            field = fields.make(row, current[row.key], None, "", SECTION)
+            self.fields[row.key] = field
+            heading = f"± {field.heading}" if row.key in SIDES else field.heading
+            (more if row.spec.advanced else box).add(heading, field.widget)
+        column.addWidget(box.widget)
+        column.addWidget(more.widget)
+        self.compute = _button(
+            "compute", tr("Compute"), tr("Try all poses in the background; can be cancelled")
+        )
+        self.use = _button(
+            "use", tr("Use this"), tr("Enter the pose selected in the table into the cell")
+        )
+        self.reach = _reach()
+        self.colour = QtGui.QComboBox()
+        self.colour.setObjectName("colour")
+        self.colour.setToolTip(tr("Quantity shown by the colours of the places"))
+        for name in figures.NAMES:
+            self.colour.addItem(figures.heading(name), name)
+        self.key, self.summary = QtGui.QLabel(), QtGui.QLabel()
+        self.key.setObjectName("key")
+        self.summary.setObjectName("told")
+        for label, most in (
+            (self.key, 1),
+            (self.summary, 2),
+        ):  # lines, with which what is below stays where it is
+            label.setWordWrap(True)
+            label.setMinimumHeight(most * label.fontMetrics().lineSpacing())
+            label.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
+        self.table = _table()
+        buttons = QtGui.QHBoxLayout()
+        buttons.addWidget(self.compute)
+        buttons.addWidget(self.use)
+        column.addLayout(buttons)
+        for widget in (self.reach, self.summary, self.colour, self.key, self.table):
+            column.addWidget(widget)
+        column.addStretch(1)
+
+    def values(self) -> dict[str, Any]:
+        """What is entered, as a macro passes it. InputError for what cannot be read."""
+        return {key: field.value for key, field in self.fields.items()}
+
+    def tell(self, text: str, wrong: bool = False) -> None:
+        """Say what goes on, or what came of it."""
+        self.summary.setText(text)
+        set_role(self.summary, WRONG if wrong else PLAIN)
+
+    def tell_colours(self, shown: figures.Coloured | None) -> None:
+        """What the colours mean."""
+        if shown is None or shown.least != shown.least:
+            self.key.setText("")
+            return
+        self.key.setText(
+            tr("blue {:.4g} … yellow {:.4g}; grey: not feasible").format(shown.least, shown.most)
+        )
+
+    def fill(self, found: Placed | None, numbers: list[int]) -> None:
+        """The rows of the table."""
+        self.table.setRowCount(0 if found is None else len(numbers))
+        for row, number in enumerate(numbers if found is not None else ()):
+            assert found is not None
+            for column, text in enumerate(figures.texts(found, number)):
+                item = QtGui.QTableWidgetItem(text)
+                item.setTextAlignment(QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter)
+                self.table.setItem(row, column, item)
+        self.table.resizeColumnsToContents()
+        if numbers and found is not None:
+            self.table.selectRow(0)
+
+
+def _button(name: str, text: str, help: str) -> Any:
+    button = QtGui.QPushButton(text)
+    button.setObjectName(name)
+    button.setToolTip(help)
+    return button
+
+
+def _reach() -> Any:
+    box = QtGui.QCheckBox(tr("Reach of the robot"))
+    box.setObjectName("reach")
+    box.setSizePolicy(
+        QtGui.QSizePolicy.Fixed, QtGui.QSizePolicy.Fixed
+    )  # Qt takes clicks on its text alone
+    box.setToolTip(
+        tr("Show the workspace of the robot: blue for few directions, yellow for all directions")
+    )
+    return box
+
+
+def _table() -> Any:
+    table = QtGui.QTableWidget(0, len(figures.heads()))
+    table.setObjectName("poses")
+    table.setHorizontalHeaderLabels(figures.heads())
+    table.verticalHeader().hide()
+    table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
+    table.setSelectionBehavior(QtGui.QAbstractItemView.SelectRows)
+    table.setSelectionMode(QtGui.QAbstractItemView.SingleSelection)
+    table.setMinimumHeight(HIGH)
+    return table
+
+
+TELL_EVERY = 100  # ms
+
+
+class Work:
+    """One kind of work at a time. `done` gets its result, None where it was cancelled or failed; `tell` what goes on, and
+    whether it is an error."""
+
+    def __init__(
+        self, form: Any, done: Callable[[Any], None], tell: Callable[[str, bool], None]
+    ) -> None:
+        self.done, self.tell = done, tell
+        self.background = Background(form)
+        self.timer = QtCore.QTimer(form)
+        self.timer.setInterval(TELL_EVERY)
+        self.timer.timeout.connect(self._tell)
+
+    @property
+    def runs(self) -> bool:
+        """Whether it goes on."""
+        return self.background.worker is not None
+
+    def start(self, work: Callable[[], Any]) -> None:
+        """Begin it."""
+        self.background.start(work, self._show)
+        self.timer.start()
+        self._tell()
+
+    def cancel(self) -> None:
+        """End it, if it goes on."""
+        self.timer.stop()
+        self.background.cancel()
+
+    def _show(self, worker: Worker) -> None:
+        self.timer.stop()
+        found = None
+        try:
+            found = worker.result()
+        except AmError as error:
+            self.tell(translated_error(error), True)
+        except Cancelled:
+            self.tell(tr("Cancelled."), False)
+        self.done(found)
+
+    def _tell(self) -> None:
+        worker = self.background.worker
+        if worker is not None:
+            share = (
+                ""
+                if worker.fraction is None
+                else f"{100.0 * worker.fraction:.0f} %  {translated(worker.text)}"
+            )
+            self.tell(f"{tr('Computing')} {share}", False)
+
 
 NAME = "RoboticAM_Placement"
 WIDE = 380  # pixels, at least
@@ -46,7 +217,7 @@ class PlacementDock:
         self.numbers: list[int] = []
         self.volume: Reach | None = None
         self.scene: Scene | None = Scene(view)
-        self.dock = places.dock(NAME, places.RIGHT)
+        self.dock = dock_area.dock(NAME, dock_area.RIGHT)
         self.scroll = QtGui.QScrollArea()
         self.scroll.setWidgetResizable(True)
         self.scroll.setFrameShape(QtGui.QFrame.NoFrame)

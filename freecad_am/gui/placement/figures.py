@@ -7,15 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from freecad_am.core.types import Array, Integers
-
 from ...core.placement.judge import UNREACHED
-from ...core.placement.moved import outer
-from ...core.placement.place import Placed, ranked
+from ...core.placement.place import Placed, outer, ranked
 from ...core.quantities import significant
-from ...objects.fields.shown_units import ORDINARY, scale_of
+from ...core.types import Array, Integers
+from ...objects.fields.preferences import ORDINARY, scale_of
 from ..colours import ramp
-from ..texts.translation import marked, tr, translated
+from ..texts.in_language import marked, tr, translated
 
 SHARE, MARGIN, TIME, CLEARANCE = "share", "margin", "time", "clearance"
 NAMES = {

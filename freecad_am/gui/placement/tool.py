@@ -10,8 +10,8 @@ import FreeCADGui as Gui
 
 from ...core.issues import AmError
 from ...objects.stage import stage_of
-from ..picking.selection import job_named, meant
-from ..texts.translation import error_line, tr, translated_error
+from ..picking.shape_inputs import job_named, meant
+from ..texts.in_language import error_line, tr, translated_error
 from . import dock
 
 KINDS = ("joint path", "toolpath")  # what is placed, the one that tells most first

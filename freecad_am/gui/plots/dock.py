@@ -10,22 +10,28 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ...core.issues import AmError
+from ...objects.fields.preferences import scale_of
 from ...objects.staleness import STALE
-from ...plots import catalogue
+from ...plots import catalogue, chart
 from ...plots.chart import Picture
-from ...plots.rows import OVER, PATH, TIME
+from ...plots.joints import OVER, PATH, TIME
 from ...plots.source import Source
-from ..background.later import Background, Later
-from ..background.worker import Worker
-from ..docks import places
-from ..docks.follower import Follower
-from ..picking.selection import meant
+from ..background.worker import Background, Later, Worker
+from ..docks import dock_area
+from ..docks.dock_area import Follower
+from ..picking.shape_inputs import meant
 from ..preferences import watch
-from ..texts.translation import tr, translated_error
-from ..widgets.scrolled import Scrolled
-from . import saving, units, words
+from ..texts.in_language import tr, translated_error
+from ..widgets.steady import Scrolled
+from . import canvas, saving
 from .canvas import STEP, Canvas
-from .sources import JOINT_PATH, PROGRAM, TOOLPATH, key_of, kind_of, made_from, maker_of, plottable
+from .saving import JOINT_PATH, PROGRAM, TOOLPATH, key_of, kind_of, made_from, maker_of, plottable
+
+
+def in_units(picture: Picture) -> Picture:
+    """A picture in those units; axes of machines keep the units of their controllers."""
+    return chart.in_units(picture, scale_of)
+
 
 NAME = "RoboticAM_Plots"
 HEIGHT, LEAST_HEIGHT = 330, 80  # pixels of the dock, and of a picture
@@ -52,7 +58,7 @@ class PlotsDock(Follower):
         self.layers_of: tuple[str, str] | None = (
             None  # whose layers are chosen: names are those of other documents too
         )
-        self.dock = places.dock(NAME, places.BELOW, high=HEIGHT)
+        self.dock = dock_area.dock(NAME, dock_area.BELOW, high=HEIGHT)
         self.canvas = Canvas()
         self.canvas.setObjectName("canvas")
         self.canvas.say = self._said
@@ -92,7 +98,7 @@ class PlotsDock(Follower):
         self.reading.setObjectName("reading")
         self._fill(form)
         for name, entry in catalogue.PICTURES.items():
-            self.which.addItem(words.translated(entry.title), name)
+            self.which.addItem(canvas.translated(entry.title), name)
         for over in OVER:
             self.over.addItem({TIME: tr("time"), PATH: tr("path")}[over], over)
         for combo in (self.which, self.over):
@@ -293,8 +299,8 @@ class PlotsDock(Follower):
             self.note.setText("")
         try:
             source, picture = worker.result()
-            self.metric = words.in_words(picture, user_units=False)
-            picture = words.in_words(units.in_units(picture))
+            self.metric = canvas.in_words(picture, user_units=False)
+            picture = canvas.in_words(in_units(picture))
         except AmError as error:
             self._show(None, translated_error(error))
             return

@@ -11,7 +11,7 @@ from ...plots.chart import Picture
 from ...plots.draw import Range, Window, figure
 from ...plots.files import KINDS, image, values
 from ...plots.look import LIGHT
-from .words import of_frames
+from .canvas import of_frames
 
 Ranges = Mapping[int, Range]
 CSV = "csv"

@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.geometry.angles import TURN
-from freecad_am.core.types import Array
-
+from ...core.geometry.angles import TURN
 from ...core.planning.redundancy.map import RZ, Picture
+from ...core.types import Array
 from ..colours import ramp
-from ..texts.translation import tr
+from ..texts.in_language import tr
 from .saving import ask
 
 STEPS = 64  # of the ramp
@@ -29,11 +28,11 @@ def save(board: Any, branch: int, canvas: Any, obj: Any) -> None:
     size = canvas.width(), canvas.height()
 
     def content(ending: str) -> bytes:
-        from ...plots import cells, files  # with matplotlib, whose import takes some time
+        from ...plots import files
 
         if ending == "csv":
             return "".join(values(board, picture)).encode()
-        return files.image(cells.figure(_cells(board, painted, curves, cells.Cells), *size), ending)
+        return files.image(files.figure(_cells(board, painted, curves, files.Cells), *size), ending)
 
     ask(tr("Save the map"), obj, "map", content)
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...plots.chart import DOTS, OUTLINE, STEP, Chart, Curve
-from ..texts.translation import tr
+from ..texts.in_language import tr
 
 Range = tuple[float, float]
 NARROWEST = 1e-6  # of all there is

@@ -5,19 +5,117 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from dataclasses import fields
 from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtGui
 
+from ...core.geometry.on_hub import SolidsOnHub
+from ...core.kinematics import cell as cells
+from ...core.motion import Motion
+from ...core.parameters.filled import SolidParameters
+from ...core.parameters.process import ProcessParameters
+from ...core.parameters.program import ProgramParameters
+from ...core.planning.program import build as programs
+from ...core.simulation import timeline
+from ...core.simulation.achievable_feed import spread_to_deposit_rows
+from ...objects import user_machines
 from ...objects.current import is_stale
+from ...objects.solid_feature import SolidFeature
+from ...objects.stage import stage_of
 from ...plots.chart import Picture
-from ..background.later import Background
-from ..background.worker import Worker
-from ..texts.translation import tr
+from ...plots.source import Source
+from ..background.worker import Background, Worker
+from ..texts.in_language import tr
+from ..views.toolpath import band_of
 from .canvas import Canvas
-from .sources import made_from
+
+TOOLPATH, JOINT_PATH, PROGRAM = "toolpath", "joint path", "program"
+
+
+def plottable(obj: Any) -> bool:
+    """Whether an object is a toolpath, joint path or program that has been computed."""
+    return kind_of(obj) in (TOOLPATH, JOINT_PATH, PROGRAM) and all(
+        one is not None and bool(one.Key) for one in made_from(obj)
+    )
+
+
+def kind_of(obj: Any) -> str:
+    """The kind of stage an object is, '' if it is none."""
+    stage = stage_of(obj) if obj is not None else None
+    return "" if stage is None else str(stage.kind)
+
+
+def made_from(obj: Any) -> list[Any]:
+    """The objects that pictures of a toolpath, joint path or program come from, None where one is missing."""
+    if kind_of(obj) == PROGRAM:
+        return [obj.JointPath] if kind_of(obj.JointPath) != JOINT_PATH else made_from(obj.JointPath)
+    if kind_of(obj) == JOINT_PATH:
+        return [obj, obj.Toolpath, obj.Cell]
+    return [obj]
+
+
+def key_of(obj: Any) -> tuple[Any, ...]:
+    """What changes whenever the pictures of an object do."""
+    start = (
+        obj.Proxy.parameters(obj, ProgramParameters).start_at if kind_of(obj) == PROGRAM else None
+    )
+    return (obj.Document.Name, obj.Name, start, *(one.Key for one in made_from(obj)))
+
+
+def maker_of(obj: Any) -> Callable[[], Source]:
+    """What makes the source of an object's pictures; it touches no document and may take a moment."""
+    path, toolpath_object = made_from(obj)[0], made_from(obj)[min(1, len(made_from(obj)) - 1)]
+    toolpath = toolpath_object.Proxy.value(toolpath_object)
+    process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
+    band = band_of(toolpath_object) if hasattr(toolpath_object.Feature, "Band") else None
+    solids, cut_at = _filled(toolpath_object.Feature)
+    if kind_of(path) == TOOLPATH:
+        return lambda: Source(
+            toolpath,
+            timeline.deposit_motion(toolpath),
+            process,
+            band=band,
+            solids=solids,
+            cut_at=cut_at,
+        )
+    planned, settings, folders = (
+        path.Proxy.value(path),
+        path.Cell.Proxy.value(path.Cell),
+        user_machines.folders(),
+    )
+    start = (
+        obj.Proxy.parameters(obj, ProgramParameters).start_at if kind_of(obj) == PROGRAM else None
+    )
+
+    def make() -> Source:
+        motion, run = planned.motion, planned.joint_path.toolpath(toolpath)
+        cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
+        condition, threshold = (
+            spread_to_deposit_rows(motion.deposit, column)
+            for column in planned.joint_path.conditions(motion)
+        )
+        if start is not None:
+            rows = programs.rows_from(motion, start)
+            motion = Motion(
+                **{field.name: getattr(motion, field.name)[rows] for field in fields(motion)}
+            )
+            condition, threshold = condition[rows], threshold[rows]
+        return Source(run, motion, process, cell, condition, threshold, band, solids, cut_at)
+
+    return make
+
+
+def _filled(feature: Any) -> tuple[SolidsOnHub | None, float]:
+    """What is filled in plane layers, None for other features, and the share of a layer height at which layers are cut."""
+    stage = stage_of(feature)
+    if not isinstance(stage, SolidFeature) or not feature.Key:
+        return None, 0.5
+    strategy = stage.parameters(feature, SolidParameters)
+    return (stage.value(feature) if strategy.layers == "planes" else None), strategy.share_of_cut
+
 
 _writing: list[Background] = []  # Python must keep them as long as they write
 

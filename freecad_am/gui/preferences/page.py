@@ -16,7 +16,7 @@ from ...objects import user_machines
 from ...objects.fields import preferences
 from ...objects.fields.rows import MIXED
 from ...posts import catalogue
-from ..texts.translation import tr, translated
+from ..texts.in_language import tr, translated
 from ..widgets import choices, fields
 
 
@@ -197,3 +197,20 @@ def _without_expression(widget: Any) -> None:
 
 def _warn(text: str) -> None:
     App.Console.PrintWarning(tr("Robotic AM, preferences: {}").format(text) + "\n")
+
+
+class RoboticAMPreferences:
+    """Makes the page when FreeCAD's dialog is opened."""
+
+    def __init__(self, *_: Any) -> None:
+
+        self.page = PreferencesPage()
+        self.form = self.page.form
+
+    def loadSettings(self) -> None:
+        """Show what is kept; called by FreeCAD."""
+        self.page.loadSettings()
+
+    def saveSettings(self) -> None:
+        """Keep what is shown; called by FreeCAD."""
+        self.page.saveSettings()

@@ -11,7 +11,7 @@ from PySide import QtCore, QtGui
 from ...core.issues import NOTE, Issue
 from ...core.preflight.promise import Place, Promise
 from ..colours import FAINT, GOOD, WRONG, of
-from ..texts.translation import sentence, tr, translated
+from ..texts.in_language import sentence, tr, translated
 
 HIGH = 16  # lines that are seen at once, about
 PLACE_ROLE = QtCore.Qt.UserRole

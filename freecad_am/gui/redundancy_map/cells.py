@@ -7,11 +7,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..background.later import Background
-from ..background.worker import Worker
+from ..background.worker import Background, Worker
 from .drawn.board import Board
-from .drawn.canvas import Canvas
-from .drawn.picture import painted
+from .drawn.painting import Canvas, painted
 
 ROUGH, FINE = 6, 1  # one of so many rows is looked at
 

@@ -14,10 +14,9 @@ from ...core.planning.redundancy.curve import Compared
 from ...core.planning.task import Task
 from ...objects.work import progress
 from ...objects.work.progress import Cancelled
-from ..background.later import Background
-from ..background.worker import Worker
-from ..texts.translation import tr, translated, translated_error
-from .source import Source
+from ..background.worker import Background, Worker
+from ..texts.in_language import tr, translated, translated_error
+from .draft import Source
 
 TELL_EVERY = 100  # ms
 

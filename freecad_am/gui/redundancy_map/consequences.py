@@ -3,18 +3,293 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
+import numpy as np
+from PySide import QtCore, QtGui
+
+from ...core.kinematics.cell import Cell as Station
+from ...core.kinematics.machines.machine import Machine
 from ...core.planning.redundancy import curve as rotation_curve
 from ...core.planning.redundancy.curve import Followed, Sums
-from ..background.later import Background
-from ..background.worker import Worker
-from ..texts.translation import tr
+from ...core.types import Array
+from ..background.worker import Background, Worker
+from ..colours import PLAIN, WRONG, of, set_role
+from ..texts.in_language import link_touches, tr
+from ..widgets.steady import Scrolled
 from .draft import Draft
-from .drawn.curves import COLOURS, OWN, PLANNED
-from .form import Form
-from .readout import certified, joint_ranges
+from .drawn.board import COLOURS, OWN, PLANNED, Cell
+
+COLUMNS = 6
+
+
+class Figures(QtGui.QTableWidget):
+    """Rows are called by name; `changed` is called when a box was clicked."""
+
+    def __init__(self, changed: Callable[[], None]) -> None:
+        super().__init__(0, COLUMNS)
+        self.setObjectName("figures")
+        self.rows: dict[str, int] = {}
+        self.changed = changed
+        self.filling = False
+        self.setHorizontalHeaderLabels(
+            [tr("Curve"), tr("Lost"), tr("Margin"), tr("Condition"), tr("Speed"), tr("Criterion")]
+        )
+        helps = (
+            tr("Shown on the map"),
+            tr("Points that are unreachable, beyond a limit, near a singularity or not allowed"),
+            tr("The smallest distance to a limit, as a share of half the range of the joint"),
+            tr("The smallest inverse condition number of the Jacobian, sigma_min / sigma_max"),
+            tr("The largest joint speed at the travel speed, as a share of its maximum"),
+            tr("The displacement of the joints (Chalvin 2020, eq. 17), and its ratio to the plan"),
+        )
+        for number, help in enumerate(helps):
+            self.horizontalHeaderItem(number).setToolTip(help)
+        self.verticalHeader().hide()
+        self.verticalHeader().setDefaultSectionSize(int(1.6 * self.fontMetrics().height()))
+        self.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
+        self.setSelectionMode(QtGui.QAbstractItemView.NoSelection)
+        self.horizontalHeader().setStretchLastSection(True)
+        self.setMinimumWidth(200)
+        self.itemChanged.connect(self._clicked)
+
+    def set(
+        self,
+        name: str,
+        title: str,
+        colour: tuple[int, int, int],
+        sums: Sums,
+        planned: Sums | None,
+        about: bool = False,
+        help: str = "",
+    ) -> None:
+        """Fill a row, which is made when it is new. about: the figures are of some of the points."""
+        self.filling = True
+        new = name not in self.rows
+        if new:
+            self.rows[name] = self.rowCount()
+            self.insertRow(self.rowCount())
+        row, sign = self.rows[name], "≈ " if about else ""
+        reached = np.isfinite(sums.margin)
+        times = (
+            ""
+            if planned is None or not planned.displacement
+            else f" (×{sums.displacement / planned.displacement:.3g})"
+        )
+        texts = (
+            title,
+            f"{sums.lost}",
+            f"{100.0 * sums.margin:.1f} %" if reached else tr("unreachable"),
+            f"{sums.condition:.4f}",
+            f"{100.0 * sums.ratio:.1f} %" if np.isfinite(sums.ratio) else "—",
+            f"{sums.displacement:.3g}{times}" if np.isfinite(sums.displacement) else "—",
+        )
+        for column, text in enumerate(texts):
+            item = self.item(row, column)
+            if item is None:
+                item = QtGui.QTableWidgetItem()
+                self.setItem(row, column, item)
+            item.setText(text if column in (0, 1) else f"{sign}{text}")
+        mark = self.item(row, 0)
+        if new:
+            mark.setFlags(QtCore.Qt.ItemIsEnabled | QtCore.Qt.ItemIsUserCheckable)
+            mark.setCheckState(QtCore.Qt.Checked)
+            image = QtGui.QPixmap(12, 12)
+            image.fill(QtGui.QColor(*colour))
+            mark.setIcon(QtGui.QIcon(image))
+        mark.setToolTip(help)
+        wound = tr(
+            "{} exceed a limit only because an axis runs out of turns along its bead"
+        ).format(sums.wound)
+        self.item(row, 1).setToolTip(wound if sums.wound else "")
+        for column, wrong in ((1, sums.lost > 0), (4, sums.ratio > 1.0)):
+            ink = of(WRONG if wrong else PLAIN)
+            self.item(row, column).setForeground(QtGui.QBrush(ink))
+        self.resizeColumnsToContents()
+        self.filling = False
+
+    def shows(self, name: str) -> bool:
+        """Whether a curve is to be seen."""
+        return name in self.rows and self.item(self.rows[name], 0).checkState() == QtCore.Qt.Checked
+
+    def hide_curve(self, name: str) -> None:
+        """Take a curve from the map, as its box does."""
+        self.item(self.rows[name], 0).setCheckState(QtCore.Qt.Unchecked)
+
+    def clear_all(self) -> None:
+        """No rows."""
+        self.filling = True
+        self.setRowCount(0)
+        self.rows.clear()
+        self.filling = False
+
+    def _clicked(self, item: Any) -> None:
+        if not self.filling and item.column() == 0:
+            self.changed()
+
+
+NARROWEST = 190  # pixels of the controls
+
+
+class Form(QtGui.QWidget):
+    """The widgets at their places; whoever makes it connects them."""
+
+    def __init__(self, canvas: Any, controls: Any, figures: Any) -> None:
+        super().__init__()
+        self.figures = figures
+        row, left = QtGui.QHBoxLayout(self), QtGui.QVBoxLayout()
+        beside = QtGui.QWidget()
+        right = QtGui.QVBoxLayout(beside)
+        right.setContentsMargins(0, 0, 0, 0)
+        row.setContentsMargins(4, 2, 4, 4)
+        row.setSpacing(4)
+        self.readout = QtGui.QLabel()
+        self.readout.setObjectName("readout")
+        self.readout.setMinimumHeight(2 * self.readout.fontMetrics().height() + 4)
+        self.readout.setSizePolicy(QtGui.QSizePolicy.Ignored, QtGui.QSizePolicy.Preferred)
+        left.addWidget(canvas, 1)
+        left.addWidget(self.readout)
+        self.verdict = QtGui.QLabel()
+        self.verdict.setObjectName("verdict")
+        self.verdict.setWordWrap(True)
+        self.joints = QtGui.QLabel()
+        self.joints.setObjectName("joints")
+        self.joints.setWordWrap(True)
+        self.joints.setTextFormat(QtCore.Qt.RichText)
+        self.joints.setToolTip(tr("Range of each joint on this curve; red beyond a limit"))
+        right.addWidget(figures, 1)
+        right.addWidget(self.joints)
+        right.addWidget(self.verdict)
+        grid = QtGui.QGridLayout()
+        self.buttons = {
+            name: _button(name, text, help)
+            for name, text, help in (
+                (
+                    "use",
+                    tr("Use this"),
+                    tr("Use the curve for the joint path, and plan it again"),
+                ),
+                (
+                    "free",
+                    tr("Let the planner choose"),
+                    tr("Plan the joint path again layer by layer, without a given curve"),
+                ),
+                ("again", tr("Back"), tr("Reset to the planned curve")),
+                (
+                    "compare",
+                    tr("Compare methods"),
+                    tr(
+                        "Plan constant, point-by-point and layer-by-layer in this configuration, "
+                        "for comparison"
+                    ),
+                ),
+                ("save", tr("Save…"), tr("Save as an image (PNG, SVG, PDF), or the values (CSV)")),
+            )
+        }
+        for number, button in enumerate(self.buttons.values()):
+            grid.addWidget(button, number // 2, number % 2)
+        right.addLayout(grid)
+        row.addLayout(left, 7)
+        row.addWidget(Scrolled(controls, NARROWEST), 2)
+        row.addWidget(Scrolled(beside), 4)
+
+    def tell(self, text: str, wrong: bool = False) -> None:
+        """Say how the curve stands, or what goes on."""
+        self.verdict.setText(text)
+        set_role(self.verdict, WRONG if wrong else PLAIN)
+
+    def show_joints(self, ranges: list[tuple[str, bool]]) -> None:
+        """What each joint does, and whether it goes past a limit."""
+        whole = [(text.replace(" ", "&nbsp;"), wrong) for text, wrong in ranges]
+        parts = [
+            f'<font color="{of(WRONG).name()}">{text}</font>' if wrong else text
+            for text, wrong in whole
+        ]
+        self.joints.setText(" &nbsp; ".join(parts))
+
+
+def _button(name: str, text: str, help: str) -> Any:
+    button = QtGui.QPushButton(text)
+    button.setObjectName(name)
+    button.setToolTip(help)
+    return button
+
+
+PAST = 1e-9  # rad, of rounding
+
+
+def readout(cell: Cell, machine: Machine) -> str:
+    """Two lines: place and rotation, margins; and the joints."""
+    layer, bead, point = cell.place
+    where = tr("Layer {} bead {} point {}").format(layer, bead, point)
+    turned = f"RZ {np.degrees(cell.rz):.1f}°   " + tr("rotation") + f" {np.degrees(cell.phi):.1f}°"
+    notes = []
+    if not np.isfinite(cell.joints).all():
+        return f"{where}   {turned}\n" + tr("out of reach in this configuration")
+    if cell.margin < 0.0:
+        notes.append(tr("beyond a limit"))
+    if cell.condition < cell.threshold:
+        notes.append(tr("near a singularity"))
+    if cell.outside:
+        notes.append(tr("rotation not allowed"))
+    if cell.touching:
+        notes.append(tr("the nozzle touches platform or part"))
+    if cell.arm is not None:
+        notes.append(link_touches(*cell.arm))
+    margin = tr("margin {:.1f} % ({})").format(100.0 * cell.margin, cell.nearest)
+    condition = tr("condition {:.4f}, least {:.4f}").format(cell.condition, cell.threshold)
+    joints = "   ".join(
+        f"{name} {value:.2f}{unit}"
+        for name, value, unit in zip(
+            machine.axes, cell.joints / machine.unit_values, _units(machine), strict=True
+        )
+    )
+    return f"{where}   {turned}   {margin}   {condition}   {', '.join(notes)}\n{joints}"
+
+
+def certified(optimality: Mapping[str, Any] | None) -> str:
+    """What a certificate says of the plan; '' where none was asked for."""
+    if optimality is None:
+        return ""
+    text = tr(
+        "Certificate: {:.4g} as planned, no rotation goes below {:.4g}: a gap of {:.1f} %, {:.1f} % in layer {} bead {}"
+    )
+    worst = optimality["worst"]
+    return text.format(
+        optimality["objective"],
+        optimality["bound"],
+        100.0 * optimality["gap"],
+        100.0 * worst["gap"],
+        worst["layer"],
+        worst["bead"],
+    )
+
+
+def joint_ranges(joints: Array, station: Station) -> list[tuple[str, bool]]:
+    """For each axis from where to where joints (T, axes) go, deg, and whether that is past a limit of its own."""
+    reached = joints[np.isfinite(joints).all(axis=1)]
+    if not len(reached):
+        return []
+    low, high = reached.min(axis=0), reached.max(axis=0)
+    units = station.machine.unit_values
+    past = (low < station.limits.lower - PAST) | (high > station.limits.upper + PAST)
+    return [
+        (f"{name} {a:.1f}…{b:.1f}{unit}", bool(wrong))
+        for name, a, b, wrong, unit in zip(
+            station.machine.axes,
+            low / units,
+            high / units,
+            past,
+            _units(station.machine),
+            strict=True,
+        )
+    ]
+
+
+def _units(machine: Machine) -> list[str]:
+    """What stands behind the values of the axes."""
+    return [" mm" if unit == "mm" else "°" for unit in machine.units]
 
 
 class Consequences:

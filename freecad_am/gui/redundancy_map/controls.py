@@ -12,10 +12,10 @@ from PySide import QtGui
 from ...core.kinematics.inverse import opw
 from ...core.parameters.joints import HIGHEST
 from ...core.planning.redundancy.map import ROTATION, RZ
-from ..texts.translation import tr
+from ..texts.in_language import tr
 from .draft import CONSTANT, POLYNOMIALS, Draft
 from .drawn.board import Board
-from .drawn.picture import KINDS
+from .drawn.painting import KINDS
 
 STEP = 1.0  # deg of an arrow of a coefficient
 MAX_VALUE = 1e6

@@ -13,29 +13,67 @@ from PySide import QtGui
 
 from ...core.issues import AmError
 from ...core.planning.redundancy.curve import Compared
+from ...core.types import Array
 from ...objects.work.progress import Cancelled
 from .. import recorded
-from ..background.later import Later
-from ..docks import places
-from ..docks.lookout import Lookout
+from ..background.worker import Later
+from ..docks import dock_area
+from ..docks.dock_area import Lookout
+from ..path import dock as path_dock
+from ..path.path_view import PathView
 from ..plots.map_file import save
 from ..preferences import watch
-from ..texts.translation import tr, translated, translated_error
-from ..widgets.scrolled import Scrolled
+from ..simulation import dock as simulation_dock
+from ..texts.in_language import tr, translated, translated_error
+from ..widgets.steady import Scrolled
 from .cells import Cells
 from .comparison import Comparison
-from .consequences import Consequences
+from .consequences import Consequences, Figures, Form, readout
 from .controls import AXES, CURVES, Controls
-from .draft import Draft
-from .drawn.board import Board
-from .drawn.canvas import Canvas
-from .drawn.curves import COLOURS, Dragged, drawn
-from .drawn.picture import KINDS
-from .figures import Figures
-from .form import Form
-from .jump import jump
-from .readout import readout
-from .source import Source, source_of, status_of
+from .draft import Draft, Source, source_of, status_of
+from .drawn.board import COLOURS, Board, Dragged, drawn
+from .drawn.painting import KINDS, Canvas
+
+
+def jump(obj: Any, layer: int, position: Array) -> bool:
+    """To the point of a layer of a joint path that is nearest to a position (3,), mm; whether anything followed."""
+    simulated, shown = _simulation(obj, layer, position), _path(obj, layer, position)
+    return simulated or shown
+
+
+def _simulation(obj: Any, layer: int, position: Array) -> bool:
+    for running in list(simulation_dock._open):
+        motion = running.run.motion
+        if running.run.document != obj.Document.Name or obj.Name not in running.run.objects:
+            continue
+        rows = np.flatnonzero(motion.deposit & (motion.layer == layer))
+        if len(rows):
+            away = np.linalg.norm(motion.position[rows] - position, axis=1)
+            running.player.go_to_row(int(rows[int(away.argmin())]))
+            running.play(False)
+            return True
+    return False
+
+
+def _path(obj: Any, layer: int, position: Array) -> bool:
+    """The view of the joint path shows the layer up to the point, where the path dock is open."""
+    opened, view = path_dock._dock, obj.ViewObject.Proxy
+    if (
+        opened is None
+        or not opened.dock.isVisible()
+        or not isinstance(view, PathView)
+        or view.rows is None
+    ):
+        return False
+    first, end = view.rows.of_layers(layer, layer)
+    if end <= first:
+        return False
+    away = np.linalg.norm(view.rows.points[first:end] - position, axis=1)
+    begin = 0 if view.shown is None else min(view.shown[0], layer)
+    view.show((begin, layer, int(away.argmin()) + 1))
+    opened.follow(obj)
+    return True
+
 
 NAME = "RoboticAM_SpinMap"
 WIDE, HIGH = 0.85, 380  # of the window's width; pixels
@@ -47,7 +85,7 @@ class RedundancyMapDock:
     def __init__(self, obj: Any, closed: Callable[[RedundancyMapDock], None]) -> None:
         """closed: is told when it is."""
         self.obj, self.closed, self.gone = obj, closed, False
-        self.dock = places.dock(NAME, places.BELOW, WIDE, HIGH)
+        self.dock = dock_area.dock(NAME, dock_area.BELOW, WIDE, HIGH)
         self.holder = QtGui.QStackedWidget()
         self.canvas = Canvas()
         self._build()

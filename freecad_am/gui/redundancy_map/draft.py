@@ -3,27 +3,239 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from freecad_am.core.geometry.angles import TURN
-from freecad_am.core.types import Array, Integers
-
+from ...core.collision.bead_ends import LINK_GRAIN, Beads
+from ...core.geometry.angles import TURN
+from ...core.issues import InputError
+from ...core.kinematics.cell import Cell
+from ...core.kinematics.inverse import opw
+from ...core.kinematics.links import external_links
+from ...core.kinematics.links.contact import ArmContact
+from ...core.kinematics.links.external_links import Mesh
 from ...core.parameters.joints import BRANCHES as BRANCH_WORDS
-from ...core.parameters.joints import OF_CELL, given_text
-from ...core.planning.joint_path import BeadPath
+from ...core.parameters.joints import OF_CELL, JointParameters, given_text
+from ...core.parameters.process import ProcessParameters
+from ...core.planning.joint_path import BeadPath, JointPath
+from ...core.planning.plan import REVOLUTION
 from ...core.planning.points import Points
 from ...core.planning.redundancy import curve as rotation_curve
+from ...core.planning.redundancy import map
 from ...core.planning.redundancy import map as redundancy_map
 from ...core.planning.redundancy.curve import Followed
-from ...core.planning.redundancy.map import Columns, in_turns
+from ...core.planning.redundancy.map import Columns, Picture, RedundancyMap, in_turns
 from ...core.planning.rotation.given import METHOD
 from ...core.planning.rotation.planned import rotation_along
-from .source import Source
+from ...core.planning.task import Task
+from ...core.toolpath import Bead, Toolpath
+from ...core.types import Array, Integers, Mask
+from ...objects import user_machines
+from ...objects.joint_path import planned_of
+from ...objects.results.findings import first_message, issues_of
+from ...objects.shapes.cell_obstacles import meshes_of, resolved
+from ...objects.stage import stage_of
+from ...objects.staleness import UP_TO_DATE
+from ..texts.in_language import tr, translated
+
+
+@dataclass(frozen=True)
+class Source:
+    """All that is read of the document. objects: names of those it was read from. beads: of the toolpath, with their places
+    (layer, index), from the seams that the plan moved them to. width: mm of beads that tell none. shapes: meshes that a user
+    gave the links of the robot."""
+
+    document: str
+    name: str
+    title: str
+    objects: tuple[str, ...]
+    cell: Cell
+    parameters: JointParameters
+    toolpath: Toolpath
+    planned: JointPath
+    beads: tuple[Bead, ...]
+    places: tuple[tuple[int, int], ...]
+    width: float
+    shapes: tuple[Mesh | None, ...]
+
+    @cached_property
+    def starts(self) -> Array:
+        """(beads + 1,) how many points there are before each bead, and in all."""
+        return np.concatenate([[0], np.cumsum([len(bead) for bead in self.beads])])
+
+    @cached_property
+    def arm(self) -> ArmContact:
+        """The robot with what is around it and, in the order of the beads, the deposit; made in the background."""
+        deposited = Beads.of(self.beads, self.width, self.toolpath.layer_height).solid(LINK_GRAIN)
+        cylinders = external_links.robot_cylinders(self.cell.robot.chain, self.shapes)
+        return ArmContact(self.cell, cylinders, self.toolpath.surroundings, deposited)
+
+    @property
+    def branch(self) -> int:
+        """The branch that was planned."""
+        return opw.branch_index(self.planned.branch)
+
+    def task(self, branch: int) -> Task:
+        """What the planner has to do on a branch."""
+        return Task(self.cell, branch, self.parameters, self.toolpath.family != REVOLUTION)
+
+
+def source_of(obj: Any) -> Source:
+    """What there is about a joint path. Raises InputError where there is no map of it, saying what to do."""
+    stage = stage_of(obj)
+    if stage is None or stage.kind != "joint path":
+        raise InputError("NO_MAP", getattr(obj, "Label", "?"), "it is not a joint path; select one")
+    value, toolpath, looks = planned_of(obj, obj.Label)
+    cell = resolved(looks, toolpath, user_machines.folders())
+    if not cell.machine.free or not value.joint_path.branch:
+        raise InputError(
+            "NO_MAP",
+            obj.Label,
+            "its machine has two rotary axes and no tool redundancy; open the map of a robot",
+        )
+    return Source(
+        document=obj.Document.Name,
+        name=obj.Name,
+        title=obj.Label,
+        objects=tuple(dict.fromkeys((obj.Name, obj.Toolpath.Name, obj.Cell.Name))),
+        cell=cell,
+        parameters=obj.Proxy.parameters(obj, JointParameters),
+        toolpath=toolpath,
+        planned=value.joint_path,
+        beads=_as_run(toolpath, value.joint_path, cell),
+        places=_places(toolpath, value.joint_path, cell),
+        width=obj.Toolpath.Proxy.parameters(obj.Toolpath, ProcessParameters).bead_width,
+        shapes=meshes_of(cell.robot),
+    )
+
+
+def status_of(obj: Any) -> tuple[str, bool]:
+    """How a joint path itself stands, in words of the window, and whether that is wrong; '' of one that is gone."""
+    with contextlib.suppress(ReferenceError, RuntimeError):
+        message = first_message(issues_of(obj))
+        wrong, status = obj.Status != UP_TO_DATE, translated(obj.Status)
+        return tr("{}: {}").format(
+            status, translated(message)
+        ) if message and wrong else status, wrong
+    return "", False
+
+
+def _places(toolpath: Toolpath, planned: JointPath, cell: Cell) -> tuple[tuple[int, int], ...]:
+    if cell.external is not None:
+        return tuple((path.layer, path.index) for path in planned.beads)
+    return tuple((layer, index) for layer, index, _ in toolpath)
+
+
+def _as_run(toolpath: Toolpath, planned: JointPath, cell: Cell) -> tuple[Bead, ...]:
+    """The beads of a toolpath from the seams of the plan: it may start a closed one elsewhere, where an axis then has the
+    room for it that it has not from its own seam. Layers with beads that it runs in pieces are as they are. With external
+    axes they are those of the plan itself, which tell where these axes are."""
+    if cell.external is not None:
+        return tuple(path.bead for path in planned.beads)
+    run = {(path.layer, path.index): path.bead for path in planned.beads}
+    pieces, beads = (
+        Counter(path.layer for path in planned.beads),
+        Counter(layer for layer, _, _ in toolpath),
+    )
+    found = []
+    for layer, index, bead in toolpath:
+        other = run.get((layer, index))
+        if other is not None and bead.closed and pieces[layer] == beads[layer]:
+            away = np.linalg.norm(bead.points[:-1] - other.points[0], axis=1)
+            bead = bead.started_at(int(away.argmin()))
+        found.append(bead)
+    return tuple(found)
+
+
+ROWS = 61  # values of the axis that goes upwards
+LABELS = 6
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """cells: all pairs, row after row. values: (R,) rad or mm of the axis `up`, which is planned `here`. phi: the rotation
+    that is planned, rad. count: of columns."""
+
+    source: Source
+    up: int
+    cells: Columns
+    values: Array
+    here: float
+    phi: float
+    count: int
+
+    def compute(self, branch: int, known: RedundancyMap | None) -> tuple[RedundancyMap, Picture]:
+        """All branches, cells in one row, where they are not known yet, and the picture (R, C) of one."""
+        task = self.source.task(branch)
+        found = known or redundancy_map.redundancy_map(
+            task,
+            self.cells,
+            redundancy_map.ROTATION,
+            self.source.toolpath.surroundings,
+            np.array([self.phi]),
+        )
+        return found, map.in_rows(redundancy_map.picture(task, found, branch), len(self.values))
+
+    def arm(self, branch: int, known: RedundancyMap) -> Mask:
+        """(R, C) where links of the robot touch something."""
+        source = self.source
+        moment = source.starts[self.cells.bead] + self.cells.point
+        found = redundancy_map.arm_touched(source.task(branch), known, branch, source.arm, moment)
+        return found.reshape(len(self.values), self.count)
+
+    def number(self, column: int, value: float) -> int:
+        """Which of `cells` is at a column and a height of the map, which goes from -pi to pi."""
+        row = round((value + np.pi) / TURN * (len(self.values) - 1))
+        return int(np.clip(row, 0, len(self.values) - 1)) * self.count + column
+
+    @property
+    def name(self) -> str:
+        """Of the axis that goes upwards."""
+        return self.source.cell.machine.axes[self.source.cell.robot.chain.axes + self.up]
+
+    @property
+    def labels(self) -> list[tuple[float, str]]:
+        """Heights and the values written beside them, deg or mm."""
+        machine = self.source.cell.machine
+        unit = float(machine.unit_values[self.source.cell.robot.chain.axes + self.up])
+        sign = " mm" if machine.chain.sliding[self.source.cell.robot.chain.axes + self.up] else "°"
+        shown = np.unique(np.round(np.linspace(0, len(self.values) - 1, LABELS)).astype(int))
+        return [
+            (float(TURN * k / (len(self.values) - 1) - np.pi), f"{self.values[k] / unit:.0f}{sign}")
+            for k in shown
+        ]
+
+    @property
+    def planned(self) -> float:
+        """The height at which the axis is planned."""
+        return float(
+            np.interp(self.here, self.values, np.linspace(-np.pi, np.pi, len(self.values)))
+        )
+
+
+def pair_of(source: Source, at: tuple[int, int], axes: tuple[int, int], offsets: Array) -> Pair:
+    """At a point (bead, point): values (C,) of the first of two external axes against those of the second over its range."""
+    bead, point = at
+    values = map.span(source.task(source.branch), source.beads[bead], point, axes[1], ROWS)
+    cells = map.across_two_axes(source.beads, source.cell, at, axes, (offsets, values))
+    here = float(redundancy_map.planned_external(source.beads[bead])[point, axes[1]])
+    return Pair(
+        source,
+        axes[1],
+        cells,
+        values,
+        here,
+        float(source.planned.beads[bead].phi[point]),
+        len(offsets),
+    )
+
 
 POLYNOMIALS, CONSTANT = "polynomials", "constant"
 LIVE = 4000  # points that are looked at while the curve is dragged, about

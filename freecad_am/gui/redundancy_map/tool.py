@@ -10,10 +10,10 @@ import FreeCADGui as Gui
 
 from ...core.issues import AmError
 from ...objects.stage import stage_of
-from ..picking.selection import job_named, meant
-from ..texts.translation import error_line, tr, translated_error
+from ..picking.shape_inputs import job_named, meant
+from ..texts.in_language import error_line, tr, translated_error
 from .dock import RedundancyMapDock
-from .source import source_of
+from .draft import source_of
 
 _open: list[RedundancyMapDock] = []  # Python must keep it as long as it is open; there is one
 

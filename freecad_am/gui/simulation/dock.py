@@ -13,13 +13,12 @@ from PySide import QtCore, QtGui
 
 from .. import colours
 from ..background import redraw
-from ..docks import places
-from ..docks.lookout import Lookout
+from ..docks import dock_area
+from ..docks.dock_area import Lookout
 from ..preferences import watch
-from ..texts.translation import tr
+from ..texts.in_language import tr
 from .fields import Fields
-from .player import Player
-from .run import Run
+from .player import Player, Run
 from .scene import Scene
 
 NAME = "RoboticAM_Simulation"
@@ -34,7 +33,7 @@ class Simulation:
     def __init__(self, run: Run, view: Any) -> None:
         self.run, self.player = run, Player(run)
         self.scene: Scene | None = Scene(run, view)
-        self.dock = places.dock(NAME, places.RIGHT)
+        self.dock = dock_area.dock(NAME, dock_area.RIGHT)
         self.scroll = QtGui.QScrollArea()
         self.scroll.setWidgetResizable(True)
         self.scroll.setFrameShape(QtGui.QFrame.NoFrame)

@@ -15,29 +15,28 @@ import FreeCAD as App
 import numpy as np
 from pivy import coin
 
-from freecad_am.core.types import Array, Mask
-
 from ...core.geometry import frames
-from ...core.kinematics.links.rounds import NONE
-from ...core.simulation.grown import heights
-from ...core.simulation.placing import Placing, at_rest, placing
+from ...core.kinematics.links.own import NONE
+from ...core.simulation.table_links import Placing, at_rest, heights, placing
 from ...core.toolpath import Bead
+from ...core.types import Array, Mask
 from ...objects.stage import stage_of
 from ..nodes.cell import (
     NOZZLE,
     PLATFORM,
+    ExternalLinkNodes,
+    MachineNodes,
     coloured,
     holder_node,
+    move,
     nozzle_node,
+    plain_links,
     platform_nodes,
     resting_point,
 )
-from ..nodes.external_links import ExternalLinkNodes
 from ..nodes.lines import Lines, fill
-from ..nodes.machine_links import MachineNodes, move, plain_links
-from ..path.pieces import PathNodes
-from ..path.rows import Rows
-from .run import Run
+from ..path.pieces import PathNodes, Rows
+from .player import Run
 
 METAL, SLOW, WRONG = (0.62, 0.66, 0.72), (0.96, 0.55, 0.05), (0.86, 0.1, 0.12)
 TO_COME = (0.5, 0.52, 0.56)

@@ -12,10 +12,10 @@ from ...core.issues import AmError
 from ...objects.stage import stage_of
 from ...objects.work import hooks
 from ...objects.work.progress import Cancelled
-from ..picking.selection import job_named, meant
-from ..texts.translation import error_line, tr, translated_error
+from ..picking.shape_inputs import job_named, meant
+from ..texts.in_language import error_line, tr, translated_error
 from . import dock
-from .run import prepared
+from .player import prepared
 
 KINDS = ("program", "joint path")
 

@@ -8,18 +8,15 @@ import re
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
 from ...core.quantities import significant
 from ...core.simulation import watch
 from ...core.simulation.totals import MM3_PER_CM3
 from ...core.simulation.watch import Finding
+from ...core.types import Array
 from ...objects.fields import preferences
-from ...objects.fields.shown_units import in_user_units
-from ..texts.touching import link_touches
-from ..texts.translation import tr, translated
-from .player import Moment
-from .run import Run
+from ...objects.fields.preferences import in_user_units
+from ..texts.in_language import link_touches, tr, translated
+from .player import Moment, Run
 
 _HOUR = 3600.0  # s
 

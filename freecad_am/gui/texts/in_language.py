@@ -3,10 +3,131 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
 
-from ...core.issues import Text
+import FreeCAD as App
+import FreeCADGui as Gui
+
+from ...core.issues import AmError, Text
+from ...core.kinematics.links.contact import (
+    BASE,
+    DEPOSIT,
+    NOZZLE,
+    OWN_PREFIX,
+    PART,
+    PLATFORM,
+    TORCH,
+)
+from ...core.parameters.build_direction import BuildDirectionParameters
+from ...core.parameters.cell import CellParameters
+from ...core.parameters.inspection import InspectionParameters
+from ...core.parameters.joints import JointParameters
+from ...core.parameters.process import ProcessParameters
+from ...core.parameters.program import ProgramParameters
 from ...core.quantities import is_example, put_values
+from ...core.strategies.families import FAMILIES
+from ...objects.fields.preferences import in_user_units
+from ...objects.fields.rows import group_of, rows
+
+_SECTIONS = (
+    ("cell", CellParameters),
+    *(("strategy", family.parameters) for family in FAMILIES),
+    ("build_direction", BuildDirectionParameters),
+    ("process", ProcessParameters),
+    ("joints", JointParameters),
+    ("program", ProgramParameters),
+    ("inspection", InspectionParameters),
+)
+# the panel that has the fields of a section, as its stage or tool is called
+_PANELS = {
+    "cell": "Cell",
+    "strategy": "Feature",
+    "build_direction": "Feature",
+    "process": "Toolpath",
+    "joints": "Joint path",
+    "program": "Program",
+    "inspection": "Inspection",
+}
+_LINE = r"((?:[a-z_]+\.)*[a-z_]+): ([A-Za-z0-9+_-]+)"  # of a job file
+_QUOTED, _BARE = re.compile(f"`{_LINE}`"), re.compile(rf"(?<![\w./\\`-]){_LINE}(?!`)")
+_KEY = re.compile(
+    rf"(?<![\w./\\-])(?:{'|'.join(sorted({section for section, _ in _SECTIONS}))})(?:\.[a-z_]+)+(?![\w/\\-])"
+)
+
+
+@lru_cache(maxsize=1)
+def _known() -> dict[str, tuple[str, str]]:
+    """The group within its panel, '' for none, and the label of each parameter, by its name in job files; of each group
+    too, and of each range, which has two fields."""
+    found: dict[str, tuple[str, str]] = {}
+    for section, cls in _SECTIONS:
+        for row in rows(cls):
+            steps = [step for step in row.path if isinstance(step, str)]
+            if len(steps) < len(row.path):
+                found.setdefault(".".join([section, *steps]), ("", group_of(row)))
+            else:
+                nested = len(steps) > 1
+                found.setdefault(
+                    ".".join([section, *steps]), (group_of(row) if nested else "", row.label)
+                )
+                if nested:
+                    found.setdefault(f"{section}.{steps[0]}", ("", group_of(row)))
+    return found
+
+
+@lru_cache(maxsize=1)
+def _choices() -> dict[str, set[str]]:
+    """What each parameter that has choices may be, in any family, by its name in job files."""
+    found: dict[str, set[str]] = {}
+    for section, cls in _SECTIONS:
+        for row in rows(cls):
+            name = ".".join([section, *(step for step in row.path if isinstance(step, str))])
+            found.setdefault(name, set()).update(row.spec.choices, row.spec.words)
+    return found
+
+
+@lru_cache(maxsize=1)
+def _short_names() -> dict[str, str]:
+    """The whole name of each parameter whose last part no other section has, by that part."""
+    found: dict[str, list[str]] = {}
+    for name in _known():
+        found.setdefault(name.rpartition(".")[2], []).append(name)
+    return {
+        short: names[0]
+        for short, names in found.items()
+        if len({name.partition(".")[0] for name in names}) == 1 and names[0].count(".") == 1
+    }
+
+
+def as_in_panels(
+    text: str, translate: Callable[[str], str], quoted: str = "“{}”", with_panel: bool = False
+) -> str:
+    """A message with the names that parameters have in panels, translated: “Bead width” for process.bead_width, “Motion:
+    joint” for motion: joint, with or without backticks. with_panel: tell whose panel has it, “Bead width” (Toolpath)."""
+
+    def shown(name: str, value: str = "") -> str:
+        group, label = _known()[name]
+        own = translate(label)
+        field = f"{translate(group)}, {own.lower()}" if group else own
+        panel = f" ({translate(_PANELS[name.partition('.')[0]])})" if with_panel else ""
+        return quoted.format(f"{field}: {translate(value)}" if value else field) + panel
+
+    def named(match: re.Match[str]) -> str:
+        return shown(match[0]) if _known().get(match[0], ("", ""))[1] else match[0]
+
+    def paired(match: re.Match[str]) -> str:
+        name = match[1] if match[1] in _known() else _short_names().get(match[1])
+        return match[0] if name is None else shown(name, match[2])
+
+    def paired_bare(match: re.Match[str]) -> str:
+        name = match[1] if match[1] in _known() else _short_names().get(match[1], "")
+        return paired(match) if match[2] in _choices().get(name, ()) else match[0]
+
+    return _KEY.sub(named, _BARE.sub(paired_bare, _QUOTED.sub(paired, text)))
+
 
 KINDS = ("cell", "feature", "toolpath", "program", "inspection")  # stages, as messages call them
 
@@ -62,3 +183,80 @@ def names_first(text: str) -> bool:
         return False
     first = text.values[0]
     return names_first(first) if isinstance(first, Text) else first not in KINDS
+
+
+CONTEXT = "RoboticAM"
+FOLDER = Path(__file__).resolve().parents[3] / "resources" / "translations"
+
+
+def install() -> None:
+    """Let FreeCAD find our translations, and use that of its language."""
+    Gui.addLanguagePath(str(FOLDER))
+    Gui.updateLocale()
+
+
+def tr(text: str) -> str:
+    """The text in the language of FreeCAD's window; itself where no translation is there.
+
+    Called with literals, or what was `marked`, so that a script can collect them; figures are put in afterwards, by
+    `format`.
+    """
+    return str(App.Qt.translate(CONTEXT, text))
+
+
+def marked(text: str) -> str:
+    """The text as it is, for a script to collect: it is translated when it is shown, by `tr` or by FreeCAD."""
+    return text
+
+
+def translated(text: str, user_units: bool = True) -> str:
+    """What the core wrote, which knows no language and no panel - a help, a word, a message with figures in it - in that of
+    the window, with parameters as its panels call them; itself where no translation is there. user_units: False
+    keeps quantities in mm, for files."""
+    return as_in_panels(
+        in_language(text, tr, in_user_units if user_units else None), translated, tr("“{}”"), True
+    )
+
+
+def translated_error(error: BaseException) -> str:
+    """An error with the place it belongs to, in the language of the window."""
+    if not isinstance(error, AmError):
+        return str(error)
+    where = as_in_panels(in_language(error.where, tr), translated, "{}")
+    return tr("{}: {}").format(where, translated(error.message))
+
+
+def error_line(error: AmError) -> str:
+    """An error as a line of the report view, with the code that it has in the headless commands."""
+    return f"error[{error.code}] {translated_error(error)}\n"
+
+
+def sentence(text: str) -> str:
+    """A text that begins small, such as a finding, as a sentence of its own, in the language of the window. One that begins
+    with the name of a part or file keeps that as it is."""
+    shown = translated(text)
+    return shown if names_first(text) else shown[:1].upper() + shown[1:]
+
+
+def link_touches(link: str, what: str) -> str:
+    """link: as `ArmContact.links` has it; what: as `ArmContact.names` has it, a body by its own name."""
+    names = {
+        NOZZLE: tr("the nozzle"),
+        PLATFORM: tr("the platform"),
+        DEPOSIT: tr("the deposit"),
+        TORCH: tr("the torch"),
+    }
+    names[BASE] = tr("the base")
+    if what.startswith(OWN_PREFIX):
+        names[what] = tr("the link of {axis}").format(axis=what[len(OWN_PREFIX) :])
+    if " " in link:  # of positioner or track, by its own name
+        return tr("{link} touches {what}").format(link=link, what=names.get(what, what))
+    if link == BASE:
+        return tr("the base touches {what}").format(what=names.get(what, what))
+    if link == PART:
+        return tr("the part touches {what}").format(what=names.get(what, what))
+    if link == NOZZLE:
+        return tr("the nozzle touches {what}").format(what=names.get(what, what))
+    if link == TORCH:
+        return tr("the torch touches {what}").format(what=names.get(what, what))
+    return tr("the link of {axis} touches {what}").format(axis=link, what=names.get(what, what))

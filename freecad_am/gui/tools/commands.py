@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from ..texts.translation import marked
-from . import needs, openers
+from ..texts.in_language import marked
+from . import openers, whats_this
 from .freecad_am import add_command
 from .tool import PREFIX, Tool
 
@@ -23,14 +23,14 @@ TOOLS = {
         marked("Open Part…"),
         marked("Opens a part or mesh from a file in a separate process, even if it is damaged"),
         openers.open_part,
-        needs.nothing,
+        whats_this.nothing,
     ),
     "NewJob": Tool(
         "new_job",
         marked("New Job…"),
         marked("Creates all stages for the selected shape, from cell to program"),
         openers.new_job,
-        needs.part,
+        whats_this.part,
     ),
     "Cell": Tool(
         "cell",
@@ -43,63 +43,63 @@ TOOLS = {
         marked("Feature…"),
         marked("Deposits the selected shape of revolution"),
         openers.feature,
-        needs.faces,
+        whats_this.faces,
     ),
     "WallOnPart": Tool(
         "wall_on_part",
         marked("Wall on Part…"),
         marked("Deposits the selected faces as a wall on the other selected object"),
         openers.wall,
-        needs.faces,
+        whats_this.faces,
     ),
     "Solid": Tool(
         "solid",
         marked("Solid…"),
         marked("Deposits the selected solids in planar layers"),
         openers.solid,
-        needs.part,
+        whats_this.part,
     ),
     "SolidsOnHub": Tool(
         "solids_on_hub",
         marked("Solids on Hub…"),
         marked("Deposits the selected solids on the cylinder or cone that is selected last"),
         openers.hub,
-        needs.part,
+        whats_this.part,
     ),
     "Curves": Tool(
         "curves",
         marked("Curves…"),
         marked("Deposits the selected edges, wires, sketches or tables as beads"),
         openers.curves,
-        needs.document,
+        whats_this.document,
     ),
     "Cladding": Tool(
         "cladding",
         marked("Cladding…"),
         marked("Covers the selected faces with layers of beads"),
         openers.cladding,
-        needs.faces,
+        whats_this.faces,
     ),
     "Toolpath": Tool(
         "toolpath",
         marked("Toolpath…"),
         marked("Cuts a feature into layers and beads"),
         openers.toolpath,
-        needs.feature,
+        whats_this.feature,
     ),
     "JointPath": Tool(
         "joint_path",
         marked("Joint Path…"),
         marked("Plans the joint values of a toolpath in a cell"),
         openers.joint_path,
-        needs.toolpath_and_cell,
+        whats_this.toolpath_and_cell,
     ),
     "SpinMap": Tool(
         "spin_map",
         marked("Free Rotation Map…"),
         marked("Shows the path and the tool rotation as a map; the curve can be edited by hand"),
         openers.redundancy_map,
-        needs.joint_path,
+        whats_this.joint_path,
         True,
     ),
     "Placement": Tool(
@@ -110,7 +110,7 @@ TOOLS = {
             "shows the workspace of the robot"
         ),
         openers.placement,
-        needs.toolpath_and_cell,
+        whats_this.toolpath_and_cell,
         True,
     ),
     "Path": Tool(
@@ -118,7 +118,7 @@ TOOLS = {
         marked("Path"),
         marked("Shows a toolpath or joint path layer by layer and point by point"),
         openers.path,
-        needs.path,
+        whats_this.path,
         True,
     ),
     "Simulate": Tool(
@@ -126,7 +126,7 @@ TOOLS = {
         marked("Simulate…"),
         marked("Plays a joint path or program with its machine"),
         openers.simulate,
-        needs.joint_path,
+        whats_this.joint_path,
         True,
     ),
     "ExportPath": Tool(
@@ -137,14 +137,14 @@ TOOLS = {
             "path or Robot trajectory"
         ),
         openers.export_path,
-        needs.path,
+        whats_this.path,
     ),
     "Program": Tool(
         "program",
         marked("Program…"),
         marked("Writes the controller program for a joint path"),
         openers.program,
-        needs.feasible,
+        whats_this.feasible,
     ),
     "NewMachine": Tool(
         "new_machine",
@@ -154,7 +154,7 @@ TOOLS = {
             "checked against poses"
         ),
         openers.new_machine,
-        needs.nothing,
+        whats_this.nothing,
         True,
     ),
     "Inspect": Tool(
@@ -162,14 +162,14 @@ TOOLS = {
         marked("Inspect…"),
         marked("Compares measured points with the plan"),
         openers.inspect,
-        needs.part,
+        whats_this.part,
     ),
     "Plots": Tool(
         "plots",
         marked("Plots…"),
         marked("Plots joints against limits, distances between layers and deposit rates"),
         openers.plots,
-        needs.path,
+        whats_this.path,
         True,
     ),
 }

@@ -17,12 +17,11 @@ from ...objects.work.progress import Cancelled
 from .. import icons, recorded
 from ..colours import WRONG, set_role
 from ..panels.stage import CLOSED
-from ..picking.selection import meant
+from ..picking.shape_inputs import meant
 from ..signals import connect
-from ..texts.translation import tr, translated, translated_error
+from ..texts.in_language import tr, translated, translated_error
 from ..widgets.quantity import QuantityField
-from ..widgets.upright import upright
-from ..widgets.wheel import scrolls
+from ..widgets.upright import scrolls, upright
 
 STEP, DXF, CSV, REPORT, CAM, TRAJECTORY = "step", "dxf", "csv", "report", "cam", "trajectory"
 _FILES = {STEP: ".step", DXF: ".dxf", CSV: ".csv", REPORT: ".html"}

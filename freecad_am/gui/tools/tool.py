@@ -10,8 +10,8 @@ import FreeCAD as App
 import FreeCADGui as Gui
 
 from .. import icons
-from ..texts.translation import tr
-from . import needs, whats_this
+from ..texts.in_language import tr
+from . import whats_this
 
 PREFIX = "RoboticAM_"
 
@@ -29,7 +29,7 @@ class Tool:
         text: str,
         help: str,
         action: Callable[[], None],
-        need: needs.Need = needs.document,
+        need: whats_this.Need = whats_this.document,
         with_dialog: bool = False,
     ) -> None:
         # as written: FreeCAD translates them by the name of the command, and again when the language changes

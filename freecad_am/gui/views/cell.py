@@ -15,7 +15,7 @@ from ...objects.results.store import Place
 from ...objects.stage import stage_of
 from ..nodes.cell import CellNodes, at_end, with_machine, without_machine
 from ..path import path_view
-from ..texts.translation import tr
+from ..texts.in_language import tr
 from .base import StageView
 
 

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from ...core.geometry.curves.profile import RevolvedWall
 from .. import icons
-from ..nodes.meridian import MeridianNodes
+from ..nodes.lines import MeridianNodes
 from ..nodes.wall import WallNodes, first_curves
 from .base import StageView
 

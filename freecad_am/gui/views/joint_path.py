@@ -10,15 +10,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from freecad_am.core.types import Array, Integers, Mask
-
 from ...core.issues import ERROR, InputError
 from ...core.kinematics.external import coupled
 from ...core.kinematics.machines import machine as machines
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.external import externals
 from ...core.parameters.strategy import RevolutionParameters
-from ...core.simulation.margins import from_next, speed_ratios
+from ...core.simulation.achievable_feed import from_next, speed_ratios
+from ...core.types import Array, Integers, Mask
 from ...objects import user_machines
 from ...objects.results.findings import issues_of
 from ..nodes.lines import DASHED, Lines, Points
@@ -34,7 +33,7 @@ from ..path.colouring import (
     unknown,
 )
 from ..path.path_view import OPTIONS, TUBES, PathView
-from ..path.rows import Rows
+from ..path.pieces import Rows
 from .toolpath import band_of, width_of
 
 

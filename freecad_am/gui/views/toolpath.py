@@ -5,14 +5,13 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from freecad_am.core.types import Array
-
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.strategy import SurfaceParameters
+from ...core.types import Array
 from ...objects.toolpath import features_of
 from ..path.colouring import KINDS, Scale, coloured
 from ..path.path_view import OPTIONS, PathView
-from ..path.rows import Rows
+from ..path.pieces import Rows
 
 
 class ToolpathView(PathView):

@@ -11,10 +11,9 @@ from ...core.strategies.sequence import BY_FEATURE, BY_HEIGHT
 from ...objects.stage import stage_of
 from ...objects.stage_parts import Link
 from .. import recorded
-from ..picking.an_input import Input
-from ..picking.inputs import StageChoice
-from ..picking.selection import selected
-from ..texts.translation import marked, tr, translated
+from ..picking.pick_field import Input
+from ..picking.shape_inputs import StageChoice, selected
+from ..texts.in_language import marked, tr, translated
 
 SHOWN = 3  # rows
 PADDING = 14  # px about the word of a button

@@ -9,14 +9,12 @@ import numpy as np
 from PySide import QtCore
 
 from ...core.process.model.bead_model import MINUTE, BeadModel
-from ...core.process.model.bead_table import Measured
-from ...objects.fields.shown_units import in_user_units
-from ...plots.chart import Picture
-from ...plots.fit import fit
-from ..plots.canvas import Canvas
-from ..plots.units import in_units
-from ..plots.words import in_words
-from ..texts.translation import tr
+from ...core.process.model.wire import Measured
+from ...objects.fields.preferences import in_user_units
+from ...plots.chart import Picture, fit
+from ..plots.canvas import Canvas, in_words
+from ..plots.dock import in_units
+from ..texts.in_language import tr
 
 HEIGHT = 210
 

@@ -11,6 +11,84 @@ from PySide import QtCore, QtGui
 from ..colours import WRONG, set_role
 from .present import present
 
+
+class WrappedLabel(QtGui.QLabel):
+    """Layouts give other labels that are wrapped the height of a wider one, and cut off the last lines."""
+
+    def __init__(self, text: str = "") -> None:
+        super().__init__(text)
+        self.setWordWrap(True)
+
+    def minimumSizeHint(self) -> Any:
+        """Called by Qt."""
+        hint = super().minimumSizeHint()
+        return QtCore.QSize(hint.width(), max(hint.height(), self.heightForWidth(self.width())))
+
+    def resizeEvent(self, event: Any) -> None:
+        """Called by Qt: another width may take more lines, or fewer."""
+        super().resizeEvent(event)
+        if event.oldSize().width() != event.size().width():
+            # the layout that gives it the width would overlook it
+            QtCore.QTimer.singleShot(0, self._renew)
+
+    def _renew(self) -> None:
+        with contextlib.suppress(RuntimeError):  # the panel is closed
+            self.updateGeometry()
+
+
+MARGIN = 2  # pixels
+NARROW, MAX_LINES = (
+    30,
+    12,
+)  # letters of a line in a panel as FreeCAD opens it, and lines that are held
+
+
+class Messages(QtGui.QScrollArea):
+    """Labels below each other; what has no room is scrolled to."""
+
+    def __init__(self, lines: int) -> None:
+        super().__init__()
+        self.setObjectName("messages")
+        self.setFrameShape(QtGui.QFrame.NoFrame)
+        self.setWidgetResizable(True)
+        self.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
+        inner = QtGui.QWidget()
+        self.column = QtGui.QVBoxLayout(inner)
+        self.column.setContentsMargins(0, 0, 0, 0)
+        self.column.setSpacing(MARGIN)
+        self.column.addStretch(1)
+        self.setWidget(inner)
+        inner.setAutoFillBackground(False)
+        self.viewport().setAutoFillBackground(False)
+        self._hold(lines)
+
+    def add(self, name: str, role: str) -> Any:
+        """A label below those that are there, hidden."""
+        label = WrappedLabel()
+        label.setObjectName(name)
+        label.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
+        set_role(label, role)
+        label.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
+        label.hide()
+        self.column.insertWidget(self.column.count() - 1, label)
+        return label
+
+    def hold(self, label: Any) -> None:
+        """Room for all of a label in a narrow panel, up to MAX_LINES lines, and no less than there is. Before the panel is
+        seen: then fields are to stay in place."""
+        metrics = self.fontMetrics()
+        needed = label.heightForWidth(NARROW * metrics.averageCharWidth())
+        if needed + 2 * MARGIN > self.height():
+            self._hold(min(-(-needed // metrics.lineSpacing()), MAX_LINES))
+
+    def _hold(self, lines: int) -> None:
+        self.setFixedHeight(lines * self.fontMetrics().lineSpacing() + 2 * MARGIN)
+
+    def to_top(self) -> None:
+        """Show what stands first, such as an error."""
+        self.verticalScrollBar().setValue(0)
+
+
 KEEP_MS = 2500  # ms that the place of a note stays once it has gone
 WIDEST_LABEL = 78  # pixels; longer ones go on below
 LONGEST_ROW = 2  # fields beside a label; more go below it

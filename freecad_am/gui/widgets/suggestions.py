@@ -12,12 +12,12 @@ from ...core.issues import InputError
 from ...core.kinematics.machines import machine
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.program import ProgramParameters
-from ...core.process.model import bead_table
+from ...core.process.model import wire
 from ...objects import user_machines
 from ...objects.checks.controllers import post_of, writers, written_by
 from ...objects.fields import preferences, saved_cells
 from ...posts import catalogue
-from ..texts.translation import tr
+from ..texts.in_language import tr
 from .choices import machines
 
 NO_POST = "none"
@@ -36,7 +36,7 @@ def _texts_of(section: str, key: str) -> Callable[[], list[str]] | None:
         ("cell", "limits"): lambda: ["maker", "paper"],
         ("cell", "branch"): _branches,
         ("program", "post"): lambda: [*catalogue.NAMES, NO_POST],
-        ("process", "bead_model"): lambda: ["none", *bead_table.BUILT_IN],
+        ("process", "bead_model"): lambda: ["none", *wire.BUILT_IN],
     }.get((section, key))
 
 

@@ -13,6 +13,39 @@ from PySide import QtCore, QtGui
 from .present import present
 
 
+class _Guard(QtCore.QObject):
+    """Lets the wheel pass by fields without the focus, to the panel that scrolls."""
+
+    def eventFilter(self, widget: Any, event: Any) -> bool:
+        """Called by Qt."""
+        # PySide may take an event for what lay at its address before
+        if (
+            isinstance(event, QtCore.QEvent)
+            and event.type() == QtCore.QEvent.Wheel
+            and not widget.hasFocus()
+        ):
+            event.ignore()
+            return True
+        return False
+
+
+_guard = _Guard()
+
+
+def scrolls(form: Any) -> None:
+    """Let the wheel scroll over all fields of a panel; by default it would give them the focus, and turn their values."""
+    for kind in (QtGui.QAbstractSpinBox, QtGui.QComboBox, QtGui.QAbstractSlider):
+        for field in present(form, kind):
+            _scrolls(field)
+
+
+def _scrolls(field: Any) -> None:
+    if field.focusPolicy() == QtCore.Qt.WheelFocus:
+        field.setFocusPolicy(QtCore.Qt.StrongFocus)
+    if not isinstance(field, QtGui.QScrollBar):
+        field.installEventFilter(_guard)
+
+
 class _Upright(QtCore.QObject):
     """Takes what a panel is scrolled in back to its left edge, from when it is shown as long as it is there."""
 

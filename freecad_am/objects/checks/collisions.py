@@ -10,7 +10,7 @@ import numpy as np
 from ...core.collision.bead_ends import LINK_GRAIN, Beads
 from ...core.issues import ERROR, NOTE, WARNING, Issue, Text
 from ...core.kinematics.cell import Cell
-from ...core.kinematics.links import cylinders as link_cylinders
+from ...core.kinematics.links import external_links
 from ...core.kinematics.links.collisions import (
     Collision,
     arm_collisions,
@@ -19,11 +19,10 @@ from ...core.kinematics.links.collisions import (
 from ...core.motion import Motion
 from ...core.parameters.process import ProcessParameters
 from ...core.planning.joint_path import JointPath
-from ...core.simulation.arm import deposit_obstacles, places, tracks_of
-from ...core.simulation.watch import shown_margins
+from ...core.simulation.watch import deposit_obstacles, places, shown_margins, tracks_of
 from ...core.toolpath import Toolpath
 from ...core.types import Index
-from ..shapes.link_meshes import meshes_of
+from ..shapes.cell_obstacles import meshes_of
 
 ARM_COLLISION, PLATFORM_COLLISION, ARM_NEAR, LOW_MARGIN = (
     "ARM_COLLISION",
@@ -52,7 +51,7 @@ def collision_issues(
     shapes = meshes_of(cell.machine)
     collisions = arm_collisions(
         cell,
-        link_cylinders.robot_cylinders(cell.robot.chain, shapes),
+        external_links.robot_cylinders(cell.robot.chain, shapes),
         toolpath.surroundings,
         deposit,
         joints,
@@ -91,7 +90,7 @@ def look(path: JointPath, cell: Cell, toolpath: Toolpath) -> list[Issue]:
     shapes = meshes_of(cell.machine)
     collisions = arm_collisions(
         cell,
-        link_cylinders.robot_cylinders(cell.robot.chain, shapes),
+        external_links.robot_cylinders(cell.robot.chain, shapes),
         toolpath.surroundings,
         deposit,
         path.joints,

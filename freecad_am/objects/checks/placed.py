@@ -5,24 +5,119 @@ parameters.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from ...core.issues import InputError
+import numpy as np
+
+from ...core.issues import InputError, Issue
 from ...core.kinematics.cell import Cell
+from ...core.kinematics.links import external_links
+from ...core.kinematics.links.contact import ArmContact
+from ...core.kinematics.links.external_links import Mesh
+from ...core.kinematics.links.own import NONE
+from ...core.motion import Motion
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.joints import JointParameters
 from ...core.parameters.place import PlaceParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.placement.judge import Cylinders, Job
 from ...core.placement.place import Placed, place_part
+from ...core.planning.arm import kept as arm_kept
+from ...core.simulation.watch import ArmTouches, arm_touches, deposit_obstacles
 from ...core.toolpath import Toolpath
 from .. import user_machines
 from ..fields import rows
 from ..shapes import cell_obstacles
+from ..shapes.cell_obstacles import meshes_of
 from ..stage import stage_of
 from ..work import progress
-from .links_clear import cylinders_of
+
+
+def cylinders_of(cell: Cell) -> arm_kept.Cylinders:
+    """The capsules of each link of the robot; empty for machines with rotary axes, whose links no
+    file describes well enough.
+    """
+    has_links = cell.arrangement.links_known
+    return (
+        external_links.robot_cylinders(cell.robot.chain, meshes_of(cell.machine))
+        if has_links
+        else ()
+    )
+
+
+def arm_of(
+    motion: Motion,
+    cell: Cell,
+    toolpath: Toolpath,
+    process: ProcessParameters,
+    shapes: tuple[Mesh | None, ...],
+    max_positions: int | None = None,
+    clearance: float = 0.0,
+) -> ArmTouches | None:
+    """What the links of a robot touch, or come nearer to than `clearance` mm, checked at up to
+    `max_positions` positions; None for machines with rotary axes, whose links no file describes
+    well enough.
+    """
+    if not cell.arrangement.links_known:
+        return None
+    return _touches(
+        motion,
+        cell,
+        toolpath,
+        process,
+        external_links.robot_cylinders(cell.robot.chain, shapes),
+        max_positions,
+        clearance,
+    )
+
+
+def _touches(
+    motion: Motion,
+    cell: Cell,
+    toolpath: Toolpath,
+    process: ProcessParameters,
+    cylinders: arm_kept.Cylinders,
+    max_positions: int | None,
+    clearance: float,
+) -> ArmTouches:
+    deposited = deposit_obstacles(
+        motion, toolpath.bead_width or process.bead_width, toolpath.layer_height
+    )
+    return arm_touches(
+        motion,
+        ArmContact(cell, cylinders, toolpath.surroundings, deposited, clearance),
+        max_positions,
+    )
+
+
+def arm_issues(
+    motion: Motion,
+    cell: Cell,
+    toolpath: Toolpath,
+    process: ProcessParameters,
+    cylinders: arm_kept.Cylinders,
+    known_issues: Sequence[Issue],
+) -> tuple[Issue, ...]:
+    """An error for each bead without a known issue on which, or on the way to which, a link (given
+    as cylinders) comes too near.
+    """
+    assert cell.arm_clearance is not None
+    touches = _touches(motion, cell, toolpath, process, cylinders, None, cell.arm_clearance)
+    reported = {(issue.layer, issue.bead) for issue in known_issues if issue.code == arm_kept.CODE}
+    issues = []
+    for row in np.flatnonzero(touches.link != NONE).tolist():
+        location = int(motion.layer[row]), int(motion.bead[row])
+        if location not in reported:
+            reported.add(location)
+            what = touches.names[touches.what[row]]
+            link = touches.links[touches.link[row]]
+            issues.append(
+                arm_kept.clearance_issue(
+                    cell, link, what, *location, on_way=not motion.deposit[row]
+                )
+            )
+    return tuple(issues)
 
 
 class Placing(NamedTuple):

@@ -18,12 +18,12 @@ from ...core.issues import WARNING, InputError, Issue, Text
 from ...core.parameters.process import ProcessParameters
 from ...core.process.deposit.spacing import is_spiral, turns_of
 from ...core.process.shape import compare
-from ...core.process.shape.compare import Compared
-from ...core.process.shape.deviation import deviation_map
-from ...core.process.shape.faces import (
+from ...core.process.shape.compare import (
     BOTH,
     OUTSIDE,
+    Compared,
     Faces,
+    deviation_map,
     faces,
     join_faces,
     thin_faces,

@@ -9,11 +9,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from freecad_am.core.types import Array
-
 from ...core.issues import Issue, has_errors
 from ...core.kinematics.cell import Cell
-from ...core.kinematics.links.cylinders import Mesh
+from ...core.kinematics.links.external_links import Mesh
 from ...core.parameters.build_direction import BuildDirectionParameters
 from ...core.parameters.cell import CellParameters, NozzleParameters
 from ...core.parameters.process import ProcessParameters
@@ -25,22 +23,22 @@ from ...core.process.deposit import balance as deposit_balance
 from ...core.process.deposit import spacing
 from ...core.process.deposit.balance import Balance
 from ...core.simulation import rapid_look
-from ...core.simulation.arm import ArmTouches
 from ...core.simulation.rapid_look import RapidsLooked
+from ...core.simulation.watch import ArmTouches
 from ...core.strategies.clearance import look as clearance_look
 from ...core.strategies.clearance.look import Looked
 from ...core.toolpath import Toolpath
+from ...core.types import Array
 from ...posts import catalogue
 from ...verify import Verification
 from .. import user_machines
 from ..joint_path import Planned
 from ..results.as_run import AsRun, as_run
 from ..results.findings import issues_of
-from ..shapes.cell_obstacles import resolved
-from ..shapes.link_meshes import meshes_of
+from ..shapes.cell_obstacles import meshes_of, resolved
 from ..shapes.platforms import platforms
 from ..toolpath import features_of
-from .links_clear import arm_of
+from .placed import arm_of
 
 # sample limits for the arm, and for the nozzle depositing and on rapids: together at most a tenth
 # of the planning time

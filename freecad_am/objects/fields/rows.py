@@ -10,6 +10,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
+import unicodedata
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Any
@@ -18,8 +19,73 @@ import FreeCAD as App
 
 from ...core.issues import InputError, Text, Word
 from ...core.parameters import field as f
+from ...posts import catalogue
 from . import pendants
-from .plain_text import checked_words
+
+
+def is_text(value: Any) -> bool:
+    """Whether a value is a text that FreeCAD takes: it falls over halves of characters, and ends texts at a zero."""
+    return (
+        isinstance(value, str)
+        and "\0" not in value
+        and not any("\ud800" <= sign <= "\udfff" for sign in value)
+    )
+
+
+def checked_words(words: Any, where: str) -> list[str]:
+    """A list of texts. InputError BAD_VALUE naming `where` for anything else."""
+    if not isinstance(words, (list, tuple)) or not all(map(is_text, words)):
+        raise InputError("BAD_VALUE", where, "{} is not a text; put it in quotes", safe_repr(words))
+    return list(words)
+
+
+def safe_repr(value: Any) -> str:
+    """A value in a message, where it may be of an object that is gone and cannot even be named."""
+    try:
+        return repr(value)
+    except ReferenceError:
+        return Text("the deleted object")
+
+
+_NAME_LENGTH = 20
+
+
+def proposed_name(text: str) -> str:
+    """A program name that controllers take, from a label: letters A to Z, digits and underscores.
+
+    `am.proposed_name("Hémisphère n° 1")` is "HEMISPHERE_N_1". Raises InputError BAD_VALUE for other
+    types.
+    """
+    checked_words([text], "text")
+    plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().upper()
+    name = re.sub(r"[^A-Z0-9]+", "_", plain).strip("_")[:_NAME_LENGTH].rstrip("_")
+    return name if name[:1].isalpha() else f"P{name}"
+
+
+def name_for(text: str, post: str) -> str:
+    """The same, with room for the digits of parts where the controller of a post takes few characters; '' or 'none' for no
+    post."""
+    name = proposed_name(text)
+    naming = catalogue.load(post).NAMING if post in catalogue.NAMES else None
+    return name if naming is None or naming.fits(name) else naming.proposed(name)
+
+
+def taken_name(text: str, post: str) -> str:
+    """The proposed name as it is where the controller takes it, else one that it takes."""
+    name = proposed_name(text)
+    return name_for(text, post) if refusal(name, post) else name
+
+
+def refusal(name: str, post: str) -> str:
+    """Why the controller of a post refuses the name of a program, '' where it takes it."""
+    if post not in catalogue.NAMES:
+        return ""
+    try:
+        catalogue.load(post).program_name(name, "name")
+    except InputError as error:
+        return error.message
+    return ""
+
 
 TEXT_LIST, MIXED, LENGTH_OR_POSE = "text list", "mixed", "length or pose"
 ENDS = ("low", "high")
@@ -364,3 +430,93 @@ def _pose(value: Any, where: str) -> tuple[float, ...]:
         )
     floats += [0.0] * (6 - len(floats))
     return (*floats[:3], *(math.radians(angle) for angle in floats[3:]))
+
+
+MARK = "="
+FOLLOW = (
+    f.LENGTH,
+    f.ANGLE,
+    f.SPEED,
+    f.TIME,
+    f.RATIO,
+    f.NUMBER,
+    f.TURN_RATE,
+    f.COUNT,
+)  # forms of rows that can
+
+
+def is_expression(value: Any) -> bool:
+    """Whether a value is an expression rather than a number or a word."""
+    return isinstance(value, str) and value.lstrip().startswith(MARK)
+
+
+def evaluated(value: str, obj: Any, where: str) -> Any:
+    """What an expression gives now, a quantity or a number, names in it seen from `obj`. InputError 'BAD_EXPRESSION'."""
+    try:
+        result = obj.evalExpression(_bare(value))
+    except Exception as error:  # FreeCAD's own errors share no base
+        raise _wrong(value, where, error) from None
+    if isinstance(result, bool) or not (
+        isinstance(result, (int, float)) or hasattr(result, "Unit")
+    ):
+        raise InputError(
+            "BAD_EXPRESSION",
+            where,
+            "{!r} gives {!r}, which is not a number; write one that gives a number",
+            value,
+            result,
+        )
+    return result
+
+
+def follow(obj: Any, row: Row, value: str | None) -> None:
+    """Let the property of a row follow an expression, None for none any more. InputError 'BAD_EXPRESSION'."""
+    if value is None:
+        if row.name in dict(obj.ExpressionEngine):
+            obj.setExpression(row.name, None)
+        return
+    try:
+        obj.setExpression(row.name, _bare(value))
+    except Exception as error:  # such as one that follows itself
+        raise _wrong(value, f"{obj.Label}.{row.name}", error) from None
+
+
+def of(obj: Any, row: Row) -> str:
+    """The expression that the property of a row follows, or ''."""
+    text = dict(obj.ExpressionEngine).get(row.name)
+    return f"{MARK}{text}" if text else ""
+
+
+def broken(obj: Any) -> str:
+    """A remedy for an expression of an object that no longer gives a value, else ''. FreeCAD then
+    computes nothing and writes only to the report view.
+    """
+    for name, text in getattr(obj, "ExpressionEngine", ()):
+        try:
+            obj.evalExpression(text)
+        except Exception:  # FreeCAD's own errors share no base
+            return Text(
+                "{} follows the expression {}, which no longer gives a value; give {} a value or "
+                "another expression",
+                name,
+                text,
+                name,
+            )
+    return ""
+
+
+def _bare(value: str) -> str:
+    return value.strip().removeprefix(MARK).strip()
+
+
+def _wrong(value: str, where: str, error: Exception) -> InputError:
+    cause = error.args[0] if error.args else error
+    reason = str(cause.get("sErrMsg", "") if isinstance(cause, dict) else cause).strip().rstrip(".")
+    return InputError(
+        "BAD_EXPRESSION",
+        where,
+        "{!r} is not understood ({}); write it as in {}Spreadsheet.height / 2",
+        value,
+        reason,
+        MARK,
+    )

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...core.issues import InputError
 from ..stage import Stage
-from . import expressions, properties, rows
+from . import properties, rows
 
 
 def set_parameters(
@@ -48,9 +48,7 @@ def set_parameters(
     for parameters in checked:
         properties.write(obj, parameters)
     for key, value in values.items():
-        expressions.follow(
-            obj, rows_by_key[key], value if expressions.is_expression(value) else None
-        )
+        rows.follow(obj, rows_by_key[key], value if rows.is_expression(value) else None)
 
 
 def _checked(
@@ -74,10 +72,10 @@ def _checked(
 
 def _plain(obj: Any, row: rows.Row, value: Any, where: str) -> Any:
     """The value, or what its expression gives now."""
-    if not expressions.is_expression(value):
+    if not rows.is_expression(value):
         return value
-    if row.form not in expressions.FOLLOW:
+    if row.form not in rows.FOLLOW:
         raise InputError(
             "BAD_EXPRESSION", where, "it cannot follow an expression; enter a plain value"
         )
-    return expressions.evaluated(value, obj, where)
+    return rows.evaluated(value, obj, where)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ...brep.shapes.overlap import common_volume, volume
+from ...brep.shapes.chosen import common_volume, volume
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
 from ...core.kinematics.cell import mounted

@@ -12,20 +12,17 @@ from typing import NamedTuple
 import numpy as np
 from FreeCAD import Vector
 
-from freecad_am.core.types import Array, Mask
-
 from ...brep import hub as hubs
 from ...brep.kernel import limits as kernel
 from ...brep.revolution.wall import find_wall
 from ...brep.shapes import part_depths
-from ...brep.walls.standing import stand
+from ...brep.walls.patch_wall import stand
 from ...brep.walls.wall_on import named_faces
 from ...core.geometry.curves.profile import RevolvedWall
 from ...core.geometry.formatting import at_least, place
-from ...core.geometry.mesh.crossing import find_crossings
 from ...core.geometry.mesh.manifold import find_holes, separate_vertices
+from ...core.geometry.mesh.near_triangles import find_crossings, remove_crossings
 from ...core.geometry.mesh.repair import WELDS_MM, connected_triangles
-from ...core.geometry.mesh.uncrossed import remove_crossings
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError, Text, Word
 from ...core.layers.curved.field import CONTACT_HEIGHTS
@@ -33,6 +30,7 @@ from ...core.layers.planes.stacking import evaluate_direction, facets, rank_dire
 from ...core.parameters.filled import GEODESIC, PLANES, DevelopableParameters, SolidParameters
 from ...core.parameters.strategy import SurfaceParameters
 from ...core.process.deposit.balance import MM3, NEGLIGIBLE, wall_balance
+from ...core.types import Array, Mask
 from ..developable_feature import found_in
 from ..shapes.bodies import Taken
 from .on_bends import bend_hint, rests_on_bend

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.inspection import fit_layers, scan_checks, scanned_body
+from ...core.inspection import fit_layers, scan_checks, scan_heights
 from ...core.inspection.inspect import Inspected
 from ...core.inspection.scan_heights import Scan
 from ...core.issues import InputError
@@ -76,7 +76,7 @@ def fitted(
     directions = np.concatenate([fit_layers.ways_of(toolpath)(bead) for bead in first_layer.beads])
     points = inspected.points
     if body is not None:
-        points = points[scanned_body.facing(points, body, directions)]
+        points = points[scan_heights.facing(points, body, directions)]
     scan = Scan(points, inspected.file, parameters.scan_within)
     fitted_toolpath = fit_layers.fit_layers(
         toolpath, scan, parameters, len(inspected.points) - len(points), inspected.motion
@@ -86,7 +86,7 @@ def fitted(
     if body is None:
         return fitted_toolpath
     around = tuple(
-        scanned_body.scanned(surrounding, scan, directions)
+        scan_heights.scanned(surrounding, scan, directions)
         if surrounding.name == body.name
         else surrounding
         for surrounding in fitted_toolpath.surroundings

@@ -14,8 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError, Issue
 from ...core.kinematics.cell import mounted
@@ -23,8 +21,8 @@ from ...core.parameters.build_direction import BuildDirectionParameters
 from ...core.parameters.cell import CellParameters, NozzleParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.process import classes
-from ...core.process.deposit.twice import deposited_twice
-from ...core.process.model import bead_table, held_width
+from ...core.process.deposit.pieces import deposited_twice
+from ...core.process.model import notes, wire
 from ...core.process.model.bead_model import BeadModel
 from ...core.process.model.material import check_speeds
 from ...core.process.model.wire import set_wire_feed
@@ -32,8 +30,9 @@ from ...core.process.order import enforce_layer_time
 from ...core.strategies import support
 from ...core.strategies.clearance import look as clearance_look
 from ...core.strategies.families import family_of
-from ...core.strategies.revolution import platform
+from ...core.strategies.revolution import clearance
 from ...core.toolpath import Toolpath as CoreToolpath
+from ...core.types import Array
 from ..shapes.platforms import platforms
 from ..work import progress
 
@@ -64,7 +63,7 @@ class Given:
     @property
     def model(self) -> BeadModel | None:
         """The bead model of the process."""
-        return bead_table.process_model(self.process)
+        return wire.process_model(self.process)
 
 
 def seen_of(cell: CellParameters) -> CellParameters:
@@ -155,7 +154,7 @@ def layers_of(inputs: Given) -> CoreToolpath:
     family = family_of(inputs.strategy)
     layers, model = _PLANNERS[family.kind].layers(inputs), inputs.model
     if model is not None and not family.filled:
-        layers = held_width.hold_widths(layers, process, model)
+        layers = notes.hold_widths(layers, process, model)
     toolpath = classes.set_bead_ends(layers, process)
     if not family.filled:
         toolpath = enforce_layer_time(
@@ -222,7 +221,7 @@ def _plan_wall(inputs: Given) -> CoreToolpath:
     else:
         from ...core.strategies.walls import plan as family
     on_another = getattr(inputs.wall, "ground", None) is None or inputs.stands is not None
-    remedy = platform.MOVE if on_another else platform.MOUNT
+    remedy = clearance.MOVE if on_another else clearance.MOUNT
     if (
         isinstance(inputs.wall, PatchWall)
         and inputs.cell is not None
@@ -231,7 +230,7 @@ def _plan_wall(inputs: Given) -> CoreToolpath:
         # the first layer is where the wall begins: before the others are looked for, which may take minutes
         begins = np.vstack([start_curve.curve().points for start_curve in inputs.wall.first])
         stands = np.eye(4) if inputs.stands is None else inputs.stands
-        platform.refuse_below(
+        clearance.refuse_below(
             inputs.wall.label, begins, stands, inputs.cell.platform_diameter, remedy
         )
     toolpath = family.plan(inputs.wall, inputs.strategy, inputs.build, inputs.process, _share)
@@ -242,7 +241,7 @@ def _plan_wall(inputs: Given) -> CoreToolpath:
             if inputs.stands is None
             else inputs.stands
         )
-        platform.refuse_below(
+        clearance.refuse_below(
             inputs.wall.label, points, stands, inputs.cell.platform_diameter, remedy
         )
     return dataclasses.replace(toolpath, surroundings=inputs.wall.surroundings)
@@ -252,11 +251,11 @@ def _plan_solids(inputs: Given) -> CoreToolpath:
     from ...core.strategies.solids import plan as solids_plan
 
     if inputs.stands is not None and inputs.cell is not None:
-        platform.refuse_solids_below(inputs.wall, inputs.stands, inputs.cell.platform_diameter)
+        clearance.refuse_solids_below(inputs.wall, inputs.stands, inputs.cell.platform_diameter)
     elif (
         inputs.cell is not None and inputs.cell.mount != "feature"
     ):  # the feature's own frame is at its lowest end
-        platform.refuse_solids_below(inputs.wall, np.eye(4), inputs.cell.platform_diameter)
+        clearance.refuse_solids_below(inputs.wall, np.eye(4), inputs.cell.platform_diameter)
     return solids_plan.plan(
         inputs.wall, inputs.strategy, inputs.build, inputs.process, inputs.model, _share
     )
@@ -273,7 +272,7 @@ def _plan_curves(inputs: Given) -> CoreToolpath:
             if inputs.stands is None
             else inputs.stands
         )
-        platform.refuse_below(inputs.wall.label, points, stands, inputs.cell.platform_diameter)
+        clearance.refuse_below(inputs.wall.label, points, stands, inputs.cell.platform_diameter)
     return toolpath
 
 
@@ -290,7 +289,7 @@ def _plan_cladding(inputs: Given) -> CoreToolpath:
             if inputs.stands is None
             else inputs.stands
         )
-        platform.refuse_below(inputs.wall.label, points, stands, inputs.cell.platform_diameter)
+        clearance.refuse_below(inputs.wall.label, points, stands, inputs.cell.platform_diameter)
     return toolpath
 
 
@@ -367,7 +366,7 @@ def _revolution_cleared(
 def _wall_cleared(
     toolpath: CoreToolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
 ) -> CoreToolpath:
-    from ...core.strategies.walls.directions import symmetry_plane
+    from ...core.strategies.walls.beads import symmetry_plane
 
     return _tilted_clear(
         toolpath, inputs, bodies, feature, plane=symmetry_plane(inputs.wall, inputs.build)

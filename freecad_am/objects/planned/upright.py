@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 from ...core.issues import ERROR, NOTE, AmError, Issue, Text, has_errors
 from ...core.parameters.filled import GEODESIC, OFFSET, PLANES
-from ...core.strategies.clearance.notes import CLEARANCE
+from ...core.strategies.clearance.look import CLEARANCE
 from ...core.toolpath import Toolpath
 from ..work import progress
 from .toolpaths import Given, planned
 
 if TYPE_CHECKING:
-    from ...core.planning.tried import Fixed
+    from ...core.planning.other_cells import Fixed
 
 
 def in_planes(inputs: Given, fit: Callable[[Toolpath], Toolpath] | None) -> Fixed | None:
@@ -26,7 +26,7 @@ def in_planes(inputs: Given, fit: Callable[[Toolpath], Toolpath] | None) -> Fixe
         group.start is not None for group in inputs.wall.groups
     ):
         return None
-    from ...core.planning.tried import Fixed
+    from ...core.planning.other_cells import Fixed
 
     flat = dataclasses.replace(inputs, strategy=dataclasses.replace(inputs.strategy, layers=PLANES))
     return Fixed(

@@ -7,15 +7,14 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from freecad_am.core.types import Array, Integers
-
 from ...core.issues import Issue
 from ...core.kinematics.cell import Cell
 from ...core.motion import Motion
 from ...core.parameters.program import ProgramParameters
-from ...core.planning.beads import moving_tool, steps
+from ...core.planning.beads import steps
 from ...core.planning.program import build as programs
-from ...core.simulation.margins import spread_to_deposit_rows
+from ...core.simulation.achievable_feed import spread_to_deposit_rows
+from ...core.types import Array, Integers
 from ...posts import catalogue
 from ..joint_path import Planned
 
@@ -50,9 +49,9 @@ def as_run(
     controller = catalogue.controller(settings.post)
     straight = settings.motion == "cartesian" and not controller.straight_in_part
     if straight and cell.arrangement.holds_part:
-        origin = moving_tool.origins(motion, cell, chord_error)
+        origin = steps.origins(motion, cell, chord_error)
         beads = [path.bead for path in planned.joint_path.beads]
-        motion = moving_tool.refined_to_chord_error(motion, cell, chord_error, beads)
+        motion = steps.refined_to_chord_error(motion, cell, chord_error, beads)
         condition, threshold = condition[origin], threshold[origin]
         issues = tuple(_renumbered(issue, planned.motion, motion, origin) for issue in issues)
     full_motion = motion

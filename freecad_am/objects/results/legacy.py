@@ -17,8 +17,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from freecad_am.core.types import Array, Index, Integers, NDArray
-
+from ...core.types import Array, Index, Integers, NDArray
 from . import schemas
 from .former_names import SCHEMA_NAMES
 

@@ -15,18 +15,18 @@ from __future__ import annotations
 
 import array
 import dataclasses
+import functools
 import io
 import json
 import zipfile
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from freecad_am.core.types import Array, NDArray
-
 from ...core.issues import InputError
+from ...core.types import Array, NDArray
 from . import schemas
 
 FORMAT = 5  # of the text and the archive
@@ -271,3 +271,57 @@ class _Reader:
             table.flags.writeable = False
             self.tables[name] = table
         return self.tables[name]
+
+
+class Stored:
+    """Base of stages with a result in their object. A complete result is cached with the key of its
+    inputs.
+    """
+
+    _kept: tuple[str, Any] | None = None
+
+    def value(self, obj: Any) -> Any:
+        """The stored result, read on first use. InputError 'NO_RESULT' without one."""
+        return self.reader(obj)()
+
+    def parts(self, obj: Any, *paths: Place) -> tuple[Any, ...]:
+        """Parts of the stored result, by the field names and indices that lead to them. Errors as
+        `value`.
+        """
+        return tuple(self.reader(obj)(*paths))
+
+    def reader(self, obj: Any) -> Callable[..., Any]:
+        """A function that gives the current stored result, or only the given paths, as `value` and
+        `parts` do, without the document: for other threads, and for later use. Errors as `value`;
+        errors about damage when it reads.
+        """
+        _check_made(obj)
+        cached, key = self._kept, obj.Key
+        if cached is not None and cached[0] == key:
+            result = cached[1]
+            return lambda *paths: _values_at(paths, result)
+        stored = numbers_of(obj.ResultData), obj.ResultLayout, key, obj.Label
+
+        def read(*paths: Place) -> Any:
+            cached = self._kept  # another thread may have set it
+            if cached is None or cached[0] != key:
+                if paths:
+                    return unpack_parts(*stored, *paths)
+                self._kept = cached = key, unpack(*stored)
+            return _values_at(paths, cached[1])
+
+        return read
+
+
+def _check_made(obj: Any) -> None:
+    if not obj.Key:
+        raise InputError("NO_RESULT", obj.Label, "the result is missing; recompute it")
+
+
+def _values_at(paths: Sequence[Place], value: Any) -> Any:
+    """The values at paths of a result; the complete result without paths."""
+    return tuple(functools.reduce(_step, path, value) for path in paths) if paths else value
+
+
+def _step(value: Any, step: str | int) -> Any:
+    return value[step] if isinstance(step, int) else getattr(value, step)

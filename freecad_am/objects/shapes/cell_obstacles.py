@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ...brep.files import read
 from ...brep.files.apart import MAX_FILE_MB
 from ...brep.files.read import read_mesh, read_shape
 from ...brep.shapes.tessellate import body
-from ...core.collision.nozzle import depositing
-from ...core.collision.scene import scene
+from ...core.collision.scene import depositing, scene
 from ...core.geometry import frames
 from ...core.geometry.file_content import digest
 from ...core.geometry.located import is_there, locate
@@ -24,11 +24,34 @@ from ...core.issues import InputError
 from ...core.kinematics import cell as cells
 from ...core.kinematics import torch
 from ...core.kinematics.cell import Cell
-from ...core.kinematics.links.external_links import external_links
+from ...core.kinematics.links.bodies import LinkShape
+from ...core.kinematics.links.external_links import Mesh, external_links
+from ...core.kinematics.machines.machine import Machine
 from ...core.parameters.cell import NO_SHAPE, CellParameters, NozzleParameters
 from ...core.parameters.obstacles import WHERE, Obstacle, obstacles
 from ...core.toolpath import Toolpath
-from .link_meshes import readable_mesh
+
+
+def meshes_of(machine: Machine) -> tuple[Mesh | None, ...]:
+    """(axes + 1) points and triangles of each link's file, base first; None without a readable
+    file: drawing the link reports the reason.
+    """
+    return tuple(None if shape is None else readable_mesh(shape) for shape in machine.shapes)
+
+
+def readable_mesh(shape: LinkShape) -> Mesh | None:
+    """As `mesh_of`, or None if the file cannot be read."""
+    try:
+        return mesh_of(shape)
+    except InputError:
+        return None
+
+
+def mesh_of(shape: LinkShape) -> Mesh:
+    """Points (n, 3) mm in the frame of the link and triangles (m, 3) of a user's file. Raises InputError naming it."""
+    points, triangles = read.triangles(shape.path)
+    return shape.scale * points @ shape.pose[:3, :3].T + shape.pose[:3, 3], triangles
+
 
 CODE = "OBSTACLE"
 MOST_TORCHES = 4  # kept

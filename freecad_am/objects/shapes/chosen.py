@@ -18,10 +18,10 @@ from ..stage import Stage
 from ..stage_parts import Outcome
 from ..staleness import UP_TO_DATE
 from ..work import faults
-from . import chord_error, nested
+from . import bodies, nested
 from .bodies import shape_of
-from .file_issues import file_issues
-from .marks import EDGE, FACE, LINE, PLANE, TOLERANCE, WHOLE_PART, Mark, marks_of, read, whole_of
+from .nested import EDGE, FACE, LINE, PLANE, TOLERANCE, WHOLE_PART, Mark, marks_of, read, whole_of
+from .part_file import file_issues
 
 CODES = {FACE: "FACES_CHANGED", EDGE: "EDGES_CHANGED"}
 LOST_PREFIX = "?"  # prefix of names that FreeCAD has lost
@@ -156,7 +156,7 @@ class FeatureStage(Stage):
                 self._keep(obj, {link: marks})
         outcome_issues = set(outcome.issues)
         issues_found += [issue for issue in file_issues(obj) if issue not in outcome_issues]
-        issues_found += chord_error.notes(obj)
+        issues_found += bodies.notes(obj)
         super()._store(
             obj, dataclasses.replace(outcome, issues=(*issues_found, *outcome.issues)), *packed
         )

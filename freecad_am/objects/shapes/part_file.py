@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import FreeCAD as App
@@ -16,14 +17,37 @@ from ...core.geometry.curves.bead_curves import POINT_FILES
 from ...core.geometry.located import is_there, locate
 from ...core.geometry.mesh.file_unit import MESHES, refuse_scale
 from ...core.issues import NOTE, InputError, Issue, Text
+from ..results.findings import parts_of, text_of
 from ..work import hooks
-from . import document_file, linked_files
-from .array_elements import ArrayElement, element_count
+from . import linked_files
 from .bodies import global_shape, renumbers
-from .file_issues import keep_file_issues
 from .file_links import missing_files
 from .meshes import is_mesh, mesh_of, refuse_mixed
-from .places import GROUPS, Dependencies, dependencies_of, elements_of
+from .places import GROUPS, ArrayElement, Dependencies, dependencies_of, element_count, elements_of
+
+PROPERTY = "FileIssues"
+
+
+def keep_file_issues(obj: Any, issues: Sequence[Issue]) -> None:
+    """Store the notes on a file with the object that its shape belongs to; nothing without notes."""
+    if not issues:
+        return
+    if PROPERTY not in obj.PropertiesList:
+        obj.addProperty(
+            "App::PropertyString", PROPERTY, "Part", "Notes on the content of the file.", 4
+        )
+    rows = [[issue.level, issue.code, parts_of(issue.message)] for issue in issues]
+    setattr(obj, PROPERTY, json.dumps(rows))
+
+
+def file_issues(obj: Any) -> list[Issue]:
+    """The notes on the files of an object's sources, each once."""
+    issues: dict[Issue, None] = {}
+    for source in obj.OutListRecursive:
+        for level, code, text_parts in json.loads(getattr(source, PROPERTY, "") or "[]"):
+            issues[Issue(level, code, text_of(text_parts))] = None
+    return list(issues)
+
 
 # what the origin of an assembly or a body is made of: since FreeCAD 1.0 with shapes
 ORIGIN = ("App::Line", "App::Plane", "App::Point")
@@ -117,7 +141,7 @@ def _shape_of_file(
     where: str = "",
 ) -> tuple[Any, str, tuple[Issue, ...]]:
     active, open_before = App.ActiveDocument, set(App.listDocuments())
-    document = document_file.open_here(path, path)
+    document = linked_files.open_here(path, path)
     try:
         renewed = linked_files.renew_changed(document)
         changed = [] if change is None else change(document)

@@ -11,13 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
 from ...core.issues import Text
 from ...core.read_moves import ARC, Event, ReadMoves
-from ..packed import Lines, floats
-from .modules import Frames, Module, rotation_of_quaternions, unreadable
-from .process_data import ProcessData
+from ...core.types import Array
+from ..alike import Lines, floats
+from .modules import Frames, Module, ProcessData, rotation_of_quaternions, unreadable
 
 _DECIMALS = re.compile(r"\.(\d+)")
 

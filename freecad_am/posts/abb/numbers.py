@@ -12,11 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from freecad_am.core.types import Array, Mask
-
 from ...core.issues import InputError
 from ...core.orientation import MOVING_XYZ, QUATERNION
 from ...core.program import DEPOSIT, LINEAR_MOVE, Moves, Program, Six
+from ...core.types import Array, Mask
 from ..parts import place
 from ..refusals import speeds_within
 

@@ -32,8 +32,7 @@ from ...core.program import (
     WaitInput,
     Weave,
 )
-from ..names import Naming
-from ..on_controller import controller_checks
+from ..catalogue import Naming, controller_checks
 from ..parts import Piece, Run, grouped, move_retracts, packed, size, unbroken
 from ..refusals import (
     Asked,
@@ -50,7 +49,7 @@ from ..refusals import (
 )
 from . import numbers, process, text
 from .read import read
-from .words import INSTRUCTIONS
+from .read_process import INSTRUCTIONS
 
 __all__ = ["read", "write"]
 

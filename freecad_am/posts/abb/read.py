@@ -13,10 +13,8 @@ from collections.abc import Iterator
 from ...core.issues import Text
 from ...core.read_moves import ARC, ReadMoves
 from .columns import Move, Run, all_moves
-from .modules import Module, modules, unreadable
-from .process_data import ProcessData
-from .read_process import JOINTS, POSITION, process_move, straight
-from .words import INSTRUCTIONS
+from .modules import Module, ProcessData, modules, unreadable
+from .read_process import INSTRUCTIONS, JOINTS, POSITION, process_move, straight
 
 _TAIL = r",(\w+)\\([TV]):=(\d+\.(\d+)),(\w+),(\w+)\\WObj:=(\w+);$"
 _JOINT = re.compile(rf"MoveAbsJ {JOINTS}{_TAIL}")

@@ -10,8 +10,55 @@ import numpy as np
 from ...core.issues import Text
 from ...core.read_moves import ARC
 from .columns import Move, Run
-from .modules import Module, unreadable
-from .process_data import Feed, Switch, Weld
+from .modules import Feed, Module, Switch, Weld, unreadable
+
+INSTRUCTIONS = frozenset(
+    [
+        "ACTEVENTBUFFER",
+        "ARCKILL",
+        "ARCREFRESH",
+        "BREAK",
+        "CLEARPATH",
+        "CORNERPATH",
+        "CORRCLEAR",
+        "DEACTEVENTBUFFER",
+        "DITHERDEACT",
+        "EOFFSOFF",
+        "EXIT",
+        "EXITCYCLE",
+        "HOLLOWWRISTRESET",
+        "IDISABLE",
+        "IENABLE",
+        "MTOOLROTCALIB",
+        "PATHRECSTOP",
+        "PDISPOFF",
+        "PFRESTART",
+        "RAISE",
+        "RAISETOUSER",
+        "RESETRETRYCOUNT",
+        "RESTOPATH",
+        "RETRY",
+        "RETURN",
+        "SAVECFGDATA",
+        "SOFTDEACT",
+        "SPYSTOP",
+        "STARTMOVE",
+        "STARTMOVERETRY",
+        "STOP",
+        "STOPMOVE",
+        "STOPMOVERESET",
+        "STOREPATH",
+        "SYNCMOVERESUME",
+        "SYNCMOVESUSPEND",
+        "SYNCMOVEUNDO",
+        "TESTSIGNRESET",
+        "TPERASE",
+        "TRYNEXT",
+        "WAITROB",
+        "WARMSTART",
+    ]
+)
+
 
 _N = r"-?\d+\.\d+"
 AXES = rf"\[((?:(?:9E9|{_N}),){{5}}(?:9E9|{_N}))\]"

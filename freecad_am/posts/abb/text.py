@@ -8,9 +8,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
-from ..names import plain
+from ...core.types import Array
+from ..catalogue import plain
 from .numbers import ANGLE_DECIMALS, LENGTH_DECIMALS, TURN_DECIMALS, Pose
 
 END_OF_LINE = "\r\n"

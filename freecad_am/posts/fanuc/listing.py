@@ -14,9 +14,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
 from ...core import digits
+from ...core.types import Array
 
 END_OF_LINE = "\r\n"
 REMARK_WIDTH = 32

@@ -5,11 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
 from ...core.issues import InputError
 from ...core.orientation import FIXED_XYZ
 from ...core.program import RAPID, Moves
+from ...core.types import Array
 from ..parts import place
 from ..refusals import speeds_within
 

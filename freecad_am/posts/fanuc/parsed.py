@@ -11,9 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from freecad_am.core.types import Array, Index, Mask
-
 from ...core.issues import Text
+from ...core.types import Array, Index, Mask
 from .. import alike
 from .records import Records, records_of, unreadable
 

@@ -8,12 +8,14 @@ Output, controller settings and confirmations: docs/posts/fanuc.md.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import re
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
+from ...core import digits
 from ...core.controller import Controller
 from ...core.issues import InputError, Text, Word
 from ...core.orientation import FIXED_XYZ, Pendant
@@ -34,10 +36,10 @@ from ...core.program import (
     WaitInput,
     Weave,
 )
-from ..names import Naming
-from ..on_controller import controller_checks
-from ..parts import Piece, Run, continued, grouped, packed
+from ..catalogue import Naming, controller_checks
+from ..parts import Piece, Run, continued, grouped, packed, switching
 from ..refusals import (
+    Ahead,
     refuse_calls_of_own,
     refuse_cooling,
     refuse_external,
@@ -48,11 +50,42 @@ from ..refusals import (
     refuse_schedules,
     refuse_weave,
     refuse_wire,
+    switched_ahead,
 )
 from . import listing as text
 from . import numbers
 from .read import read
-from .switching import as_written, at_ends
+
+DECIMALS = 2  # of the seconds before the end
+
+
+def at_ends(program: Program) -> dict[int, str]:
+    """The options of the last moves of runs, with the space before, by the identity of the run."""
+    if program.dry_run:
+        return {}
+    output = program.deposit_output
+    return {
+        id(
+            moves
+        ): f" {_ahead(block.ahead)},DO[{output}]={'ON' if isinstance(block, DepositOn) else 'OFF'}"
+        for moves, block in switching(program)
+        if block.ahead is not None
+    }
+
+
+def as_written(program: Program) -> list[Ahead]:
+    """Every switching ahead, with the lead in the listing: up to 5 ms longer than requested."""
+    steps = 10**DECIMALS
+    return [
+        dataclasses.replace(ahead, lead=round(ahead.lead, DECIMALS), steps=steps)
+        for ahead in switched_ahead(program)
+    ]
+
+
+def _ahead(seconds: float) -> str:
+    """How long before, to 0.01 s, as wide as controllers write it: TB    .05sec."""
+    return f"TB{digits.joined([digits.right_aligned(np.array([round(seconds, DECIMALS)]), DECIMALS, 7)], 1)}sec"
+
 
 __all__ = ["read", "write"]
 

@@ -9,9 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from freecad_am.core.types import Array, Index
-
 from ...core.issues import InputError, Text
+from ...core.types import Array, Index
 from .. import alike
 
 _RECORD_START = re.compile(r"^P\[(\d+)", re.MULTILINE)

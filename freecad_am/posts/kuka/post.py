@@ -26,8 +26,7 @@ from ...core.program import (
     Wait,
     WaitInput,
 )
-from ..names import Naming
-from ..on_controller import controller_checks
+from ..catalogue import Naming, controller_checks
 from ..parts import Piece, Run, grouped, keep_whole, packed
 from ..refusals import (
     refuse_calls_of_own,
@@ -45,7 +44,7 @@ from ..refusals import (
     refuse_without_speeds,
     switched_ahead,
 )
-from . import arc, text
+from . import text
 from .read import read
 
 __all__ = ["read", "write"]
@@ -190,7 +189,7 @@ def write(program: Program) -> dict[str, bytes]:
     groups = list(grouped(program, moved, lambda block: _instructions(program, block)))
     refuse_leads([*switched_ahead(program), *moved.ahead])
     part_groups = packed(groups, program.max_points, _NO_END, keep_whole)
-    used = [*([text.SCHEDULE] if _scheduled(program) else []), *arc.names(program)]
+    used = [*([text.SCHEDULE] if _scheduled(program) else []), *text.names(program)]
     refuse_names_of_data(program, {name}, used)
     if len(part_groups) == 1:
         refuse_calls_of_own(program, {name}, program_name)
@@ -280,7 +279,7 @@ def _refuse(program: Program) -> None:
 
 def _refuse_schedules(program: Program) -> None:
     refuse_schedules(program, LAST_OUTPUT - text.BITS + 1, LAST_SCHEDULE)
-    arc.refuse_post_flow(program)
+    text.refuse_post_flow(program)
     schedule_outputs = range(program.schedule_output, program.schedule_output + text.BITS)
     if _scheduled(program) and program.deposit_output in schedule_outputs:
         raise InputError(
@@ -320,7 +319,7 @@ def _own_remarks(program: Program) -> Iterator[str]:
             f"E{program.first_external + axis - AXES} is the track in mm, which carries $ROBROOT; {stands} stands in the"
             " world"
         )
-    yield from arc.remarks(program)
+    yield from text.remarks(program)
     if program.dry_run:
         yield "dry run: no deposit"
 
@@ -329,7 +328,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
     # a wait of zero time stops the advance run until the robot stops
     output = f"$OUT[{program.deposit_output}]="
     if isinstance(block, (DepositOn, DepositOff)) and block.schedule is not None:
-        return [arc.after(block), *text.wait(block.lead)]
+        return [text.after(block), *text.wait(block.lead)]
     if isinstance(block, (DepositOn, DepositOff)) and block.ahead is not None:
         return []  # the move before does it
     if isinstance(block, DepositOn):
@@ -371,6 +370,6 @@ def _body(program: Program, piece_list: Sequence[Piece]) -> list[str]:
             if isinstance(entry, Run)
             else entry
         )
-        if isinstance(entry, list) and any(line.startswith(arc.CALL) for line in entry):
+        if isinstance(entry, list) and any(line.startswith(text.CALL) for line in entry):
             settings.clear()  # what ArcTech sets is not known
     return [*lines, _STAND]

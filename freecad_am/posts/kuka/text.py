@@ -5,19 +5,155 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from freecad_am.core.types import Array, Mask
-
 from ...core.issues import InputError
 from ...core.orientation import MOVING_ZYX
-from ...core.program import DEPOSIT, FIRST_SHARE, LINEAR_MOVE, SHORTEST_RAPID, Moves, Program
-from ..names import plain
-from ..parts import place
+from ...core.program import (
+    DEPOSIT,
+    FIRST_SHARE,
+    LINEAR_MOVE,
+    SHORTEST_RAPID,
+    DepositOff,
+    DepositOn,
+    Moves,
+    Program,
+)
+from ...core.types import Array, Mask
+from ..catalogue import plain
+from ..parts import place, switching
 from ..refusals import Ahead, speeds_within
-from . import arc, switching
+
+CALL = "ArcMainNG("  # beginning of a line that calls ArcTech
+SEAM = "WSEAM"  # data of the seam, common to all
+WELD_DATA, END_DATA = "WDAT", "WDATOFF"  # weld data, by number
+
+
+def after(block: DepositOn | DepositOff) -> str:
+    """The line behind such a move."""
+    if isinstance(block, DepositOn):
+        return f"{CALL}#ArcOnAfterMoveStd,{WELD_DATA}{block.schedule},{SEAM})"
+    return f"{CALL}#ArcOffAfterMoveStd,{END_DATA}{block.schedule},{SEAM})"
+
+
+def names(program: Program) -> list[str]:
+    """Names of the data and procedures of ArcTech that a program uses."""
+    schedules = {
+        block.schedule
+        for block in program.blocks
+        if isinstance(block, DepositOn) and block.schedule is not None
+    }
+    arc_names = ["ArcMainNG", "ArcGetPath", "ArcGetDelay", SEAM] if schedules else []
+    return arc_names + [
+        f"{kind}{number}" for number in sorted(schedules) for kind in (WELD_DATA, END_DATA)
+    ]
+
+
+def refuse_post_flow(program: Program) -> None:
+    """Raises InputError SCHEDULE where a bead is to have a post-flow, which ArcTech has in its own data."""
+    for block in program.blocks:
+        if isinstance(block, DepositOff) and block.schedule is not None and block.lead > 0.0:
+            raise InputError(
+                "SCHEDULE",
+                "process.lead_off",
+                "ArcTech ends the arc with the last move of a bead and waits there for the "
+                "crater time of its weld data; use lead_off 0 and set the crater time of {}, or "
+                "another program.schedule.by",
+                f"{END_DATA}{block.schedule}",
+            )
+
+
+def remarks(program: Program) -> Iterator[str]:
+    """Requirements on the controller: the data, and their speed."""
+    speeds: dict[int, list[float]] = {}
+    number: int | None = None
+    for block in program.blocks:
+        if isinstance(block, DepositOn):
+            number = block.schedule
+        elif isinstance(block, Moves) and number is not None:
+            speeds.setdefault(number, []).extend(
+                (float(np.min(block.speed)), float(np.max(block.speed)))
+            )
+        elif isinstance(block, DepositOff):
+            number = None
+    if speeds:
+        yield f"ArcTech: {SEAM} and the weld data are of a public data list"
+    for number, weld_speeds in sorted(speeds.items()):
+        slowest, fastest = 0.001 * min(weld_speeds), 0.001 * max(weld_speeds)
+        speed = f"{fastest:.6f}" if fastest - slowest < 5e-7 else f"{slowest:.6f} to {fastest:.6f}"
+        yield f"{WELD_DATA}{number}, {END_DATA}{number}: $VEL.CP is {speed} m/s"
+
+
+def lighting(number: int) -> list[str]:
+    """The lines in front of the move that lights the arc."""
+    data, seam = f"{WELD_DATA}{number}", SEAM
+    on_the_fly = f"TRIGGER WHEN PATH=ArcGetPath(#OnTheFlyArcOn,{data})"
+    return [
+        f"TRIGGER WHEN DISTANCE=1 DELAY=ArcGetDelay(#PreDefinition,{data}) DO {CALL}#PreDefinition,{data},{seam}) PRIO=-1",
+        f"{on_the_fly} DELAY=ArcGetDelay(#GasPreflow,{data}) DO {CALL}#GasPreflow,{data},{seam}) PRIO=-1",
+        f"{on_the_fly} DELAY=0 DO {CALL}#ArcOnMoveStd,{data},{seam}) PRIO=-1",
+        f"{CALL}#ArcOnBeforeMoveStd,{data},{seam})",
+    ]
+
+
+def ending(number: int) -> list[str]:
+    """The lines in front of the move that ends it."""
+    data, seam = f"{END_DATA}{number}", SEAM
+    return [
+        f"TRIGGER WHEN PATH=ArcGetPath(#ArcOffBefore,{data}) DELAY=0 DO {CALL}#ArcOffBeforeOffStd,{data},{seam}) PRIO=-1",
+        f"TRIGGER WHEN PATH=ArcGetPath(#OnTheFlyArcOff,{data}) DELAY=0 DO {CALL}#ArcOffMoveStd,{data},{seam}) PRIO=-1",
+        f"{CALL}#ArcOffBeforeMoveStd,{data},{seam})",
+    ]
+
+
+TRIGGER = "TRIGGER "  # with which its line begins
+
+
+def ahead_of_moves(program: Program) -> dict[int, str]:
+    """The lines in front of the last one of runs of moves, by the identity of the run."""
+    if program.dry_run:
+        return {}
+    return {
+        id(moves): "\n".join(lines)
+        for moves, block in switching(program)
+        if (lines := _lines(program, block))
+    }
+
+
+def leads(program: Program) -> dict[int, float]:
+    """s ahead of its end at which the last one of runs of moves switches an output, by the identity
+    of the run.
+    """
+    if program.dry_run:
+        return {}
+    return {
+        id(moves): block.ahead for moves, block in switching(program) if block.ahead is not None
+    }
+
+
+def in_front(lines: str, word: str) -> str:
+    """The word of a move, its settings in front of it, with such lines. A trigger comes last; calls
+    of ArcTech come first, as settings after them override theirs.
+    """
+    if CALL in lines:
+        return f"{lines}|{word}"
+    settings, bar, move = word.rpartition("|")
+    return f"{settings}{bar}{lines}|{move}"
+
+
+def _lines(program: Program, block: DepositOn | DepositOff) -> list[str]:
+    if block.schedule is not None:
+        return lighting(block.schedule) if isinstance(block, DepositOn) else ending(block.schedule)
+    if block.ahead is None:
+        return []
+    early, switched = (
+        -round(1000.0 * block.ahead),
+        "TRUE" if isinstance(block, DepositOn) else "FALSE",
+    )
+    return [f"{TRIGGER}WHEN DISTANCE=1 DELAY={early} DO $OUT[{program.deposit_output}]={switched}"]
+
 
 END_OF_LINE = "\r\n"
 SCHEDULE, BITS = "am_schedule", 8  # signal that is set to its number, and its count of outputs
@@ -87,7 +223,7 @@ class Lines:
         self._before: Array | None = None
         self.ahead: list[Ahead] = []
         self._own = program.own_axes
-        self._switching, self._leads = switching.ahead_of_moves(program), switching.leads(program)
+        self._switching, self._leads = ahead_of_moves(program), leads(program)
         numbers = [program.first_external + k for k in range(len(program.external_kinds))]
         external = [f"E{number} %.{ANGLE_DECIMALS}f" for number in numbers]
         self._ptp, self._lin = (
@@ -135,7 +271,7 @@ class Lines:
             ]
         self._before = values[-1]
         if id(moves) in self._switching:
-            marked[-1] = switching.in_front(self._switching[id(moves)], marked[-1])
+            marked[-1] = in_front(self._switching[id(moves)], marked[-1])
         return marked
 
     def _external_speeds(self, share: int) -> str:
@@ -194,9 +330,9 @@ def spoken(words: Sequence[str], current_settings: dict[str, str]) -> list[str]:
     for word in words:
         *settings, move = word.split("|")
         for setting in settings:
-            if setting.startswith(switching.TRIGGER):
+            if setting.startswith(TRIGGER):
                 lines += setting.splitlines()
-                if arc.CALL in setting:
+                if CALL in setting:
                     current_settings.clear()  # what ArcTech sets is not known
                 continue
             key = setting[: max(setting.find("="), 8)]

@@ -31,10 +31,8 @@ from ...core.program import (
     WaitBelow,
     WaitInput,
 )
-from ..names import Naming
+from ..catalogue import Naming, controller_checks
 from ..nc import numbers
-from ..nc import parts as common
-from ..on_controller import controller_checks
 from ..parts import Piece, Run, grouped, keep_whole, lines_of, packed
 from ..refusals import (
     refuse_calls_of_own,
@@ -105,7 +103,7 @@ def write(program: Program) -> dict[str, bytes]:
     remarks = [
         _remark(line)
         for words in (*program.remarks, *_own_remarks(program))
-        for line in common.wrapped(words)
+        for line in numbers.wrapped(words)
     ]
     groups = list(
         grouped(
@@ -150,16 +148,16 @@ def refuse_setup(
     carried: tuple[float, ...] | None = None,
 ) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions of a table can."""
-    common.refuse_setup("linuxcnc", motion, setup)
+    numbers.refuse_setup("linuxcnc", motion, setup)
     if carried is not None and motion == "cartesian":
         _refuse_tilt(carried)
 
 
 def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
-    common.refuse_table(program, "linuxcnc")
-    common.refuse_words(program, _TAKEN)
-    common.refuse_wire_output(program, LAST_PIN)
+    numbers.refuse_table(program, "linuxcnc")
+    numbers.refuse_words(program, _TAKEN)
+    numbers.refuse_wire_output(program, LAST_PIN)
     refuse_triggers(program, NO_TRIGGER)
     refuse_cooling(program, LAST_PIN)
     refuse_schedules(program, LAST_PIN, LAST_SCHEDULE, inside=True)
@@ -343,7 +341,7 @@ def _wire(program: Program) -> str:
 
 
 def _dwell(seconds: float) -> list[str]:
-    return common.dwell("P", seconds)
+    return numbers.dwell("P", seconds)
 
 
 def _lines(program: Program, piece_list: Sequence[Piece]) -> list[str]:

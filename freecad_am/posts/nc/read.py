@@ -10,11 +10,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from freecad_am.core.types import Array, Mask, NDArray
-
 from ...core.issues import InputError
 from ...core.read_moves import Event, ReadMoves
-from ..packed import Lines
+from ...core.types import Array, Mask, NDArray
+from ..alike import Lines
 
 # feed as the time of the move; as the speed of the linear axes; as the speed of the linear axes, or
 # of the rotary ones if only these move; and as the speed of the tip in part coordinates

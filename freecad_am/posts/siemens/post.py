@@ -15,8 +15,6 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
 from ...core.controller import Controller
 from ...core.issues import InputError
 from ...core.program import (
@@ -33,10 +31,9 @@ from ...core.program import (
     WaitBelow,
     WaitInput,
 )
-from ..names import Naming
+from ...core.types import Array
+from ..catalogue import Naming, controller_checks
 from ..nc import numbers
-from ..nc import parts as common
-from ..on_controller import controller_checks
 from ..parts import Piece, Run, grouped, keep_whole, lines_of, packed, place
 from ..refusals import (
     refuse_calls_of_own,
@@ -162,7 +159,7 @@ def write(program: Program) -> dict[str, bytes]:
     remarks = [
         f"; {line}"
         for words in (*program.remarks, *_own_remarks(program))
-        for line in common.wrapped(words)
+        for line in numbers.wrapped(words)
     ]
     groups = list(
         grouped(program, numbers.Feeds(program), lambda block: _instructions(program, block))
@@ -201,13 +198,13 @@ def refuse_setup(
     carried: tuple[float, ...] | None = None,
 ) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions of a table can."""
-    common.refuse_setup("siemens", motion, setup)
+    numbers.refuse_setup("siemens", motion, setup)
 
 
 def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
-    common.refuse_table(program, "siemens")
-    common.refuse_wire_output(program, LAST_ANALOGUE)
+    numbers.refuse_table(program, "siemens")
+    numbers.refuse_wire_output(program, LAST_ANALOGUE)
     refuse_triggers(program, NO_TRIGGER)
     refuse_cooling(program, LAST_ANALOGUE)
     _refuse_schedules(program)
@@ -219,7 +216,7 @@ def _refuse(program: Program) -> None:
             LAST_OUTPUT,
             program.deposit_output,
         )
-    common.refuse_words(program, _TAKEN)
+    numbers.refuse_words(program, _TAKEN)
     for block in program.blocks:
         if isinstance(block, WaitInput) and block.number > LAST_INPUT:
             raise InputError(
@@ -349,7 +346,7 @@ def _offset(number: int) -> str:
 
 
 def _dwell(seconds: float) -> list[str]:
-    return common.dwell("F", seconds)
+    return numbers.dwell("F", seconds)
 
 
 def _lines(program: Program, entries: Sequence[Piece]) -> list[str]:

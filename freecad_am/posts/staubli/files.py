@@ -10,9 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
 from ...core.issues import InputError, Text
+from ...core.types import Array
 
 _NAMESPACE = "{http://www.staubli.com/robotics/VAL3/"
 PROJECT, DATA, PROGRAM = (

@@ -8,11 +8,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
 from ...core.issues import InputError
 from ...core.orientation import MOVING_XYZ
 from ...core.program import DEPOSIT, FIRST_SHARE, LINEAR_MOVE, Moves, Program
+from ...core.types import Array
 from ..parts import place
 
 ANGLE_DECIMALS, LENGTH_DECIMALS = 5, 4

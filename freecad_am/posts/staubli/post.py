@@ -28,8 +28,7 @@ from ...core.program import (
     Wait,
     WaitInput,
 )
-from ..names import Naming
-from ..on_controller import controller_checks
+from ..catalogue import Naming, controller_checks
 from ..parts import Piece, Run, grouped, move_retracts, packed, size, unbroken
 from ..refusals import (
     refuse_continuous,

@@ -7,8 +7,7 @@ import textwrap
 import unicodedata
 from collections.abc import Iterable, Sequence
 
-from freecad_am.core.types import Array
-
+from ...core.types import Array
 from .numbers import ANGLE_DECIMALS, LENGTH_DECIMALS
 
 _HEAD = '<?xml version="1.0" encoding="utf-8"?>\n'

@@ -15,12 +15,38 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
 from ...core.issues import InputError, Text
 from ...core.read_moves import Event, ReadMoves
-from ..packed import Lines
-from .words import INSTRUCTIONS
+from ...core.types import Array
+from ..alike import Lines
+
+INSTRUCTIONS = frozenset(
+    [
+        "ENABLE_EXTERNAL_FT_SENSOR",
+        "END_FORCE_MODE",
+        "END_FREEDRIVE_MODE",
+        "END_SCREW_DRIVING",
+        "END_TEACH_MODE",
+        "FORCE_MODE_STOP",
+        "FREEDRIVE_MODE",
+        "FT_RTDE_INPUT_ENABLE",
+        "HALT",
+        "PATH_OFFSET_DISABLE",
+        "PATH_OFFSET_ENABLE",
+        "POWERDOWN",
+        "RESET_REVOLUTION_COUNTER",
+        "RESET_WORLD_MODEL",
+        "SOCKET_CLOSE",
+        "STOP_CONVEYOR_TRACKING",
+        "SYNC",
+        "TEACH_MODE",
+        "TOOL_CONTACT",
+        "ZERO_FTSENSOR",
+        "GET_STEPTIME",
+        "IS_STEADY",
+    ]
+)
+
 
 _N = r"-?\d+\.\d+"
 _SIX = rf"\[({_N}), ({_N}), ({_N}), ({_N}), ({_N}), ({_N})\]"

@@ -14,11 +14,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
 from ...core.issues import InputError, Text
 from ...core.read_moves import ARC, Event, ReadMoves
-from ..packed import Lines
+from ...core.types import Array
+from ..alike import Lines
 
 _NAME = re.compile(r"//NAME ([A-Z][A-Z0-9_]{0,31})$")
 _COUNT = re.compile(r"///NPOS (\d+),(\d+),(\d+),0,0,0$")

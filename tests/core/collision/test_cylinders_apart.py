@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from freecad_am.core.collision.cylinders_apart import PlacedCylinders, nearer
+from freecad_am.core.collision.separation import PlacedCylinders, nearer
 
 FIRST, SECOND = (220.0, 35.0), (60.0, 90.0)  # length and radius, mm
 

@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.collision.bodies import build_bodies
 from freecad_am.core.collision.frustum import Frustum
 from freecad_am.core.collision.obstacles import Obstacles
+from freecad_am.core.collision.scene import build_bodies
 from freecad_am.core.geometry.obstacles import Body
 
 

@@ -8,10 +8,9 @@ import pytest
 from scipy.optimize import minimize
 from scipy.spatial import cKDTree
 
-from freecad_am.core.collision import deposit, obstacles, own_layer, separation
+from freecad_am.core.collision import deposit, frustum, obstacles, separation
 from freecad_am.core.collision.frustum import Frustum
-from freecad_am.core.collision.nozzle import depositing, exempt_height, travelling
-from freecad_am.core.collision.scene import scene
+from freecad_am.core.collision.scene import depositing, exempt_height, scene, travelling
 from freecad_am.core.geometry.obstacles import Body
 
 SLOPE = np.tan(np.radians(20.0))
@@ -273,7 +272,7 @@ def test_the_layer_being_laid_is_told_the_same_with_and_without_looking_at_each_
     found = laid.find_touching(*asked)
     assert 0.2 < found.mean() < 0.8
     monkeypatch.setattr(
-        own_layer, "select_pairs", lambda lines, since, solid, query, *rest: np.arange(len(query))
+        frustum, "select_pairs", lambda lines, since, solid, query, *rest: np.arange(len(query))
     )
     assert (laid.find_touching(*asked) == found).all()
 

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.collision import obstacles, separation, slabs
+from freecad_am.core.collision import obstacles, separation
 from freecad_am.core.collision.deposit import build_deposit
 from freecad_am.core.collision.frustum import Frustum
 from freecad_am.core.collision.tree import BRANCH
@@ -37,7 +37,7 @@ def nozzles(random, points, count):
 def test_what_is_left_out_meets_no_piece(width, height, step, short):
     random = np.random.default_rng(7)
     points, beads = bead(random, 403, step, width, height, short)
-    boxes = slabs.build_slabs(beads.corners, beads.radius, BRANCH)
+    boxes = obstacles.build_slabs(beads.corners, beads.radius, BRANCH)
     assert (
         np.abs(np.einsum("nij,nkj->nik", boxes.sides, boxes.sides))[:, ~np.eye(3, dtype=bool)].max()
         < 1e-9
@@ -48,7 +48,7 @@ def test_what_is_left_out_meets_no_piece(width, height, step, short):
         each.ravel()
         for each in np.meshgrid(np.arange(60), np.arange(len(boxes.centre)), indexing="ij")
     )
-    near = slabs.select_close(boxes, solid, node, tip[query], axis[query])
+    near = obstacles.select_close(boxes, solid, node, tip[query], axis[query])
     far = np.setdiff1d(np.arange(len(query)), near)
     assert len(far) > 0.3 * len(query)
     for piece in range(BRANCH):  # of each box
@@ -64,7 +64,7 @@ def test_a_box_lies_as_its_pieces_do():
     along, up = np.array([1.0, 2.0, 2.0]) / 3.0, np.array([2.0, 1.0, -2.0]) / 3.0
     points = np.arange(65)[:, None] * 0.1 * along
     beads = build_deposit(points, np.tile(up, (65, 1)), 6.0, 0.4, np.array([0]), short=True)
-    boxes = slabs.build_slabs(beads.corners, beads.radius, BRANCH)
+    boxes = obstacles.build_slabs(beads.corners, beads.radius, BRANCH)
     sizes = np.sort(2.0 * np.linalg.norm(boxes.sides, axis=2), axis=1)
     assert sizes == pytest.approx(
         np.tile([0.0, 0.8, 5.6], (8, 1)), abs=1e-9
@@ -80,9 +80,9 @@ def test_touches_are_the_same_without(monkeypatch, seed):
     solid, moment = Frustum(0.5, 0.3, 1.2, 25.0), random.integers(2000, size=700)
     own = np.minimum(moment, random.integers(2000, size=700))
     asked = []
-    looked = slabs.select_close
+    looked = obstacles.select_close
     monkeypatch.setattr(
-        slabs, "select_close", lambda *args: asked.append(len(args[2])) or looked(*args)
+        obstacles, "select_close", lambda *args: asked.append(len(args[2])) or looked(*args)
     )
     found = beads.find_touching(solid, tip, axis, moment, own)
     assert sum(asked) and 0.1 < found.mean() < 0.95

@@ -7,8 +7,7 @@ import pytest
 
 from freecad_am.core.collision.deposit import build_deposit
 from freecad_am.core.collision.frustum import Frustum, side_height
-from freecad_am.core.collision.nozzle import depositing, travelling
-from freecad_am.core.collision.scene import scene
+from freecad_am.core.collision.scene import depositing, scene, travelling
 from freecad_am.core.geometry.cylinders import Cylinder
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.kinematics import cell as cells

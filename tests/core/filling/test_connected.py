@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from freecad_am.core.filling.curve import Beads
+from freecad_am.core.filling.centre import Beads
 from freecad_am.core.filling.fill import fill
 from freecad_am.core.geometry.regions.region import regions
 

@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.filling.centre import bare_parts
+from freecad_am.core.filling.centre import Beads, bare_parts
 from freecad_am.core.filling.cover import measure_cover
-from freecad_am.core.filling.curve import Beads
 from freecad_am.core.filling.fill import fill, open_places
 from freecad_am.core.geometry.regions.region import joined, regions
 from freecad_am.core.geometry.regions.strip import Period, strips

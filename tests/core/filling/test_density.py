@@ -8,14 +8,12 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.filling.curve import Beads
+from freecad_am.core.filling.centre import Beads
 from freecad_am.core.filling.fill import fill
-from freecad_am.core.filling.lattice import gyroid_period
-from freecad_am.core.filling.sparse import Infill
+from freecad_am.core.filling.sparse import Infill, gyroid_period
 from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InputError
-from freecad_am.core.layers.over_and_under import common_regions, mark_buried
-from freecad_am.core.layers.surface import Slice
+from freecad_am.core.layers.surface import Slice, common_regions, mark_buried
 from freecad_am.core.parameters.filled import DevelopableParameters
 
 _spec = importlib.util.spec_from_file_location(

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from freecad_am.core.filling.curve import Beads
+from freecad_am.core.filling.centre import Beads
 from freecad_am.core.filling.fill import PATTERNS, fill
-from freecad_am.core.filling.lines import Frame, levels_between, rows
+from freecad_am.core.filling.sparse import Frame, levels_between, rows
 from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InfeasibleError, InputError
 

@@ -8,8 +8,7 @@ import pytest
 
 from freecad_am.core.geometry.curves import contour
 from freecad_am.core.geometry.curves.contour import Piece
-from freecad_am.core.geometry.curves.profile import Meridian
-from freecad_am.core.geometry.curves.sampling import arc, line
+from freecad_am.core.geometry.curves.profile import Meridian, arc, line
 
 
 def pieces(*stretches):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from freecad_am.core.geometry.mesh.crossing import find_crossings
+from freecad_am.core.geometry.mesh.near_triangles import find_crossings
 from freecad_am.core.geometry.mesh.repair import repair_mesh
 from freecad_am.core.issues import InputError
 

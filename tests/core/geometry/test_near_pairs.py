@@ -6,13 +6,13 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.mesh import near_pairs as module
-from freecad_am.core.geometry.mesh.near_pairs import near_pairs
+from freecad_am.core.geometry.mesh import polygon
+from freecad_am.core.geometry.mesh.polygon import near_pairs
 
 
 @pytest.mark.parametrize("block", [5, 300, 2_000_000])
 def test_all_pairs_that_may_touch_and_no_others(block, monkeypatch):
-    monkeypatch.setattr(module, "BLOCK", block)
+    monkeypatch.setattr(polygon, "BLOCK", block)
     rng = np.random.default_rng(1)
     middle, reach = rng.uniform(0.0, 10.0, (300, 3)), rng.uniform(0.01, 1.5, 300) ** 3
     found = np.concatenate(list(near_pairs(middle, reach)))

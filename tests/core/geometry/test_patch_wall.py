@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.mesh.edge_runs import runs, tangents
-from freecad_am.core.geometry.mesh.triangles import closest
+from freecad_am.core.geometry.mesh.triangle_mesh import closest
 from freecad_am.core.geometry.walls.patch import CONE, CYLINDER, PLANE, SPHERE, SPLINE, TORUS, Patch
 from freecad_am.core.geometry.walls.patch_wall import FirstCurve, PatchWall, Rim
 

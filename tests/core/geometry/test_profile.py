@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.curves.sampling import arc, line, sample_curve
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall, arc, line, sample_curve
 
 
 @pytest.mark.parametrize("radius", [0.5, 45.0, 900.0])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.filling.curve import Beads
+from freecad_am.core.filling.centre import Beads
 from freecad_am.core.filling.fill import fill
 from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.regions.strip import Period, Strip, strips

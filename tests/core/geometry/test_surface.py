@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.implicit import HalfSpace, Round
+from freecad_am.core.geometry.columns import HalfSpace, Round
 from freecad_am.core.geometry.walls.surface import Cone, Torus, cylinder, normals
-from freecad_am.core.geometry.walls.tabulated import Tabulated
+from freecad_am.core.geometry.walls.surface_wall import Tabulated
 
 TORUS = Torus(60.0, 15.0)
 

@@ -9,17 +9,17 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 from freecad_am.core.geometry.obstacles import Body
-from freecad_am.core.inspection import scan_checks, scan_motion
+from freecad_am.core.inspection import scan_checks
 from freecad_am.core.inspection.fit_layers import fit_layers, max_moves
-from freecad_am.core.inspection.scan_heights import Scan
-from freecad_am.core.inspection.scanned_body import facing, scanned
+from freecad_am.core.inspection.planned import align_scan
+from freecad_am.core.inspection.scan_heights import Scan, facing, scanned
 from freecad_am.core.issues import InputError
 from freecad_am.core.layers.planes.stacking import prepare_stack
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.scan import ScanParameters
-from freecad_am.core.simulation import deposit
+from freecad_am.core.simulation import timeline
 from freecad_am.core.strategies.solids.plan import plan
 
 HEIGHT = 2.0
@@ -203,12 +203,12 @@ def test_a_scan_from_anywhere_is_laid_onto_the_part():
     points += rng.normal(0.0, 0.02, points.shape)
     points[:80] += rng.uniform(-40.0, 40.0, (80, 3))
     turn = Rotation.from_euler("xyz", [70.0, -40.0, 130.0], degrees=True).as_matrix()
-    motion = scan_motion.align_scan(points @ turn.T + (500.0, -200.0, 90.0), wedge, "s")
+    motion = align_scan(points @ turn.T + (500.0, -200.0, 90.0), wedge, "s")
     back = (points @ turn.T + (500.0, -200.0, 90.0)) @ motion[:3, :3].T + motion[:3, 3]
     assert np.linalg.norm(back - points, axis=1).max() < 0.1
     top = points_on(bent)
     with pytest.raises(InputError) as error:
-        scan_motion.align_scan(top @ turn.T + (500.0, -200.0, 90.0), PLATE, "s")
+        align_scan(top @ turn.T + (500.0, -200.0, 90.0), PLATE, "s")
     assert error.value.code == "SCAN_AMBIGUOUS"
 
 
@@ -256,7 +256,8 @@ def test_the_volume_is_that_of_layers_as_high_as_they_were_fitted(block):
     process = ProcessParameters(travel_speed=6.0)
     low = fit(block, points_on(lambda x, y: -1.2 + 0.0 * x))
     planned, laid = (
-        deposit.volumes(deposit.deposit_motion(path), process, path).sum() for path in (block, low)
+        timeline.volumes(timeline.deposit_motion(path), process, path).sum()
+        for path in (block, low)
     )
     total = HEIGHT * len(block.layers)
     assert laid / planned == pytest.approx((total + 1.2) / total, rel=2e-3)

@@ -10,13 +10,12 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.links import contact as arm_contact
-from freecad_am.core.kinematics.links import cylinders as link_rods
+from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.links import robot as robot_links
-from freecad_am.core.kinematics.links.contact import DEPOSIT, PLATFORM, ArmContact
-from freecad_am.core.kinematics.links.nozzle_body import NOZZLE
-from freecad_am.core.kinematics.links.rounds import NONE
+from freecad_am.core.kinematics.links.contact import DEPOSIT, NOZZLE, PLATFORM, ArmContact
+from freecad_am.core.kinematics.links.own import NONE
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
-from freecad_am.core.simulation.placing import placing
+from freecad_am.core.simulation.table_links import placing
 from tests.posts.driven import bead_body
 
 PART_ON_ROBOT = {}
@@ -46,7 +45,7 @@ def drawn(cell):
 
 
 def rods_of(cell):
-    return [link_rods.solid_cylinders(link) for link in drawn(cell)]
+    return [external_links.solid_cylinders(link) for link in drawn(cell)]
 
 
 def laid(points, width=8.0, height=2.0):

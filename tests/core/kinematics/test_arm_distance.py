@@ -4,10 +4,9 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics.links import cylinders as link_rods
-from freecad_am.core.kinematics.links.contact import ArmContact
-from freecad_am.core.kinematics.links.distance import min_distance
-from freecad_am.core.simulation.placing import placing
+from freecad_am.core.kinematics.links import external_links
+from freecad_am.core.kinematics.links.contact import ArmContact, min_distance
+from freecad_am.core.simulation.table_links import placing
 from tests.core.kinematics.test_arm_contact import (
     PART_ON_ROBOT,
     SIZE,
@@ -27,7 +26,7 @@ REACH = 400.0
 @pytest.mark.always("part on robot")
 def test_the_least_distance_is_that_of_points_on_links(setup, low):
     cell = cell_of(setup)
-    rods = link_rods.robot_cylinders(cell.robot.chain)
+    rods = external_links.robot_cylinders(cell.robot.chain)
     # links that are looked at against what is carried, or what stands still; and of bodies in part coordinates
     contact = ArmContact(cell, rods, [box(low)])
     group = next(one for one in contact.groups if one.seen_from == "part")

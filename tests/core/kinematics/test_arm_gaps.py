@@ -7,10 +7,10 @@ import dataclasses
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics.links import cylinders as link_rods
+from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.kinematics.links.gaps import Gaps
-from freecad_am.core.simulation.placing import placing
+from freecad_am.core.simulation.table_links import placing
 from tests.core.kinematics.test_arm_contact import (
     PART_ON_ROBOT,
     SIZE,
@@ -32,7 +32,7 @@ BOXES = [
 def looked_at(setup, low):
     cell = cell_of(setup)
     return cell, ArmContact(
-        cell, link_rods.robot_cylinders(cell.robot.chain), [box(low)], clearance=CLEARANCE
+        cell, external_links.robot_cylinders(cell.robot.chain), [box(low)], clearance=CLEARANCE
     )
 
 

@@ -14,17 +14,16 @@ from freecad_am.core.geometry.obstacles import box
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.external import MECHANISMS, load
-from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links.contact import ArmContact
-from freecad_am.core.kinematics.links.external_links import external_links
-from freecad_am.core.kinematics.links.rounds import NONE
+from freecad_am.core.kinematics.links.external_links import external_links, robot_cylinders
+from freecad_am.core.kinematics.links.own import NONE
 from freecad_am.core.kinematics.machines import draft as machine_draft
 from freecad_am.core.kinematics.urdf import machine as urdf_machine
 from freecad_am.core.kinematics.urdf import read as urdf
 from freecad_am.core.kinematics.urdf.cell import texts_of
 from freecad_am.core.kinematics.urdf.reference import Reference
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
-from freecad_am.core.simulation.placing import placing
+from freecad_am.core.simulation.table_links import placing
 from freecad_am.kdl.chain import KdlArm
 from tests.core.kinematics import urdf_cells
 
@@ -191,7 +190,7 @@ def test_what_is_not_told_to_touch_has_no_point_of_a_mechanism_in_it_and_what_is
     external,
 ):
     cell = cell_of(external)
-    rods = link_rods.robot_cylinders(cell.robot.chain)
+    rods = robot_cylinders(cell.robot.chain)
     arm = ArmContact(cell, rods)
     q = anywhere(cell, 1500, 2)
     found, beside = arm.touches(q), bodies_of(D500)
@@ -475,7 +474,7 @@ def shortly(name):
 def test_pairs_that_are_left_out_are_these_and_no_others(external):
     """Of every pair of a link and a link beside the robot, or of such a one and the part, by name."""
     cell = cell_of(CELLS[external], platform_diameter=100.0)
-    arm = ArmContact(cell, link_rods.robot_cylinders(cell.robot.chain))
+    arm = ArmContact(cell, robot_cylinders(cell.robot.chain))
     names = [arm.links[number] for number in range(len(arm.links))]
     looked_at = {
         (shortly(names[number]).removeprefix("A"), shortly(what))
@@ -523,9 +522,7 @@ def test_link_1_meets_a_post_of_the_rail_it_turns_past(tmp_path):
     post = boxed((60.0, 60.0, 900.0), (0.0, 200.0, 450.0))
     rail = box_file(tmp_path, TRACK, {"base": post})
     cell = cell_of(text(rail, RAIL, "robot"))
-    rods = [
-        [] if link != 1 else link_rods.robot_cylinders(cell.robot.chain)[1] for link in range(7)
-    ]
+    rods = [[] if link != 1 else robot_cylinders(cell.robot.chain)[1] for link in range(7)]
     arm = ArmContact(cell, rods)
     q = np.zeros((501, 7))
     q[:, 6], q[:, 0] = (
@@ -559,7 +556,7 @@ def test_the_base_meets_what_a_positioner_swings_at_it_and_a_carriage_runs_into_
     )  # from the tilt axis towards the robot
     table = box_file(tmp_path, D500, {"joint_1": arm_of_table})
     cell = cell_of(text(table, (1300.0, 0.0, -250.0, 0.0, 0.0, 0.0), "part"))
-    rods = link_rods.robot_cylinders(cell.robot.chain)
+    rods = robot_cylinders(cell.robot.chain)
     arm = ArmContact(cell, [rods[0], *[[] for _ in range(6)]])
     q = np.zeros((3, 8))
     q[:, 6] = np.radians(

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from freecad_am.core.kinematics import eigen
+from freecad_am.core.kinematics import jacobian
 from freecad_am.core.kinematics import jacobian as jac
 from freecad_am.core.kinematics.machines import machine
 
@@ -174,9 +174,9 @@ def test_manipulability(chain):
 
 def test_unreachable_poses_are_nan_and_spoil_no_other():
     arm = machine.load("fanuc-arcmate120ic")
-    q, points = joints_and_points(arm.chain, 2 * eigen.BATCH_THRESHOLD)
+    q, points = joints_and_points(arm.chain, 2 * jacobian.BATCH_THRESHOLD)
     q[7] = np.nan
-    for count in (20, 2 * eigen.BATCH_THRESHOLD):
+    for count in (20, 2 * jacobian.BATCH_THRESHOLD):
         jacobians = jac.jacobian(arm.chain, q[:count], points[:count])
         others = np.delete(np.arange(count), 7)
         for measure in (jac.condition, jac.condition_bound, jac.manipulability):
@@ -204,7 +204,7 @@ def test_extreme_eigenvalues_of_awkward_matrices():
     turns = np.concatenate((np.eye(6)[None], np.linalg.qr(rng.standard_normal((40, 6, 6)))[0]))
     for spectrum in spectra:
         matrices = turns @ (np.array(spectrum)[:, None] * turns.transpose(0, 2, 1))
-        many = np.tile(matrices.transpose(1, 2, 0), eigen.BATCH_THRESHOLD // len(turns) + 1)
-        low, high = eigen.extremes(many)
+        many = np.tile(matrices.transpose(1, 2, 0), jacobian.BATCH_THRESHOLD // len(turns) + 1)
+        low, high = jacobian.extremes(many)
         assert np.abs(low - min(spectrum)).max() <= 1e-9 * sum(spectrum)
         assert np.abs(high - max(spectrum)).max() <= 1e-9 * sum(spectrum)

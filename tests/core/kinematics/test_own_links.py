@@ -6,11 +6,9 @@ import numpy as np
 import pytest
 
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.links import cylinders as link_rods
-from freecad_am.core.kinematics.links.contact import ArmContact
-from freecad_am.core.kinematics.links.distance import min_distance
-from freecad_am.core.kinematics.links.own import OwnLinks, positions
-from freecad_am.core.kinematics.links.rounds import NONE
+from freecad_am.core.kinematics.links import external_links
+from freecad_am.core.kinematics.links.contact import ArmContact, min_distance
+from freecad_am.core.kinematics.links.own import NONE, OwnLinks, positions
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.parameters.cell import CellParameters
 from tests.core.planning.test_arm_clearance import on_rods
@@ -22,7 +20,7 @@ SPACING, CLEARANCE = 12.0, 10.0
 def own_of(name, clearance=CLEARANCE):
     robot = machine.load(name)
     limits = robot.limits("maker")
-    rods = link_rods.robot_cylinders(robot.chain)
+    rods = external_links.robot_cylinders(robot.chain)
     return robot, limits, rods, OwnLinks.of(robot.chain, limits, rods, clearance)
 
 
@@ -88,7 +86,7 @@ def test_links_of_each_other_have_names_and_leave_no_distance():
         ),
         np.eye(4),
     )
-    rods = link_rods.robot_cylinders(cell.robot.chain)
+    rods = external_links.robot_cylinders(cell.robot.chain)
     contact = ArmContact(cell, rods)
     q = np.random.default_rng(7).uniform(-np.pi, np.pi, (600, 6))
     met = contact.touches(q)

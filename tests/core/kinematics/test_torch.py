@@ -11,9 +11,9 @@ from freecad_am.core.geometry.obstacles import Body, box
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import torch
-from freecad_am.core.kinematics.links import cylinders as link_rods
+from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.links.contact import TORCH, ArmContact
-from freecad_am.core.kinematics.links.rounds import NONE
+from freecad_am.core.kinematics.links.own import NONE
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 
 NOZZLE = NozzleParameters(half_angle=np.radians(30.0), diameter=4.0, length=50.0)
@@ -134,7 +134,7 @@ def test_a_contact_is_where_torch_and_box_are(setup):
     rng = np.random.default_rng(3)
     points, size = samples(cell.torch.body, 6000), np.array([200.0, 160.0, 120.0])
     beyond = points[points[:, 2] > NOZZLE.length + 1.0]
-    rods = link_rods.robot_cylinders(cell.robot.chain)
+    rods = external_links.robot_cylinders(cell.robot.chain)
     joints = np.array([0.3, 0.4, -0.2, 0.5, 0.8, -0.4]) + rng.uniform(-0.12, 0.12, (2000, 6))
     _, seen = ArmContact(cell, [[] for _ in rods]).link_frames(joints)
     in_part = np.linalg.inv(seen["part"]) @ seen["nozzle"]

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from freecad_am.core.geometry import frames
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import work_offset as module
+from freecad_am.core.kinematics.cell import work_offset
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.touched import Touched, touched
 from tests.kdl_links import KdlLinks
@@ -31,7 +31,7 @@ def test_the_best_rigid_motion_and_what_is_left(seed):
     part = rng.normal(scale=100.0, size=(3 + seed, 3))
     turn, move = Rotation.random(random_state=seed), rng.normal(scale=800.0, size=3)
     robot = turn.apply(part) + move + rng.normal(scale=0.1, size=part.shape)
-    found = module.work_offset(pairs(part, robot), 5.0)
+    found = work_offset(pairs(part, robot), 5.0)
     best, _ = Rotation.align_vectors(robot - robot.mean(axis=0), part - part.mean(axis=0))
     assert np.abs(found.pose[:3, :3] - best.as_matrix()).max() < 1e-9
     assert (
@@ -48,7 +48,7 @@ def test_the_best_rigid_motion_and_what_is_left(seed):
 def test_plane_points_are_not_mirrored():
     flat = POINTS * [1.0, 1.0, 0.0]
     turn = Rotation.from_euler("xyz", [10.0, -5.0, 170.0], degrees=True)
-    found = module.work_offset(pairs(flat, turn.apply(flat) + 500.0), 0.1)
+    found = work_offset(pairs(flat, turn.apply(flat) + 500.0), 0.1)
     assert np.abs(found.pose[:3, :3] - turn.as_matrix()).max() < 1e-9
 
 
@@ -76,7 +76,7 @@ def test_plane_points_are_not_mirrored():
 )
 def test_what_is_refused(part, robot, says):
     with pytest.raises(InputError, match=says) as error:
-        module.work_offset(pairs(part, robot + 700.0), 1.0)
+        work_offset(pairs(part, robot + 700.0), 1.0)
     assert (error.value.code, error.value.where) == ("TOUCHED", "cell.touched")
 
 

@@ -13,11 +13,9 @@ from scipy.spatial.transform import Rotation
 from freecad_am.core.geometry.mesh.refined import Edges
 from freecad_am.core.geometry.mesh.triangle_mesh import Mesh
 from freecad_am.core.layers.charts.chart import Chart
-from freecad_am.core.layers.charts.flattening import align_to_x, flatten, measure_stretch
-from freecad_am.core.layers.curved.carried_on import extrapolate
-from freecad_am.core.layers.curved.eikonal import arrival, links
-from freecad_am.core.layers.curved.level import Cubes
-from freecad_am.core.layers.curved.voxels import Voxels, voxels
+from freecad_am.core.layers.charts.parted import align_to_x, flatten, measure_stretch
+from freecad_am.core.layers.curved.eikonal import Voxels, arrival, links, voxels
+from freecad_am.core.layers.curved.geodesic import Cubes, extrapolate
 
 from .shapes import box, icosphere
 

@@ -11,7 +11,7 @@ from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
 from freecad_am.core.issues import InputError, has_errors
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import jacobian
-from freecad_am.core.kinematics.links import cylinders as link_rods
+from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.motion import DEPOSIT
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
@@ -19,7 +19,7 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.place import PlaceParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.core.placement import moved, table
+from freecad_am.core.placement import place, table
 from freecad_am.core.placement.judge import UNREACHED, Job, Judge
 from freecad_am.core.placement.place import Placed, place_part, ranked
 from freecad_am.core.planning.motion import assemble
@@ -71,7 +71,7 @@ def job_of(toolpath):
         toolpath,
         lambda settings: cells.resolve(settings, toolpath.frame, toolpath.family),
         lambda cell: (
-            tuple(map(tuple, link_rods.robot_cylinders(cell.robot.chain)))
+            tuple(map(tuple, external_links.robot_cylinders(cell.robot.chain)))
             if cell.machine.free
             else ()
         ),
@@ -95,13 +95,13 @@ def whole(toolpath, settings):
 def test_what_is_said_of_a_pose_is_what_its_whole_plan_says(dome, case):
     settings, box = MOVED[case]
     parameters = PlaceParameters(points=200, **box)
-    moves = moved.select_movable(settings, parameters.moves)
-    poses = parameters.poses(moved.pose_of(settings, moves))
+    moves = place.select_movable(settings, parameters.moves)
+    poses = parameters.poses(place.pose_of(settings, moves))
     some, every = (Judge(job_of(dome), most) for most in (parameters.points, None))
     assert some.points < 0.6 * every.points == 0.6 * dome.point_count
     said, hidden = [], 0
     for pose in poses[np.unique(np.linspace(0, len(poses) - 1, 5).astype(int))]:
-        there = moved.replace_pose(settings, moves, pose)
+        there = place.replace_pose(settings, moves, pose)
         one = some.evaluate(there)
         cell, path, motion, feasible = whole(dome, there)
         assert one.feasible or not feasible, (pose, one)
@@ -226,7 +226,7 @@ def test_no_pose_serves(dome):
 ])  # fmt: skip
 def test_what_a_cell_has_not_is_not_moved(settings, moves):
     with pytest.raises(InputError, match="has no") as error:
-        moved.select_movable(settings, moves)
+        place.select_movable(settings, moves)
     assert (error.value.code, error.value.where) == ("NOT_FOR_SETUP", "place.moves")
 
 

@@ -6,8 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.curves.sampling import sample_curve
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall, sample_curve
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters

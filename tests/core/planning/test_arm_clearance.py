@@ -12,8 +12,7 @@ from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.links import cylinders as link_rods
-from freecad_am.core.kinematics.links import own
+from freecad_am.core.kinematics.links import external_links, own
 from freecad_am.core.kinematics.links.own import OwnLinks
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
@@ -71,7 +70,7 @@ def box(low, size, name):
 def planned(toolpath, cell, method="layer-by-layer", **more):
     """The motion of a job, and its issues."""
     rods, parameters = (
-        link_rods.robot_cylinders(cell.robot.chain),
+        external_links.robot_cylinders(cell.robot.chain),
         JointParameters(method=method, **more),
     )
     path = plan_joints(toolpath, cell, parameters, cylinders=rods)
@@ -120,7 +119,7 @@ def nearest_of(joints, cell, low):
     mount = cell.station @ np.linalg.inv(cell.mount)
     links = [
         (number, on_rods(rods))
-        for number, rods in enumerate(link_rods.robot_cylinders(cell.robot.chain))
+        for number, rods in enumerate(external_links.robot_cylinders(cell.robot.chain))
         if number and rods
     ]
     for q in joints:
@@ -218,7 +217,7 @@ def test_what_came_too_near_is_refined_again_up_to_the_clearance(dome, monkeypat
     whole, low = beside_the_dome(dome, 120.0, 180.0)
     job = dataclasses.replace(whole, layers=whole.layers[:3])
     cell = cells.resolve(CellParameters(**CELL, branch=UP, arm_clearance=CLEARANCE), job.frame)
-    rods, parameters = link_rods.robot_cylinders(cell.robot.chain), JointParameters(degree=3)
+    rods, parameters = external_links.robot_cylinders(cell.robot.chain), JointParameters(degree=3)
     taken_back = []
 
     def kept(task, kept, points, places, start):
@@ -258,7 +257,7 @@ OWN = [("ur-ur5e", (470.0, 20.0, -80.0)), ("ur-ur10e", (590.0, -260.0, -180.0))]
 def apart(motion, cell):
     """The least mm between forearm and last link, by PyKDL, at ten places of each move of a motion."""
     arm = KdlLinks(cell.machine)
-    rods = link_rods.robot_cylinders(cell.robot.chain)
+    rods = external_links.robot_cylinders(cell.robot.chain)
     parts = [
         motion.joints[:-1] + share * np.diff(motion.joints, axis=0)
         for share in np.linspace(0.1, 1.0, 10)
@@ -313,7 +312,7 @@ def test_beads_that_no_rotation_serves_are_found_by_few_points_as_by_all(dome, m
     wall = box(np.array([-140.0, -60.0, -5.0]), np.array([12.0, 120.0, 420.0]), "wall")
     job = dataclasses.replace(dome, surroundings=(*dome.surroundings, wall))
     cell = cells.resolve(CellParameters(**CELL, branch=DOWN, arm_clearance=CLEARANCE), job.frame)
-    kept = arm_kept.build_arm_clearance(job, cell, link_rods.robot_cylinders(cell.robot.chain))
+    kept = arm_kept.build_arm_clearance(job, cell, external_links.robot_cylinders(cell.robot.chain))
     beads, places = [bead for _, _, bead in job], [(layer, index) for layer, index, _ in job]
     points = gather(beads, cell, arm_clear.POINTS_PER_BEAD)
     found, looked = [], []
@@ -343,10 +342,11 @@ def counting(asked, own=arm_kept.ArmKept.rotations_near):
 
 def test_pairs_of_links_are_found_once_for_the_same_robot_and_anew_for_another():
     robot = cells.resolve(CellParameters(machine="ur-ur5e"), np.eye(4)).robot
-    limits, rods = robot.limits("maker"), link_rods.robot_cylinders(robot.chain)
+    limits, rods = robot.limits("maker"), external_links.robot_cylinders(robot.chain)
     first = OwnLinks.of(robot.chain, limits, rods, CLEARANCE)
     assert (
-        OwnLinks.of(robot.chain, limits, link_rods.robot_cylinders(robot.chain), CLEARANCE) is first
+        OwnLinks.of(robot.chain, limits, external_links.robot_cylinders(robot.chain), CLEARANCE)
+        is first
     )
     other = machine.load("ur-ur10e")
     thick = [[dataclasses.replace(rod, radius=4.0 * rod.radius) for rod in link] for link in rods]

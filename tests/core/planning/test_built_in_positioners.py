@@ -6,9 +6,8 @@ import json
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics.external import MECHANISMS, load
+from freecad_am.core.kinematics.external import MECHANISMS, load, positioners
 from freecad_am.core.kinematics.machines import machine as machines
-from freecad_am.core.kinematics.offered import positioners
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning.motion import assemble
 from tests.core.planning import test_external_axes as cells

@@ -9,8 +9,8 @@ from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
-from freecad_am.core.planning.rotation import elsewhere, refine, search
-from freecad_am.core.planning.rotation.evaluation import evaluate_paths
+from freecad_am.core.planning.rotation import refine, search
+from freecad_am.core.planning.rotation.refine import evaluate_paths
 from freecad_am.core.planning.task import Task
 from freecad_am.kdl import chain as kdl
 
@@ -58,9 +58,9 @@ def test_limits_are_kept_at_all_points_and_between_however_few_are_searched(
     cell = with_axis_6(cell_of(toolpath, branch=branch), 200.0)
     asked = []
     monkeypatch.setattr(search, "POINTS_PER_BEAD", looked)
-    others = elsewhere.find_rotations
+    others = search.find_rotations
     monkeypatch.setattr(
-        elsewhere,
+        search,
         "find_rotations",
         lambda task, some, *at: asked.append(len(some)) or others(task, some, *at),
     )
@@ -128,8 +128,6 @@ def test_what_falls_short_between_points_alone_is_seen(sliced, cell_of):
                 refined,
             )
             assert path[0].margin >= 0.0
-            assert elsewhere.find_infeasible(task, [bead], path) == (
-                [0] if between[k] < 0.0 else []
-            )
+            assert search.find_infeasible(task, [bead], path) == ([0] if between[k] < 0.0 else [])
             wrong += between[k] < 0.0
     assert wrong > 0

@@ -9,9 +9,9 @@ import pytest
 
 from freecad_am.core.issues import ERROR, Issue, Text
 from freecad_am.core.kinematics.external import MECHANISMS
-from freecad_am.core.kinematics.links import cylinders as link_rods
+from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.links.contact import ArmContact
-from freecad_am.core.kinematics.links.rounds import NONE
+from freecad_am.core.kinematics.links.own import NONE
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
@@ -19,7 +19,7 @@ from freecad_am.core.planning import nozzle_obstacles
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.preflight import clearance
-from freecad_am.core.simulation.arm import arm_touches
+from freecad_am.core.simulation.watch import arm_touches
 from tests.core.kinematics.test_external_links import STEP, bodies_of, points_within
 from tests.core.planning.test_external_axes import POSITIONER, cell_for, levelled_to
 
@@ -79,7 +79,7 @@ def nearest(cell, joints, rods):
 
 
 def test_with_clearance_the_links_stay_off_a_positioner_that_they_touch_without(hemisphere, cell):
-    rods = link_rods.robot_cylinders(cell.robot.chain)
+    rods = external_links.robot_cylinders(cell.robot.chain)
     plain = plan_joints(hemisphere, cell, JointParameters())
     assert plain.feasible and nearest(cell, plain.joints[::9], rods) < CLEAR
     kept = dataclasses.replace(cell, arm_clearance=CLEAR)
@@ -122,7 +122,7 @@ def test_a_nozzle_driven_into_the_positioner_is_told_with_its_link_and_on_the_pr
     assert (gap < STEP).any()  # it does go in
     assert {issue.code for issue in told} == {"CLEARANCE"}
     assert any("Yaskawa MotoPos D500 e2" in issue.message for issue in told)
-    touches = arm_touches(wrong, ArmContact(cell, link_rods.robot_cylinders(cell.robot.chain)))
+    touches = arm_touches(wrong, ArmContact(cell, external_links.robot_cylinders(cell.robot.chain)))
     (row,) = clearance.external_links(wrong, cell, touches, True, told)
     assert row.ok is False and row.worst > 0 and (touches.link != NONE).any()
     assert "they touch Yaskawa MotoPos D500" in row.how
@@ -132,7 +132,7 @@ def test_what_is_not_known_of_the_shapes_is_said_on_the_preflight(hemisphere):
     far = cell_for(hemisphere)
     path = plan_joints(hemisphere, far, JointParameters())
     motion, _ = assemble(path, far, ProcessParameters(), hemisphere.surroundings, None, 10.0)
-    touches = arm_touches(motion, ArmContact(far, link_rods.robot_cylinders(far.robot.chain)))
+    touches = arm_touches(motion, ArmContact(far, external_links.robot_cylinders(far.robot.chain)))
     assert [one.ok for one in clearance.external_links(motion, far, touches, True, ())] == [True]
     # whether issues are about them is known by values, not by words: a name within a sentence, or another name, is none
     name = far.external_links[-1].name

@@ -8,7 +8,7 @@ import pytest
 
 from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.parameters.joints import OBJECTIVES, JointParameters
-from freecad_am.core.planning import comparison
+from freecad_am.core.planning import criteria
 from freecad_am.core.planning import plan as planner
 from freecad_am.core.planning.methods import constant
 from freecad_am.core.planning.plan import plan_joints
@@ -190,7 +190,7 @@ def test_all_criteria_are_reported_whatever_was_optimised(sliced, cell_of):
     cell = cell_of(toolpath, limits="maker")
     found = plan_joints(toolpath, cell, JointParameters())
     task = Task(cell, FLIP, JointParameters())
-    told = comparison.criteria_values(task, found.beads)
+    told = criteria.criteria_values(task, found.beads)
     q, stroke = found.joints, cell.limits.upper - cell.limits.lower
     shown = np.c_[q, q[:, 2] - q[:, 1]]
     low, high = (

@@ -20,7 +20,7 @@ from freecad_am.core.parameters.process import ProcessParameters, WireParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.process.model import bead_table
+from freecad_am.core.process.model import wire
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
 from freecad_am.core.toolpath import Bead, Layer, SpeedLaw, Toolpath
 from freecad_am.posts import catalogue
@@ -50,7 +50,7 @@ def toolpath(held, frame, **changes):
     """The blade's first two layers, 50 x 22 mm, the torch deflected or tilted, at the speeds that a bead model asks for."""
     body = box(np.array([40.0, -11.0, 20.0]), np.array([76.0, 11.0, 70.0]))
     body = dataclasses.replace(body, vertices=body.vertices @ frame[:3, :3].T)
-    model = bead_table.load("csw")
+    model = wire.load("csw")
     given = {"deflection": math.radians(LEAN)} if held == "deflected" else {}
     strategy = DevelopableParameters(
         layer_height=8.0, chord_error=CHORD_ERROR, bead_spacing=6.0, **given
@@ -173,7 +173,7 @@ def test_corners_without_a_limit_are_slowed_and_that_is_told():
         np.testing.assert_allclose(
             (new.width - old.width)[1:-1], 85.55 * more, rtol=1e-3, atol=1e-9
         )
-        model = bead_table.load("csw")
+        model = wire.load("csw")
         height = model.heights(new.speed[1:], np.inf) - model.heights(old.speed[1:], np.inf)
         np.testing.assert_allclose(
             (new.height - old.height)[1:-1], 0.5 * (height[1:] + height[:-1]), atol=1e-9
@@ -254,6 +254,4 @@ def test_what_piles_up_on_ramps_counts():
     assert planned.feasible and bead.speed.min() == pytest.approx(18.0, rel=0.02)
     way = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
     pile = float((way * (30.0 / bead.speed[1:] - 1.0)).sum())
-    assert (
-        8.0 < pile < 14.0 and f"up to {pile:.2g} mm of bead" in planned.issues[0].message
-    )
+    assert 8.0 < pile < 14.0 and f"up to {pile:.2g} mm of bead" in planned.issues[0].message

@@ -11,7 +11,7 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.obstacles import box
 from freecad_am.core.issues import InputError, has_errors
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.links import cylinders as link_rods
+from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.obstacles import Obstacle, obstacles
 from freecad_am.core.simulation import rapid_look
@@ -52,7 +52,7 @@ def nearest(motion, cell, pose, carried, size=SIZE, every=23):
     )
     links = [
         (k, on_rods(rods))
-        for k, rods in enumerate(link_rods.robot_cylinders(cell.robot.chain))
+        for k, rods in enumerate(external_links.robot_cylinders(cell.robot.chain))
         if k and rods
     ]
     to_box = np.linalg.inv(cell.machine.base @ pose)
@@ -109,7 +109,9 @@ def test_links_keep_clear_of_an_obstacle_in_a_cell_that_is_turned(dome):
     kept = cell_with(dome, pose, **values, arm_clearance=CLEARANCE)
     motion, issues = planned(dome, kept)
     assert not has_errors(issues)
-    found = nearest(motion, kept, pose, on_rods(link_rods.robot_cylinders(kept.robot.chain)[-1]))
+    found = nearest(
+        motion, kept, pose, on_rods(external_links.robot_cylinders(kept.robot.chain)[-1])
+    )
     assert found.min() >= CLEARANCE
     assert nearest(motion, kept, pose, nozzle_points(kept)).min() > 0.0
 
@@ -185,7 +187,7 @@ def test_a_floor_is_a_box_that_the_elbow_stays_above(dome):
         arm, above = KdlLinks(cell.machine), np.inf
         links = [
             (k, on_rods(rods))
-            for k, rods in enumerate(link_rods.robot_cylinders(cell.robot.chain))
+            for k, rods in enumerate(external_links.robot_cylinders(cell.robot.chain))
             if k and rods
         ]
         joints, shares = motion.joints, np.linspace(0.1, 1.0, 10)

@@ -11,9 +11,9 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.parameters.joints import JointParameters, given_text
 from freecad_am.core.planning.external import optimised
-from freecad_am.core.planning.external.courses import directions_on_face
 from freecad_am.core.planning.external.freedom import IRRELEVANT_MARGIN
-from freecad_am.core.planning.external.rule import least_margin
+from freecad_am.core.planning.external.optimised import least_margin
+from freecad_am.core.planning.external.stroke import directions_on_face
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.task import Task
 

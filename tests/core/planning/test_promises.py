@@ -16,8 +16,8 @@ from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.preflight.checks import Evidence, promises
 from freecad_am.core.preflight.written import ReadBack
 from freecad_am.core.process.deposit.balance import Balance
-from freecad_am.core.simulation.arm import ArmTouches
 from freecad_am.core.simulation.rapid_look import looked_at
+from freecad_am.core.simulation.watch import ArmTouches
 from freecad_am.core.strategies.clearance import look as clearance_look
 
 WIDTH, HEIGHT = 3.0, 10.0

@@ -12,7 +12,7 @@ from freecad_am.core.geometry.obstacles import Body, disc
 from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.inverse import opw
-from freecad_am.core.kinematics.links import cylinders as link_rods
+from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.links import robot as robot_links
 from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
@@ -24,8 +24,8 @@ from freecad_am.core.parameters.joints import (
 )
 from freecad_am.core.planning import plan
 from freecad_am.core.planning.points import TURN, gather
-from freecad_am.core.planning.redundancy import across as spin_across
 from freecad_am.core.planning.redundancy import curve as spin_curve
+from freecad_am.core.planning.redundancy import map
 from freecad_am.core.planning.redundancy import map as spin_map
 from freecad_am.core.planning.task import Task
 from freecad_am.kdl.chain import KdlArm
@@ -450,7 +450,7 @@ def test_cells_where_the_arm_touches_are_those_in_which_a_link_does(funnel, setu
     wall = disc(900.0, frames.pose(frames.about_y(np.pi / 2), (260.0, 0.0, 200.0)), "wall")
     task, found, picture = seen(funnel, spin_map.ROTATION, setup=setup)
     cell, at = task.cell, found.columns
-    rods = [link_rods.solid_cylinders(link) for link in robot_links.solids(cell.machine.chain)]
+    rods = [external_links.solid_cylinders(link) for link in robot_links.solids(cell.machine.chain)]
     beads = beads_of(funnel)[0]
     starts = np.concatenate([[0], np.cumsum([len(bead) for bead in beads])])
     moment = starts[at.bead] + at.point
@@ -500,13 +500,11 @@ def test_two_external_axes_against_each_other_are_as_one_at_a_time(on_positioner
     """Each row is the map of the other axis across, with this one there, at the same rotation; joints are PyKDL's."""
     task, beads = on_positioner
     cell, at, rotation = task.cell, (1, 7), 0.4
-    values = tuple(
-        spin_across.span(task, beads[1], 7, axis, count) for axis, count in ((2, 9), (1, 5))
-    )
-    pairs = spin_across.across_two_axes(beads, cell, at, (2, 1), values)
+    values = tuple(map.span(task, beads[1], 7, axis, count) for axis, count in ((2, 9), (1, 5)))
+    pairs = map.across_two_axes(beads, cell, at, (2, 1), values)
     assert len(pairs) == 45 and (pairs.bead == 1).all() and (pairs.point == 7).all()
     found = spin_map.redundancy_map(task, pairs, spin_map.ROTATION, values=np.array([rotation]))
-    shown = spin_across.in_rows(spin_map.picture(task, found, 0), 5)
+    shown = map.in_rows(spin_map.picture(task, found, 0), 5)
     assert (
         shown.margin.shape
         == shown.condition.shape
@@ -518,7 +516,7 @@ def test_two_external_axes_against_each_other_are_as_one_at_a_time(on_positioner
     for row, upwards in enumerate(values[1]):
         external = beads[1].external.copy()
         external[7, 1] = upwards
-        line = spin_across.across(
+        line = map.across(
             [beads[0], dataclasses.replace(beads[1], external=external)], cell, at, 2, values[0]
         )
         alone = spin_map.redundancy_map(task, line, spin_map.ROTATION, values=np.array([rotation]))
@@ -548,13 +546,13 @@ def test_cells_beside_a_positioner_are_where_pykdl_finds_them(on_positioner, acr
         expected = np.array([beads[k].external[n] for k, n in zip(at.bead, at.point)])
         assert np.ptp(expected[:, 2]) > 1.0
     else:
-        values = spin_across.span(task, beads[1], 7, across, 21)
+        values = map.span(task, beads[1], 7, across, 21)
         lower, upper = cell.limits.lower[own + across], cell.limits.upper[own + across]
         assert values[0] >= lower - 1e-12 and values[-1] <= upper + 1e-12
         assert np.ptp(values) == pytest.approx(
             min(upper - lower, np.inf if across == 0 else TURN), rel=0.5
         )
-        at = spin_across.across(beads, cell, (1, 7), across, values)
+        at = map.across(beads, cell, (1, 7), across, values)
         expected = np.tile(beads[1].external[7], (21, 1))
         expected[:, across] = values
         assert (at.bead == 1).all() and (at.point == 7).all()

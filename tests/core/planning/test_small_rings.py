@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 
 from freecad_am import verify
-from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.curves.sampling import sample_curve
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall, sample_curve
 from freecad_am.core.issues import has_errors
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters

@@ -17,7 +17,7 @@ from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.planning import remedies, tried
+from freecad_am.core.planning import other_cells, remedies
 from freecad_am.core.planning.external import remedies as external_remedies
 from freecad_am.core.planning.external.level import figures
 from freecad_am.core.planning.motion import assemble
@@ -187,7 +187,7 @@ def test_a_long_part_without_a_track_is_told_of_one(track):
     issues = plan_joints(
         long, cells.resolve(settings, np.eye(4), "curves"), JointParameters()
     ).issues
-    asked = tried.Tried(lambda: long, settings, (), ProcessParameters(), JointParameters())
+    asked = other_cells.Tried(lambda: long, settings, (), ProcessParameters(), JointParameters())
     (note,) = remedies.remedies(asked, found, issues, lambda *_: None)
     assert note.code == "REMEDY" and told in note.message
     # one that has a track already is moved to no other, and a positioner is not in the way

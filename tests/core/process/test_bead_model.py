@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import least_squares
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.process.model import bead_speed, bead_table
+from freecad_am.core.process.model import notes, wire
 from freecad_am.core.process.model.bead_model import fit
 
 TABLE = [  # Dai 2020, table 1: radius mm, travel speed mm/min, width mm, height mm
@@ -28,7 +28,7 @@ TABLE = [  # Dai 2020, table 1: radius mm, travel speed mm/min, width mm, height
 
 
 def test_the_refit_of_the_errata():
-    width = bead_table.load("csw").width
+    width = wire.load("csw").width
     assert (f"{width.m:.3f}", f"{width.p:.3f}", f"{width.t:.4f}") == ("85.550", "52.742", "-1.7542")
     assert round(width.r_squared, 5) == 0.98023
     assert round(width.rmse, 4) == 0.2775
@@ -45,13 +45,13 @@ def test_a_second_solver_agrees(column):
         gtol=1e-15,
         x_scale=[100.0, 50.0, 1.0],
     )
-    model = bead_table.load("csw")
+    model = wire.load("csw")
     ours = (model.width, model.height)[column - 2]
     np.testing.assert_allclose([ours.m, ours.p, ours.t], found.x, rtol=1e-6)
 
 
 def test_speed_and_width_are_inverse():
-    model = bead_table.load("csw")
+    model = wire.load("csw")
     rng = np.random.default_rng(1)
     speed, radius = rng.uniform(5.0, 15.0, 500), rng.uniform(30.0, 90.0, 500)
     width = model.widths(speed, radius)
@@ -62,7 +62,7 @@ def test_speed_and_width_are_inverse():
 
 
 def test_what_the_errata_say_of_9_5_mm():
-    model = bead_table.load("csw")
+    model = wire.load("csw")
     asked = model.speed_for(9.5, np.array([np.inf, 30.0, 10.0]))
     np.testing.assert_allclose(asked.speed[:2] * 60.0, [439.0, 731.0], atol=0.6)
     assert asked.too_tight.tolist() == [False, False, True]
@@ -73,7 +73,7 @@ def test_what_the_errata_say_of_9_5_mm():
 
 
 def test_outside_the_table_the_speed_is_kept_within_and_flagged():
-    model = bead_table.load("csw")
+    model = wire.load("csw")
     wide, narrow = model.speed_for(20.0, np.array([50.0])), model.speed_for(3.0, np.array([50.0]))
     assert (wide.speed[0], narrow.speed[0]) == (300.0 / 60.0, 900.0 / 60.0)
     assert (wide.too_slow[0], wide.too_fast[0], narrow.too_slow[0], narrow.too_fast[0]) == (
@@ -142,7 +142,7 @@ def test_tables_that_are_none_are_told_in_the_units_of_the_table(rows, told):
 def test_the_height_of_beads_of_one_section():
     """Height times width is that of a straight bead wherever the wire follows the speed: the integral of the section along
     a bead is the wire that went into it, whatever the bends."""
-    model = bead_table.load("csw")
+    model = wire.load("csw")
     rng = np.random.default_rng(8)
     widths = rng.uniform(7.0, 13.0, 200)
     heights = model.heights_of_section(widths, 9.5)
@@ -191,7 +191,7 @@ HEAD = "radius_mm,travel_speed_mm_min,width_mm,height_mm,wire_feed_m_min\n"
 def test_files_that_are_no_table(tmp_path, text, told):
     (tmp_path / "mine.csv").write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match=told) as caught:
-        bead_table.load("mine.csv", tmp_path)
+        wire.load("mine.csv", tmp_path)
     assert caught.value.code == "BAD_TABLE"
 
 
@@ -200,13 +200,13 @@ def test_a_table_of_the_users_own(tmp_path):
     (tmp_path / "mine.csv").write_text(
         head + "".join(f"{w},{r},{h},{v},6.5\n" for r, v, w, h in TABLE), encoding="utf-8"
     )
-    assert bead_table.load("mine.csv", tmp_path) == bead_table.load("csw")
+    assert wire.load("mine.csv", tmp_path) == wire.load("csw")
     with pytest.raises(InputError) as caught:
-        bead_table.load("other.csv", tmp_path)
+        wire.load("other.csv", tmp_path)
     assert caught.value.code == "NO_FILE"
     (tmp_path / "bin.csv").write_bytes(bytes(range(256)))
     with pytest.raises(InputError, match="not UTF-8 text") as caught:
-        bead_table.load("bin.csv", tmp_path)
+        wire.load("bin.csv", tmp_path)
     assert caught.value.code == "BAD_TABLE" and caught.value.where == "bin.csv"
 
 
@@ -216,7 +216,7 @@ def test_beads_that_all_get_the_same_wire_to_a_millimetre_are_no_table(tmp_path)
     )
     (tmp_path / "mine.csv").write_text(HEAD + rows, encoding="utf-8")
     with pytest.raises(InputError, match="the same wire length per millimetre") as caught:
-        bead_table.load("mine.csv", tmp_path)
+        wire.load("mine.csv", tmp_path)
     assert caught.value.code == "COLLINEAR_TABLE"
 
 
@@ -225,9 +225,9 @@ def test_radius_of_circles(radius):
     angle = np.linspace(0.0, 2.0 * math.pi, 200)
     circle = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     circle[-1] = circle[0]
-    np.testing.assert_allclose(bead_speed.radii(circle, True, 0.5 * radius), radius, rtol=0.02)
+    np.testing.assert_allclose(notes.radii(circle, True, 0.5 * radius), radius, rtol=0.02)
     np.testing.assert_allclose(
-        bead_speed.radii(circle[:100], False, 0.5 * radius)[10:-10], radius, rtol=0.02
+        notes.radii(circle[:100], False, 0.5 * radius)[10:-10], radius, rtol=0.02
     )
 
 
@@ -235,7 +235,7 @@ def test_radius_of_a_straight_way_with_a_corner():
     way = np.array(
         [[x, 0.0] for x in np.linspace(-50, 0, 51)] + [[0.0, y] for y in np.linspace(1, 50, 50)]
     )
-    radius = bead_speed.radii(way, False, 8.0)
+    radius = notes.radii(way, False, 8.0)
     assert np.isinf(radius[:40]).all() and np.isinf(radius[62:]).all()
     assert radius[50] == pytest.approx(8.0 / (math.pi / 2.0), rel=0.02)
 
@@ -247,7 +247,7 @@ def test_speeds_a_machine_can_follow():
     asked = rng.uniform(5.0, 15.0, 301)
     asked[-1] = asked[0]
     for closed in (True, False):
-        got = bead_speed.limit_acceleration(points, asked, closed, 20.0)
+        got = notes.limit_acceleration(points, asked, closed, 20.0)
         step = np.linalg.norm(np.diff(points, axis=0), axis=1)
         assert (got <= asked).all()
         assert (np.abs(np.diff(got**2)) <= 2.0 * 20.0 * step + 1e-9).all()
@@ -275,18 +275,18 @@ def test_columns_that_would_be_lost_are_rejected(tmp_path, head, words):
     rows = "".join(f"{r},{v},{w},{h},6.5,9\n" for r, v, w, h in TABLE)
     (tmp_path / "mine.csv").write_text(head + rows, encoding="utf-8")
     with pytest.raises(InputError, match=words) as caught:
-        bead_table.load("mine.csv", tmp_path)
+        wire.load("mine.csv", tmp_path)
     assert caught.value.code == "BAD_TABLE" and caught.value.where == "mine.csv line 1"
 
 
 def test_semicolons_and_a_byte_order_mark_are_read_and_decimal_commas_are_not(tmp_path):
     rows = "".join(f"{r},{v},{w},{h},6.5\n" for r, v, w, h in TABLE)
     (tmp_path / "mine.csv").write_text("\ufeff" + (HEAD + rows).replace(",", ";"), encoding="utf-8")
-    assert bead_table.load("mine.csv", tmp_path) == bead_table.load("csw")
+    assert wire.load("mine.csv", tmp_path) == wire.load("csw")
     text = (HEAD + rows).replace(",", ";").replace("12.52", "12,52")
     (tmp_path / "mine.csv").write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match="'12,52' is not a number"):
-        bead_table.load("mine.csv", tmp_path)
+        wire.load("mine.csv", tmp_path)
 
 
 def straight_table(tmp_path, more):
@@ -298,7 +298,7 @@ def straight_table(tmp_path, more):
         *more,
     ]
     (tmp_path / "mine.csv").write_text(HEAD + "\n".join(rows) + "\n", encoding="utf-8")
-    return bead_table.load("mine.csv", tmp_path)
+    return wire.load("mine.csv", tmp_path)
 
 
 def test_rows_that_contradict_each_other_are_named(tmp_path):
@@ -311,7 +311,7 @@ def test_rows_that_contradict_each_other_are_named(tmp_path):
 def test_a_table_of_straight_beads_says_nothing_of_bends(tmp_path):
     model = straight_table(tmp_path, [])
     assert not model.speed_for(7.0, np.array([3.0, 50.0, np.inf])).too_tight.any()
-    assert bead_table.load("csw").speed_for(9.0, np.array([3.0, 50.0])).too_tight.tolist() == [
+    assert wire.load("csw").speed_for(9.0, np.array([3.0, 50.0])).too_tight.tolist() == [
         True,
         False,
     ]
@@ -320,7 +320,7 @@ def test_a_table_of_straight_beads_says_nothing_of_bends(tmp_path):
 def refused_table(tmp_path, rows):
     (tmp_path / "mine.csv").write_text(HEAD + "\n".join(rows) + "\n", encoding="utf-8")
     with pytest.raises(InputError) as caught:
-        bead_table.load("mine.csv", tmp_path)
+        wire.load("mine.csv", tmp_path)
     return caught.value.code, str(caught.value.message)
 
 

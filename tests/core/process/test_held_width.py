@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from freecad_am.core.parameters.process import ProcessParameters, WireParameters
-from freecad_am.core.process.model import bead_speed, bead_table, held_width
+from freecad_am.core.process.model import notes
+from freecad_am.core.process.model.wire import load, process_model
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 M, P, T = 85.550, 52.742, -1.7542  # Dai 2020, table 1 refitted (errata)
@@ -35,13 +36,13 @@ def test_a_ring_on_a_cone_bends_to_its_side_as_the_cone_laid_flat_does(lean):
     points, build = ring(40.0, lean)
     # within a window of 8 mm the heading goes up in steps of 0.35 mm: (0.35 / 8)^2 / 12
     np.testing.assert_allclose(
-        bead_speed.side_radii(points, build, True, 8.0), 40.0 / math.cos(lean), rtol=2e-4
+        notes.side_radii(points, build, True, 8.0), 40.0 / math.cos(lean), rtol=2e-4
     )
 
 
 def test_a_ring_on_a_plane_disc_laid_edgewise_does_not_bend_to_its_side():
     points, build = ring(40.0, math.pi / 2.0)
-    assert bead_speed.side_radii(points, build, True, 8.0).min() > 1e6
+    assert notes.side_radii(points, build, True, 8.0).min() > 1e6
 
 
 def test_in_the_plane_it_is_the_radius_of_the_bead_laid_flat():
@@ -52,8 +53,8 @@ def test_in_the_plane_it_is_the_radius_of_the_bead_laid_flat():
     for closed in (True, False):
         line = np.vstack([flat, flat[:1]]) if closed else flat
         points = np.c_[line, np.full(len(line), 7.0)]
-        found = bead_speed.side_radii(points, np.tile([0.0, 0.0, 1.0], (len(line), 1)), closed, 9.0)
-        np.testing.assert_allclose(found, bead_speed.radii(line, closed, 9.0), rtol=1e-9)
+        found = notes.side_radii(points, np.tile([0.0, 0.0, 1.0], (len(line), 1)), closed, 9.0)
+        np.testing.assert_allclose(found, notes.radii(line, closed, 9.0), rtol=1e-9)
 
 
 def toolpath(beads):
@@ -63,7 +64,7 @@ def toolpath(beads):
 def test_rings_are_as_wide_as_asked_for_at_the_speed_of_the_model():
     process = ProcessParameters(bead_model="csw", bead_width=9.5)
     path = toolpath([made(*ring(radius, 0.3), True) for radius in (31.0, 45.0, 80.0)])
-    found = held_width.hold_widths(path, process, bead_table.process_model(process))
+    found = notes.hold_widths(path, process, process_model(process))
     for (_, _, bead), radius in zip(found, (31.0, 45.0, 80.0), strict=True):
         speed = (M / (9.5 - P * math.cos(0.3) / radius - T)) ** 3 / 60.0
         np.testing.assert_allclose(bead.speed, speed, rtol=5e-4)
@@ -81,7 +82,7 @@ def test_where_a_bead_bends_its_speed_changes_no_faster_than_asked_for():
     points = np.c_[flat, np.zeros(len(flat))]
     process = ProcessParameters(bead_model="csw", bead_width=9.5, acceleration=5.0)
     path = toolpath([made(points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), False)])
-    ((_, _, bead),) = held_width.hold_widths(path, process, bead_table.process_model(process))
+    ((_, _, bead),) = notes.hold_widths(path, process, process_model(process))
     assert bead.speed.max() > 1.4 * bead.speed.min()
     time = np.linalg.norm(np.diff(points, axis=0), axis=1) / bead.speed[1:]
     change = np.abs(np.diff(bead.speed[1:])) / (0.5 * (time[1:] + time[:-1]))
@@ -92,10 +93,7 @@ def test_wire_in_proportion_keeps_the_section_of_every_ring():
     wire = WireParameters(feed_mode="proportional")
     process = ProcessParameters(bead_model="csw", bead_width=9.5, wire=wire)
     path = toolpath([made(*ring(radius, 0.0), True) for radius in (31.0, 80.0)])
-    beads = [
-        bead
-        for _, _, bead in held_width.hold_widths(path, process, bead_table.process_model(process))
-    ]
+    beads = [bead for _, _, bead in notes.hold_widths(path, process, process_model(process))]
     sections = np.concatenate([bead.width * bead.height for bead in beads])
     np.testing.assert_allclose(sections, sections[0], rtol=1e-9)
     straight = (M / (9.5 - T)) ** 3 / 60.0
@@ -122,7 +120,7 @@ def li_2025():
 def test_straight_beads_at_several_wire_feeds_count_by_their_wire():
     """Least squares by the normal equations in the cube root of the wire that a millimetre of bead gets."""
     feed, speed, width, height = li_2025()
-    model = bead_table.load("li-2025")
+    model = load("li-2025")
     share = np.cbrt(feed / feed.mean() / speed)
     for measured, ours in ((width, model.width), (height, model.height)):
         slope = ((share - share.mean()) * (measured - measured.mean())).sum() / (
@@ -143,14 +141,12 @@ def test_straight_beads_at_several_wire_feeds_count_by_their_wire():
     low, high = (60.0 * end for end in model.at_feed(8000.0 / 60.0).speeds)
     assert (low, high) == pytest.approx((500.0, 700.0))
     assert 60.0 * model.at_feed(6000.0 / 60.0).speeds[0] == pytest.approx(500.0)
-    assert model.at_feed(9000.0 / 60.0) is model and bead_table.load("csw").at_feed(
-        1.0
-    ) == bead_table.load("csw")
+    assert model.at_feed(9000.0 / 60.0) is model and load("csw").at_feed(1.0) == load("csw")
 
 
 def test_the_process_says_at_which_feed_the_model_is_asked():
     process = ProcessParameters(bead_model="li-2025", wire=WireParameters(feed=8000.0 / 60.0))
-    assert bead_table.process_model(process).wire_feed == pytest.approx(8000.0 / 60.0)
+    assert process_model(process).wire_feed == pytest.approx(8000.0 / 60.0)
     auto = dataclasses.replace(process, wire=WireParameters())
-    assert bead_table.process_model(auto).wire_feed == pytest.approx(7000.0 / 60.0)
-    assert bead_table.process_model(ProcessParameters()) is None
+    assert process_model(auto).wire_feed == pytest.approx(7000.0 / 60.0)
+    assert process_model(ProcessParameters()) is None

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from freecad_am.core.process.deposit.twice import deposited_twice
+from freecad_am.core.process.deposit.pieces import deposited_twice
 from tests.core.process.test_support import HEIGHT, WIDTH, bead, rod, toolpath
 
 

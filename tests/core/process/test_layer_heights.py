@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.preflight import deposit
-from freecad_am.core.process.deposit import layer_heights
+from freecad_am.core.process.deposit import on_part
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 RADIUS, HEIGHT, SPACING = 60.0, 2.0, 5.0
@@ -27,7 +27,7 @@ def test_the_height_of_layers_about_a_cylinder_is_that_of_their_radii(aside):
     azimuths = 0.1 + step * np.arange(16)
     layers = (rulings(RADIUS, azimuths), rulings(RADIUS + HEIGHT, azimuths[:-1] + aside * step))
     toolpath = Toolpath(layers, np.eye(4), HEIGHT, 0.1, family="cladding")
-    heights = np.concatenate(layer_heights.over_layers(toolpath))
+    heights = np.concatenate(on_part.over_layers(toolpath))
     assert np.abs(heights - ((RADIUS + HEIGHT) * np.cos(aside * step) - RADIUS)).max() < 1e-9
     promise = deposit.layers(toolpath, ())
     assert promise.ok and abs(promise.worst - HEIGHT) < 0.06

@@ -10,7 +10,7 @@ import pytest
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.process import ProcessParameters, WireParameters
 from freecad_am.core.process.shape import compare
-from freecad_am.core.process.shape.faces import BOTH, faces
+from freecad_am.core.process.shape.compare import BOTH, faces
 from freecad_am.core.process.shape.laying import feature_parts, predicted_deposit
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 

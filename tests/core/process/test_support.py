@@ -8,8 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.curves.sampling import arc, line
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall, arc, line
 from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.obstacles import Body, disc
 from freecad_am.core.geometry.on_hub import Base, Group, SolidsOnHub

@@ -11,7 +11,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.bead_classes import BeadEnd, BeadStart
 from freecad_am.core.parameters.process import MaterialParameters, ProcessParameters, WireParameters
 from freecad_am.core.preflight import deposit
-from freecad_am.core.process.model import bead_table, wire_taken
+from freecad_am.core.process.model import wire
 from freecad_am.core.process.model.material import check_speeds
 from freecad_am.core.process.model.wire import set_wire_feed
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
@@ -57,7 +57,7 @@ def test_a_tenth_is_tolerated_and_no_wire_is_no_fault(off, told):
 
 
 def test_beads_of_a_model_are_fed_as_they_were_measured():
-    model = bead_table.load("csw")
+    model = wire.load("csw")
     assert (
         set_wire_feed(PATH, process("auto"), model).wire_feed
         == model.wire_feed
@@ -162,7 +162,7 @@ def test_starts_and_ends_at_speeds_of_their_own_are_held_against_the_wire(planne
                 for layer in made.layers
             ),
         )
-    rates = {one.name: one.rate for one in wire_taken.taken_of(made)}
+    rates = {one.name: one.rate for one in wire.taken_of(made)}
     assert rates == pytest.approx(told | {"fill": 48.0})
     assert deposit.wire_feed(made, of).worst == pytest.approx(
         100.0

@@ -8,28 +8,28 @@ import pytest
 
 from freecad_am.core.geometry.obstacles import disc
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.links import cylinders as link_rods
+from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.links import robot as robot_links
 from freecad_am.core.kinematics.links.contact import ArmContact
-from freecad_am.core.kinematics.links.rounds import NONE
+from freecad_am.core.kinematics.links.own import NONE
 from freecad_am.core.parameters.cell import CellParameters
-from freecad_am.core.simulation import arm as arms
+from freecad_am.core.simulation import watch
 
 
 @pytest.fixture(scope="module")
 def contact():
     cell = cells.resolve(CellParameters(limits="paper", platform_diameter=0.0), np.eye(4))
-    rods = [link_rods.solid_cylinders(link) for link in robot_links.solids(cell.machine.chain)]
+    rods = [external_links.solid_cylinders(link) for link in robot_links.solids(cell.machine.chain)]
     return ArmContact(cell, rods, [disc(400.0, np.eye(4), "plate")])
 
 
 def test_places_are_on_the_motion_and_no_farther_apart_than_a_step(a_motion):
     joints = a_motion(3).joints.copy()
     joints[11] = np.nan
-    seen, row, step = arms.places(joints)
+    seen, row, step = watch.places(joints)
     moves = set(np.flatnonzero(np.diff(joints, axis=0, prepend=joints[:1]).any(axis=1))) - {11}
     assert (
-        step == arms.STEP and (np.diff(row) >= 0).all() and set(row) - {0} == moves
+        step == watch.STEP and (np.diff(row) >= 0).all() and set(row) - {0} == moves
     )  # 12 begins anew
     for q, k in zip(seen, row):
         before = joints[max(k - 1, 0)] if k != 12 else joints[k]
@@ -42,9 +42,9 @@ def test_places_are_on_the_motion_and_no_farther_apart_than_a_step(a_motion):
 
 
 def test_long_motions_are_looked_at_at_so_many_places(a_motion, monkeypatch):
-    monkeypatch.setattr(arms, "MAX_LOOKS", 500)
-    seen, _, step = arms.places(a_motion(4).joints)
-    assert step > arms.STEP and 500 <= len(seen) <= 502
+    monkeypatch.setattr(watch, "MAX_LOOKS", 500)
+    seen, _, step = watch.places(a_motion(4).joints)
+    assert step > watch.STEP and 500 <= len(seen) <= 502
 
 
 def test_a_move_that_touches_on_the_way_alone_is_found(a_motion, contact):
@@ -57,9 +57,9 @@ def test_a_move_that_touches_on_the_way_alone_is_found(a_motion, contact):
     quiet = dataclasses.replace(
         motion, joints=np.where(np.arange(len(motion))[:, None] < rapid, joints, joints[0])
     )
-    assert (arms.arm_touches(quiet, contact).link == NONE).all()
+    assert (watch.arm_touches(quiet, contact).link == NONE).all()
     moved = dataclasses.replace(motion, joints=joints)
-    found = arms.arm_touches(moved, contact)
+    found = watch.arm_touches(moved, contact)
     assert set(np.flatnonzero(found.link != NONE)) == {rapid, rapid + 1}
     assert found.link[rapid] == 4 and found.names[found.what[rapid]] == "plate"
     # there and back between two rows: neither row touches, the way does
@@ -70,7 +70,7 @@ def test_rows_nearer_than_a_step_are_told_too(a_motion, contact):
     motion = a_motion(6, layers=1, beads=1, points=400)
     joints = np.tile([0.2, 0.1, 0.1, 0.0, 0.0, 0.0], (len(motion), 1))
     joints[:, 4] = np.radians(np.linspace(100.0, 139.0, len(motion)))
-    found = arms.arm_touches(dataclasses.replace(motion, joints=joints), contact)
+    found = watch.arm_touches(dataclasses.replace(motion, joints=joints), contact)
     each = contact.touches(joints)
     assert each.any.any() and not each.any.all()
     # the border may be as far off as a step
@@ -100,7 +100,7 @@ def runs(joints):
 def test_between_gaps_every_row_is_told_as_looking_everywhere_tells_it(a_motion, contact, seed):
     motion = a_motion(seed, layers=3, beads=2, points=40)
     joints = with_gaps(motion.joints, np.random.default_rng(seed))
-    found = arms.arm_touches(dataclasses.replace(motion, joints=joints), contact)
+    found = watch.arm_touches(dataclasses.replace(motion, joints=joints), contact)
     finest, seen = np.radians(0.05), 0
     for start, end in zip(*runs(joints)):
         run = joints[start:end]
@@ -129,7 +129,7 @@ def test_the_deposit_of_a_motion_has_the_size_of_its_beads(a_motion):
     wide = dataclasses.replace(
         motion, width=np.where(motion.deposit, np.arange(len(motion)) % 5 + 2.0, np.nan)
     )
-    made, plain = arms.deposit_obstacles(wide, 1.0, 0.5), arms.deposit_obstacles(motion, 1.0, 0.5)
+    made, plain = watch.deposit_obstacles(wide, 1.0, 0.5), watch.deposit_obstacles(motion, 1.0, 0.5)
     # sections of stadiums half a mm high: round by a quarter, and flat between
     assert np.unique(made.radius) == pytest.approx([0.25])
     for laid, low, high in ((made, 1.5, 5.5), (plain, 0.5, 0.5)):

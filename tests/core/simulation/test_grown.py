@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from freecad_am.core.simulation.grown import MIN_HEIGHT_MM, heights
+from freecad_am.core.simulation.table_links import MIN_HEIGHT_MM, heights
 
 
 def test_each_point_has_the_height_of_the_nearest_piece_of_its_layer():

@@ -5,9 +5,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.kinematics.links import cylinders as link_rods
+from freecad_am.core.kinematics.links import external_links, solids
 from freecad_am.core.kinematics.links import robot as robot_links
-from freecad_am.core.kinematics.links import solids
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.simulation import table_links
 from tests.core.kinematics.arms import EXAMPLES
@@ -140,7 +139,7 @@ def test_of_tables_the_bearings_stand_still_and_the_last_axis_turns_the_disc_in_
 @pytest.mark.parametrize("name", ROBOTS)
 def test_rods_hold_all_that_is_drawn_of_a_link_and_little_more(name):
     loaded, made = links_of(name)
-    for link, rods in zip(made, link_rods.robot_cylinders(loaded.chain)):
+    for link, rods in zip(made, external_links.robot_cylinders(loaded.chain)):
         for solid in link:
             assert any(rod.holds(solid.points).all() for rod in rods)
         drawn = sum(volume(solid) for solid in link)
@@ -154,8 +153,8 @@ def test_of_links_with_a_shape_of_their_own_that_is_held():
     block = solids.box([300.0, 0.0, 40.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], (700.0, 160.0, 120.0))
     shapes = [None, None, (block.points, block.triangles), None, None, None, None]
     plain, made = (
-        link_rods.robot_cylinders(loaded.chain),
-        link_rods.robot_cylinders(loaded.chain, shapes),
+        external_links.robot_cylinders(loaded.chain),
+        external_links.robot_cylinders(loaded.chain, shapes),
     )
     inside = np.random.default_rng(1).uniform([-50, -80, -20], [650, 80, 100], (2000, 3))
     for points in (block.points, inside):

@@ -4,7 +4,11 @@
 import numpy as np
 
 from freecad_am.core.kinematics.limits import margins
-from freecad_am.core.simulation.margins import from_next, speed_ratios, spread_to_deposit_rows
+from freecad_am.core.simulation.achievable_feed import (
+    from_next,
+    speed_ratios,
+    spread_to_deposit_rows,
+)
 
 LOWER, UPPER = np.array([-2.0, -np.inf, 0.5, -1.0]), np.array([2.0, np.inf, 1.5, 3.0])
 

@@ -11,13 +11,13 @@ import pytest
 from freecad_am.core.geometry import obstacles
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import offered
+from freecad_am.core.kinematics import external
 from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning.external import remedies
 from freecad_am.core.preflight.payload import payload_promises
-from freecad_am.core.simulation import deposit, payload
+from freecad_am.core.simulation import payload, timeline
 from tests.core.planned_dome import planned_dome
 
 DENSITY = 7.85  # g/cm3, where a job says nothing
@@ -144,7 +144,7 @@ def on_face(toolpath, places, platform):
 def found(toolpath, path, process=None, **more):
     process = process or ProcessParameters()
     return payload.issues(
-        deposit.deposit_motion(toolpath), cell_with(path, toolpath, **more), toolpath, process
+        timeline.deposit_motion(toolpath), cell_with(path, toolpath, **more), toolpath, process
     )
 
 
@@ -155,8 +155,7 @@ def test_the_mass_counts_as_the_part_grows(toolpath, positioner):
     (issue,) = found(toolpath, positioner(kg=0.6 * whole))
     assert issue.code == "PAYLOAD" and issue.level == "error"
     assert (
-        "above the payload of" in issue.message
-        and f"{whole:.4g} kg when finished" in issue.message
+        "above the payload of" in issue.message and f"{whole:.4g} kg when finished" in issue.message
     )
     counts = np.cumsum([len(bead.points) - 1 for _, _, bead in toolpath])
     row = int(np.searchsorted(np.cumsum(masses), 0.6 * whole))
@@ -223,14 +222,14 @@ def test_robots_that_hold_the_part_and_what_is_not_told(toolpath):
     heavy = ProcessParameters(
         density=DENSITY * 10.1 / grown(toolpath, toolpath.bead_width or 0.0)[0].sum()
     )
-    (issue,) = payload.issues(deposit.deposit_motion(toolpath), held, toolpath, heavy)
+    (issue,) = payload.issues(timeline.deposit_motion(toolpath), held, toolpath, heavy)
     assert "above the payload of" in issue.message and "more than 10 kg" in issue.message
     tool = cells.resolve(dataclasses.replace(parameters, setup="tool-on-robot"), toolpath.frame)
-    assert payload.issues(deposit.deposit_motion(toolpath), tool, toolpath, heavy) == []
+    assert payload.issues(timeline.deposit_motion(toolpath), tool, toolpath, heavy) == []
     unknown = cells.resolve(
         dataclasses.replace(parameters, machine="fanuc-arcmate120ic"), toolpath.frame
     )
-    assert payload.issues(deposit.deposit_motion(toolpath), unknown, toolpath, heavy) == []
+    assert payload.issues(timeline.deposit_motion(toolpath), unknown, toolpath, heavy) == []
 
 
 @pytest.mark.parametrize("load", [{"kg": -1}, {"kg": "many"}, {"from_axis": 0}, {"grams": 3}])
@@ -241,7 +240,7 @@ def test_payloads_that_are_none(positioner, load):
 
 
 def promised(toolpath, cell, process):
-    motion = deposit.deposit_motion(toolpath)
+    motion = timeline.deposit_motion(toolpath)
     return payload_promises(
         motion, cell, toolpath, process, payload.issues(motion, cell, toolpath, process)
     )
@@ -300,7 +299,7 @@ def test_positioners_offered_carry_the_part_and_are_of_the_robots_maker(
     abb, kuka = machines.load("abb-irb4600-40-255"), machines.load("kuka-kr10-r1100-2")
 
     def ids(robot, mass, radius=100.0):
-        return [one.id for one in offered.positioners(robot, mass, radius, (str(folder),))]
+        return [one.id for one in external.positioners(robot, mass, radius, (str(folder),))]
 
     assert ids(kuka, 50.0) == ["small", "motoman-motopos-d500", "large", dkp, kp2, irbp]
     assert ids(abb, 50.0) == ["large", "small", "motoman-motopos-d500", irbp, dkp, kp2]
@@ -310,7 +309,7 @@ def test_positioners_offered_carry_the_part_and_are_of_the_robots_maker(
     assert ids(kuka, 1000.0) == []
     # wider than the table of the D500, 502 mm
     assert ids(kuka, 300.0, 400.0) == ["large", dkp, kp2, "motoman-motopos-d500"]
-    assert [one.id for one in offered.tracks(kuka, (str(folder),))] == ["kuka-kl100-2"]
+    assert [one.id for one in external.tracks(kuka, (str(folder),))] == ["kuka-kl100-2"]
 
 
 def test_weights_that_positioners_are_chosen_by_are_those_of_the_payload(toolpath):

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.simulation.deposit import volumes
-from freecad_am.core.simulation.rates import rates
-from freecad_am.core.simulation.timeline import timeline
+from freecad_am.core.simulation.table_links import rates
+from freecad_am.core.simulation.timeline import timeline, volumes
 from freecad_am.core.simulation.totals import totals
 
 PATH = SimpleNamespace(layer_height=2.0, bead_width=None, wire_feed=None, features=(), fitted=None)

@@ -11,8 +11,7 @@ from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.simulation import watch as watching
 from freecad_am.core.simulation.achievable_feed import achievable_feed
-from freecad_am.core.simulation.arm import ArmTouches
-from freecad_am.core.simulation.watch import bad_links, shown_margins, watch
+from freecad_am.core.simulation.watch import ArmTouches, bad_links, shown_margins, watch
 
 LINKS = ("base", "q1", "q2", "q3", "q4", "q5", "q6", "part", "nozzle")
 

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.geometry.implicit import HalfSpace
+from freecad_am.core.geometry.columns import HalfSpace
 from freecad_am.core.slicing.fronts import layers as fronts
-from freecad_am.core.slicing.fronts.feet import local_distances
+from freecad_am.core.slicing.fronts.rims import local_distances
 from tests.core.patch_walls import ball, samples, sheet, tube
 
 FLOOR = HalfSpace(np.array([0.0, 0.0, -5.0]), np.array([0.1, 0.3, 1.0]))

@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.geometry.implicit import HalfSpace, Round
+from freecad_am.core.geometry.columns import HalfSpace, Round
 from freecad_am.core.geometry.walls.surface import Cone, Torus, cylinder
-from freecad_am.core.geometry.walls.tabulated import Tabulated
+from freecad_am.core.geometry.walls.surface_wall import Tabulated
 from freecad_am.core.issues import InputError
 from freecad_am.core.slicing.first_layer import interpolate_polyline, intersect_implicit
 from freecad_am.core.slicing.tubes import constant_distance, iso_parameter
-from freecad_am.core.slicing.tubes.wall_layer import even_grid, local_distances
+from freecad_am.core.slicing.tubes.smooth_spacing import even_grid, local_distances
 
 PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])
 END = 0.5 * np.pi

@@ -4,14 +4,14 @@
 import numpy as np
 import pytest
 
+from freecad_am.core.geometry.columns import Round
 from freecad_am.core.geometry.curves.outline import outline
 from freecad_am.core.geometry.curves.space_curve import SpaceCurve
-from freecad_am.core.geometry.implicit import Round
 from freecad_am.core.geometry.walls.surface import Torus
 from freecad_am.core.slicing.curve_points import sample_within_chord
 from freecad_am.core.slicing.first_layer import interpolate_polyline, intersect_implicit
 from freecad_am.core.slicing.tubes import constant_distance
-from freecad_am.core.slicing.tubes.wall_layer import even_grid
+from freecad_am.core.slicing.tubes.smooth_spacing import even_grid
 
 PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])
 

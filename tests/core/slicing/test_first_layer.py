@@ -4,11 +4,11 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.implicit import HalfSpace, Round
+from freecad_am.core.geometry.columns import HalfSpace, Round
 from freecad_am.core.geometry.walls.surface import Torus, cylinder
 from freecad_am.core.issues import InputError
 from freecad_am.core.slicing.first_layer import interpolate_polyline, intersect_implicit
-from freecad_am.core.slicing.tubes.wall_layer import even_grid
+from freecad_am.core.slicing.tubes.smooth_spacing import even_grid
 
 TORUS = Torus(60.0, 15.0)
 PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])

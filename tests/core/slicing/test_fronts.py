@@ -5,14 +5,13 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.geometry.implicit import HalfSpace, Round
+from freecad_am.core.geometry.columns import HalfSpace, Round
 from freecad_am.core.geometry.walls.surface import Torus
 from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.fronts import layers as fronts
-from freecad_am.core.slicing.fronts.feet import local_distances
-from freecad_am.core.slicing.fronts.rims import Rims
+from freecad_am.core.slicing.fronts.rims import Rims, local_distances
 from freecad_am.core.slicing.tubes import constant_distance
-from freecad_am.core.slicing.tubes.wall_layer import even_grid
+from freecad_am.core.slicing.tubes.smooth_spacing import even_grid
 from tests.core.patch_walls import ball, bend, brute, samples, sheet, tube
 
 PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])

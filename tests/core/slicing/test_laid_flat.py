@@ -8,8 +8,7 @@ import pytest
 
 from freecad_am.core.geometry.curves.plane_curve import doubled_area
 from freecad_am.core.geometry.developable import Developable
-from freecad_am.core.slicing.solids.equidistant import Facets
-from freecad_am.core.slicing.solids.unrolled import cut
+from freecad_am.core.slicing.solids.equidistant import Facets, cut
 from tests.core.slicing.test_equidistant import hull
 
 CORNERS = np.array([[x, y, z] for x in (0.0, 1.0) for y in (-10.0, 10.0) for z in (-20.0, 20.0)])

@@ -4,8 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.curves.profile import Meridian
-from freecad_am.core.geometry.curves.sampling import arc, line
+from freecad_am.core.geometry.curves.profile import Meridian, arc, line
 from freecad_am.core.issues import InputError
 from freecad_am.core.slicing import arc_length, iso_height
 

@@ -4,16 +4,16 @@
 import numpy as np
 import pytest
 
+from freecad_am.core.geometry.columns import HalfSpace, Round
 from freecad_am.core.geometry.curves.space_curve import SpaceCurve
-from freecad_am.core.geometry.implicit import HalfSpace, Round
 from freecad_am.core.geometry.mesh.triangle_mesh import Mesh
 from freecad_am.core.geometry.walls.surface import Torus
 from freecad_am.core.process.deposit import layer_curve
 from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.fronts import layers as fronts
-from freecad_am.core.slicing.fronts.feet import nearest_feet
+from freecad_am.core.slicing.fronts.rims import nearest_feet
 from freecad_am.core.slicing.tubes import constant_distance, iso_parameter, smooth_spacing
-from freecad_am.core.slicing.tubes.wall_layer import even_grid
+from freecad_am.core.slicing.tubes.smooth_spacing import even_grid
 from tests.core.patch_walls import tube
 
 TORUS = Torus(60.0, 15.0)

@@ -4,13 +4,13 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.implicit import Round
+from freecad_am.core.geometry.columns import Round
 from freecad_am.core.geometry.walls.surface import Cone, Torus, cylinder
-from freecad_am.core.geometry.walls.tabulated import Tabulated
+from freecad_am.core.geometry.walls.surface_wall import Tabulated
 from freecad_am.core.issues import InputError
 from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.tubes import normal_layers
-from freecad_am.core.slicing.tubes.wall_layer import WallLayer, even_grid, local_distances
+from freecad_am.core.slicing.tubes.smooth_spacing import WallLayer, even_grid, local_distances
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,10 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.implicit import HalfSpace, Round
+from freecad_am.core.geometry.columns import HalfSpace, Round
 from freecad_am.core.slicing.fronts import layers as fronts
+from freecad_am.core.slicing.fronts.curve import Smoothing
 from freecad_am.core.slicing.fronts.rims import Rims
-from freecad_am.core.slicing.fronts.slicing import Smoothing
 from freecad_am.core.slicing.fronts.smooth import turn
 from tests.core.patch_walls import ball, bend, brute, sheet
 

@@ -10,9 +10,8 @@ from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.geometry.on_hub import Base, Seat, Stretch, middle_azimuth, upright
 from freecad_am.core.issues import InputError
-from freecad_am.core.slicing.solids.equidistant import Facets
+from freecad_am.core.slicing.solids.equidistant import Facets, count, cut, unroll_layers
 from freecad_am.core.slicing.solids.standing import group_by_base, hub_among
-from freecad_am.core.slicing.solids.unrolled import count, cut, unroll_layers
 
 LOWER = Base("Face1", Developable(50.0), np.eye(4))
 UPPER = Base(

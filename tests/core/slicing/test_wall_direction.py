@@ -4,13 +4,13 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.implicit import Round
+from freecad_am.core.geometry.columns import Round
 from freecad_am.core.geometry.walls.surface import Cone, Torus, normals
 from freecad_am.core.issues import InputError
 from freecad_am.core.slicing.directions import wall as wall_direction
 from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.tubes import constant_distance
-from freecad_am.core.slicing.tubes.wall_layer import even_grid
+from freecad_am.core.slicing.tubes.smooth_spacing import even_grid
 
 TORUS = Torus(60.0, 15.0)
 

@@ -15,7 +15,7 @@ from freecad_am.core.issues import InfeasibleError, InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import DevelopableParameters
 from freecad_am.core.parameters.process import ProcessParameters, WireParameters
-from freecad_am.core.process.model import bead_table
+from freecad_am.core.process.model import wire
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
 
 CYLINDER, CONE = Developable(45.0), Developable(60.0, 200.0)
@@ -361,7 +361,7 @@ def test_lead_and_tilt_are_those_asked_for():
 
 
 def test_speeds_hold_the_width():
-    model = bead_table.load("csw")
+    model = wire.load("csw")
     process = ProcessParameters(bead_width=9.5, wire=WireParameters(feed=model.wire_feed))
     path = planned(solids(CONE, box()), process=process, model=model)
     speed = np.concatenate([bead.speed[1:] for _, _, bead in path]) * 60.0

@@ -32,9 +32,7 @@ def message(path):
 def test_the_half_angle_that_is_named_clears_the_nozzle(half, angle):
     path = toolpath(bead(ALONG))
     told = message(keep_clear(path, slot(half), NOZZLE, dataclasses.replace(LOCAL, max_tilt=np.pi)))
-    assert (
-        f"with `cell.nozzle.half_angle: {angle} deg` the nozzle is clear (tested)" in told
-    )
+    assert f"with `cell.nozzle.half_angle: {angle} deg` the nozzle is clear (tested)" in told
     assert OTHER not in told and "slimmer" not in told
     slim = NozzleParameters(half_angle=np.radians(angle))
     assert codes(keep_clear(path, slot(half), slim, LOCAL)) in ([], ["TILT_BACK"])

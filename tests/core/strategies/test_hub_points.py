@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.filling.curve import PlaneCurve
+from freecad_am.core.filling.centre import PlaneCurve
 from freecad_am.core.geometry.curves.plane_curve import divide_edges
 from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.on_hub import Base
 from freecad_am.core.geometry.plane import Plane
-from freecad_am.core.layers.planes.layer import PlaneLayer
-from freecad_am.core.layers.rotary.layer import RoundLayer
+from freecad_am.core.layers.planes.field import PlaneLayer
+from freecad_am.core.layers.rotary.field import RoundLayer
 from freecad_am.core.layers.surface import Slice
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters

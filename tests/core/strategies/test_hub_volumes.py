@@ -9,8 +9,8 @@ import pytest
 from scipy.integrate import quad
 from scipy.spatial import cKDTree
 
-from freecad_am.core.geometry.beyond_hub import volume_beyond
 from freecad_am.core.geometry.developable import Developable
+from freecad_am.core.geometry.on_hub import volume_beyond
 from freecad_am.core.process.deposit import balance as deposit_balance
 from tests.core.strategies.test_developable import away, box, collar, planned, solids
 

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from freecad_am.core.strategies.clearance.least_turn import BARRED, least_cost_states
+from freecad_am.core.strategies.clearance.tilt_search import BARRED, least_cost_states
 
 
 def cost(states, allowed, weight, change, way):

@@ -11,8 +11,7 @@ from freecad_am.core.layers.planes.stacking import prepare_stack
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.strategies.solids.part_volume import part_volume
-from freecad_am.core.strategies.solids.plan import plan
+from freecad_am.core.strategies.solids.plan import part_volume, plan
 
 
 def block(low, high):

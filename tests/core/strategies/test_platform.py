@@ -6,13 +6,12 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.curves.sampling import line
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall, line
 from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.geometry.on_hub import Base, Group, SolidsOnHub, upright
 from freecad_am.core.issues import InputError
-from freecad_am.core.strategies.revolution import platform
+from freecad_am.core.strategies.revolution import clearance
 
 FRAME = np.array(
     [[0.0, -1.0, 0.0, 30.0], [1.0, 0.0, 0.0, 40.0], [0.0, 0.0, 1.0, 5.0], [0.0, 0.0, 0.0, 1.0]]
@@ -29,13 +28,13 @@ def at(x, y, z, lean=0.0):
 
 
 def test_under_the_feature_frame_the_disc_is_at_its_origin():
-    assert platform.under(WALL, 50.0, None) == platform.Platform(25.0, 0.0)
-    assert platform.under(WALL, 50.0, FRAME) == platform.Platform(25.0, 0.0)
-    assert platform.under(WALL, 0.0, at(900.0, 0.0, 0.0, 1.0)).radius == 0.0
+    assert clearance.under(WALL, 50.0, None) == clearance.Platform(25.0, 0.0)
+    assert clearance.under(WALL, 50.0, FRAME) == clearance.Platform(25.0, 0.0)
+    assert clearance.under(WALL, 0.0, at(900.0, 0.0, 0.0, 1.0)).radius == 0.0
 
 
 def test_a_disc_below_and_beside_is_taken_on_the_safe_side():
-    seen = platform.under(WALL, 200.0, at(0.0, 0.0, 0.0))
+    seen = clearance.under(WALL, 200.0, at(0.0, 0.0, 0.0))
     assert seen.radius == pytest.approx(150.0) and seen.off == pytest.approx(50.0)
     assert seen.height == pytest.approx(-5.0)
 
@@ -51,7 +50,7 @@ def test_a_disc_below_and_beside_is_taken_on_the_safe_side():
 )
 def test_what_misses_the_platform_is_refused(diameter, frame, said):
     with pytest.raises(InputError, match=said) as refused:
-        platform.under(WALL, diameter, frame)
+        clearance.under(WALL, diameter, frame)
     assert refused.value.code == "OFF_PLATFORM"
     assert "Cup" in refused.value.message
 
@@ -67,7 +66,7 @@ def test_what_misses_the_platform_is_refused(diameter, frame, said):
     ],
 )
 def test_a_base_that_reaches_over_the_edge_is_deposited_with_a_warning(diameter, frame, over):
-    found = platform.overhanging(WALL, platform.under(WALL, diameter, frame))
+    found = clearance.overhanging(WALL, clearance.under(WALL, diameter, frame))
     assert [(issue.level, issue.code) for issue in found] == (
         [("warning", "OVER_PLATFORM")] if over else []
     )
@@ -84,10 +83,10 @@ def test_a_base_that_reaches_over_the_edge_is_deposited_with_a_warning(diameter,
     ],
 )
 def test_the_frame_of_the_feature_is_a_remedy_where_it_does(diameter, frame, mended):
-    (found,) = platform.overhanging(WALL, platform.under(WALL, diameter, frame))
+    (found,) = clearance.overhanging(WALL, clearance.under(WALL, diameter, frame))
     assert ("use cell.mount: feature" in found.message) == mended
     assert mended == (
-        frame is not None and not platform.overhanging(WALL, platform.under(WALL, diameter, None))
+        frame is not None and not clearance.overhanging(WALL, clearance.under(WALL, diameter, None))
     )
 
 
@@ -121,9 +120,9 @@ def test_of_a_part_far_larger_than_the_platform_only_what_is_over_it_is_looked_a
     tracemalloc.start()
     if depth:
         with pytest.raises(InputError, match=r"plate reaches 7\.5 mm below the platform"):
-            platform.refuse_solids_below(solids, np.eye(4), 40.0)
+            clearance.refuse_solids_below(solids, np.eye(4), 40.0)
     else:
-        platform.refuse_solids_below(solids, np.eye(4), 40.0)
+        clearance.refuse_solids_below(solids, np.eye(4), 40.0)
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert most < 10e6
@@ -163,9 +162,9 @@ def test_solids_that_reach_below_the_platform_are_refused_with_their_depth(drop,
     both = Body("bar", np.vstack([bar, within]), np.vstack([faces, faces + 8]))
     solids = SolidsOnHub("bars", (Group(base, (both,)),), 0.01)
     if not refused:
-        platform.refuse_solids_below(solids, np.eye(4), diameter)
+        clearance.refuse_solids_below(solids, np.eye(4), diameter)
         return
     with pytest.raises(InputError, match=r"bar reaches 7\.5 mm below the platform, at \(") as found:
-        platform.refuse_solids_below(solids, np.eye(4), diameter)
+        clearance.refuse_solids_below(solids, np.eye(4), diameter)
     assert "use mount: feature" in found.value.message
     assert found.value.code == "OFF_PLATFORM" and found.value.where == "cell.platform_diameter"

@@ -11,8 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.curves.sampling import arc, line
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall, arc, line
 from freecad_am.core.geometry.walls.clad_faces import CladFaces
 from freecad_am.core.geometry.walls.mesh_wall import mesh_wall
 from freecad_am.core.geometry.walls.patch_wall import FirstCurve

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.implicit import Round
+from freecad_am.core.geometry.columns import Round
 from freecad_am.core.geometry.walls.surface import Torus
 from freecad_am.core.geometry.walls.surface_wall import SurfaceWall
 from freecad_am.core.issues import NOTE, WARNING
@@ -12,7 +12,7 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
 from freecad_am.core.slicing.first_layer import intersect_implicit
-from freecad_am.core.slicing.tubes.wall_layer import even_grid
+from freecad_am.core.slicing.tubes.smooth_spacing import even_grid
 from freecad_am.core.strategies.walls import plan as surface
 
 

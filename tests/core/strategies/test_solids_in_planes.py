@@ -19,8 +19,7 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters, SeamParameters, WireParameters
 from freecad_am.core.process.deposit import spacing
-from freecad_am.core.process.model import bead_table
-from freecad_am.core.process.model.wire import set_wire_feed
+from freecad_am.core.process.model.wire import load, set_wire_feed
 from freecad_am.core.strategies.solids.plan import plan
 
 ERROR = 0.05
@@ -848,7 +847,7 @@ def spacing_issues(overlap, model=None, **process):
 @pytest.mark.parametrize("overlap, told", [(0.3, False), (0.6, True), (None, False)])
 def test_an_overlap_that_a_bead_model_overfills_is_told(overlap, told):
     """The model's wire feeds a bead of 9.5 mm whatever lies beside it."""
-    model = bead_table.load("csw")
+    model = load("csw")
     issues = spacing_issues(overlap, model, bead_width=9.5, bead_model="csw")
     assert len(issues) == told
     if told:

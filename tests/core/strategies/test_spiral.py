@@ -4,8 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.curves.sampling import arc, line
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall, arc, line
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters

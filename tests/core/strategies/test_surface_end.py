@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.geometry.implicit import Round
+from freecad_am.core.geometry.columns import Round
 from freecad_am.core.geometry.walls.surface import Torus
 from freecad_am.core.geometry.walls.surface_wall import Placed
 from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.tubes import constant_distance
-from freecad_am.core.slicing.tubes.wall_layer import even_grid
+from freecad_am.core.slicing.tubes.smooth_spacing import even_grid
 from freecad_am.core.strategies.walls.end import trimmed
 
 TORUS, END, HEIGHT = Torus(60.0, 15.0), 0.5 * np.pi, 5.0

@@ -20,13 +20,11 @@ from freecad_am.core.strategies.clearance import (
     knots as clearance_knots,
 )
 from freecad_am.core.strategies.clearance import (
-    places as clearance_room,
+    look,
+    tilt_search,
 )
 from freecad_am.core.strategies.clearance import (
     tilt_back as wall_clearance,
-)
-from freecad_am.core.strategies.clearance import (
-    tilt_search,
 )
 from freecad_am.core.strategies.clearance.look import nozzle_issues
 from freecad_am.core.strategies.clearance.tilt_back import keep_clear
@@ -447,14 +445,14 @@ def test_where_some_points_of_a_bead_have_no_way_the_rest_is_not_searched_for_ev
     )
     roof = [box([-90, -90, 8], [90, 90, 9], "roof"), box([-90, -90, -9], [90, 90, -8], "floor")]
     looks = []
-    scenes = clearance_room.Scene.find_touching
+    scenes = look.Scene.find_touching
 
     def counted(self, solid, tip, *rest):
         looks.append(len(tip))
         return scenes(self, solid, tip, *rest)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(clearance_room.Scene, "find_touching", counted)
+        patch.setattr(look.Scene, "find_touching", counted)
         found = keep_clear(path, roof, NOZZLE, LOCAL, remedy=False)
     assert codes(found) == ["CLEARANCE"] and sum(looks) < 110 * count
 

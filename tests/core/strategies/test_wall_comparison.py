@@ -4,13 +4,13 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.implicit import Round
+from freecad_am.core.geometry.columns import Round
 from freecad_am.core.geometry.walls.surface import Torus
 from freecad_am.core.geometry.walls.surface_wall import SurfaceWall
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.strategy import SurfaceParameters
 from freecad_am.core.slicing.first_layer import intersect_implicit
-from freecad_am.core.slicing.tubes.wall_layer import even_grid
+from freecad_am.core.slicing.tubes.smooth_spacing import even_grid
 from freecad_am.core.strategies.walls import comparison as wall_comparison
 from freecad_am.core.strategies.walls.comparison import NORMAL, Refused
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.geometry.implicit import HalfSpace, Round
+from freecad_am.core.geometry.columns import HalfSpace, Round
 from freecad_am.core.geometry.walls.patch import CYLINDER, PLANE, TORUS, Patch
 from freecad_am.core.geometry.walls.surface_wall import SurfaceWall
 from freecad_am.core.issues import InputError

@@ -18,11 +18,10 @@ from scipy.spatial import cKDTree
 from ...issues import NOTE, WARNING, InputError, Issue, Text, Word
 from ...types import Array, Index
 from ..formatting import place
-from .crossing import find_crossings
 from .manifold import fill_holes, find_holes, separate_vertices
-from .orientation import connected_pieces, orient_across, orient_triangles, split_solids
+from .near_triangles import find_crossings
 from .refined import Edges
-from .solid import SolidMesh
+from .solid import SolidMesh, connected_pieces, orient_across, orient_triangles, split_solids
 
 WELDS_MM = (1e-5, 1e-4, 1e-3, 1e-2)  # mm; the first that closes the mesh
 MAX_MESSAGES = 8

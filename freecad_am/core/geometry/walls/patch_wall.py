@@ -16,8 +16,7 @@ from ...issues import Issue
 from ...types import Array, Index, Mask
 from ..curves.space_curve import SpaceCurve
 from ..mesh.edge_runs import tangents
-from ..mesh.triangle_mesh import Mesh
-from ..mesh.triangles import closest
+from ..mesh.triangle_mesh import Mesh, closest
 from ..obstacles import Body
 from .part_depths import PartDepths
 from .patch import TORUS, Patch

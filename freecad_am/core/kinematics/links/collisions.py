@@ -22,10 +22,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...collision.bodies import build_bodies
-from ...collision.cylinders_apart import nearer
 from ...collision.obstacles import Obstacles
-from ...collision.scene import Scene
+from ...collision.scene import Scene, build_bodies
+from ...collision.separation import nearer
 from ...geometry import frames
 from ...geometry.cylinders import Cylinder
 from ...geometry.obstacles import Body
@@ -33,9 +32,8 @@ from ...types import Array, Index
 from ..cell import Cell
 from ..machines.machine import MAKER, Machine
 from .contact import PLATFORM, ArmContact, Touches
-from .own import place_cylinder
+from .own import NONE, Solid, place_cylinder, round_solid
 from .robot import flange_radius
-from .rounds import NONE, Solid, round_solid
 
 PENETRATION = 0.5  # mm; faces are triangles, and a shallower overlap is contact, not collision
 CORE = 1.0 / 3.0  # of the radius of a link

@@ -37,22 +37,49 @@ from functools import cached_property
 
 import numpy as np
 
-from ...collision.bodies import build_bodies
-from ...collision.nozzle import depositing
 from ...collision.obstacles import Obstacles
-from ...collision.scene import Scene
+from ...collision.scene import Scene, build_bodies, depositing
 from ...collision.tolerances import ABOUT_FACES
 from ...geometry import frames
 from ...geometry.columns import dots
 from ...geometry.cylinders import Cylinder, enclosing_cylinder, enclosing_row
 from ...geometry.obstacles import Body, disc
+from ...parameters.cell import NozzleParameters
 from ...parameters.external import ROBOT
 from ...types import Array, ArrayLike, Index, Mask
 from ..cell import Cell
 from .external_links import STANDS, ExternalLink
-from .nozzle_body import NOZZLE, nozzle_body
-from .own import OwnLinks
-from .rounds import NONE, Solid, about_link, ball, round_solid
+from .own import NONE, OwnLinks, Solid, about_link, ball, round_solid
+
+NOZZLE = "nozzle"
+SIDES = 24
+
+
+def nozzle_body(nozzle: NozzleParameters) -> Body:
+    """The nozzle in the frame of its tip, a many-sided cone about the round one."""
+    angle = np.linspace(0.0, 2.0 * np.pi, SIDES, endpoint=False)
+    ring = np.stack([np.cos(angle), np.sin(angle)], axis=1) / np.cos(np.pi / SIDES)
+    tip, length = 0.5 * nozzle.diameter, nozzle.length
+    back = tip + length * float(np.tan(nozzle.half_angle))
+    vertices = np.concatenate(
+        [
+            np.column_stack([tip * ring, np.zeros(SIDES)]),
+            np.column_stack([back * ring, np.full(SIDES, length)]),
+            [[0.0, 0.0, 0.0], [0.0, 0.0, length]],
+        ]
+    )
+    index = np.arange(SIDES)
+    on = np.roll(index, -1)
+    triangles = np.concatenate(
+        [
+            np.stack([index, on, on + SIDES], axis=1),
+            np.stack([index, on + SIDES, index + SIDES], axis=1),
+            np.stack([on, index, np.full(SIDES, 2 * SIDES)], axis=1),
+            np.stack([index + SIDES, on + SIDES, np.full(SIDES, 2 * SIDES + 1)], axis=1),
+        ]
+    )
+    return Body(NOZZLE, vertices, triangles.astype(np.int64))
+
 
 BASE, PLATFORM, DEPOSIT, PART, TORCH = "base", "platform", "deposit", "part", "torch"
 WORLD = "world"
@@ -422,3 +449,66 @@ def _group_of_body(body: Body, links: Sequence[int], seen_from: str = PART) -> G
     centre, radius = ball(body.vertices)
     scene = Scene(build_bodies([body], body.vertices, 0.0, max(LINK_PIECE, SHARE * 2.0 * radius)))
     return Group(scene, links, centre, radius, seen_from)
+
+
+FIRST_ROWS = 8  # joint vectors tested first: their result excludes most of the others
+
+
+def min_distance(contact: ArmContact, joints: ArrayLike, moment: Index, reach: float) -> float:
+    """Return the smallest distance, mm, between links, or a carried part, and the objects tested
+    against them.
+
+    With joints (k, axes); a lower bound, at most `reach`, and 0 on contact, including own
+    links. NaN joints do not count. moment: (k,) number of points of the deposit present. The
+    nozzle, which deposits next to bodies, does not count; the contact's own clearance is
+    subtracted.
+    """
+    values = np.asarray(joints, float)
+    finite = np.isfinite(values).all(axis=1)
+    values, when = values[finite], moment[finite]
+    if not len(values):
+        return reach
+    links, seen_from = contact.link_frames(values)
+    if (contact.own_links.touches(links)[0] != NONE).any():
+        return 0.0
+    best, nozzle = reach, contact.links.index(NOZZLE)
+    pairs = [
+        (group, number, solid)
+        for group in contact.groups
+        for number in group.links
+        if number != nozzle
+        for solid in contact.solids[number]
+    ]
+    bounds = [
+        _bound(group, solid, seen_from[group.seen_from], links[:, number])
+        for group, number, solid in pairs
+    ]
+    for k in np.argsort([bound.min() for bound in bounds], kind="stable"):
+        group, number, solid = pairs[k]
+        order = np.argsort(bounds[k], kind="stable")
+        for rows in (order[:FIRST_ROWS], order[FIRST_ROWS:]):
+            nearer = rows[bounds[k][rows] < best]
+            if len(nearer):
+                link_frame = (
+                    frames.inverse(seen_from[group.seen_from][nearer]) @ links[nearer, number]
+                )
+                best = min(best, _distance(group, solid, link_frame, when[nearer], best))
+    return best
+
+
+def _bound(group: Group, solid: Solid, frame: Array, link: Array) -> Array:
+    """Return lower bounds (k,) mm of the distance of a solid of a link, with frames `link` (k,
+    4, 4), from a group.
+
+    Computed from balls around both.
+    """
+    centre = frame[:, :3, :3] @ group.centre + frame[:, :3, 3]
+    offset = link[:, :3, :3] @ solid.centre + link[:, :3, 3] - centre
+    return np.asarray(np.linalg.norm(offset, axis=1) - solid.radius - group.radius)
+
+
+def _distance(group: Group, solid: Solid, link_frame: Array, moment: Index, reach: float) -> float:
+    """Return the smallest distance, mm, of a solid whose link has the frames (k, 4, 4)."""
+    turn = link_frame[:, :3, :3]
+    tip, axis = turn @ solid.tip + link_frame[:, :3, 3], turn @ solid.axis
+    return float(group.scene.distance(solid.solid, tip, axis, moment, reach).min())

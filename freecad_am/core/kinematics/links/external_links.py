@@ -10,14 +10,38 @@ from functools import cached_property
 
 import numpy as np
 
-from ...collision.bodies import Bodies, build_bodies
-from ...geometry.cylinders import Cylinder, enclosing_row
+from ...collision.scene import Bodies, build_bodies
+from ...geometry.cylinders import Cylinder, drop_redundant, enclosing_cylinder, enclosing_row
 from ...geometry.obstacles import Body
+from ...types import Array, Integers
+from ..chain import Chain
 from ..external import ExternalAxes
-from .bodies import Pieces
-from .cylinders import Mesh
-from .shape import LinkShape
+from . import robot as robot_links
+from .bodies import LinkShape, Pieces
 from .solids import Solid
+
+Mesh = tuple[Array, Integers]
+
+
+def robot_cylinders(chain: Chain, shapes: Sequence[Mesh | None] = ()) -> list[list[Cylinder]]:
+    """Return the cylinders of each link (axes + 1) of a robot, base first, in the frame of the
+    link.
+
+    shapes: points (n, 3) and triangles (m, 3) of links that are not drawn plain, in the same
+    frames.
+    """
+    plain = [solid_cylinders(link) for link in robot_links.solids(chain)]
+    return [
+        enclosing_row(*shape) if shape is not None else link
+        for shape, link in zip(shapes or [None] * len(plain), plain)
+    ]
+
+
+def solid_cylinders(link: Sequence[Solid]) -> list[Cylinder]:
+    """The cylinders that hold the solids of a link, in the same frame."""
+    points = [solid.points for solid in link]
+    return drop_redundant([enclosing_cylinder(solid_points) for solid_points in points], points)
+
 
 Read = Callable[[LinkShape], Mesh | None]
 EDGE = 50.0  # mm, longest edge of a triangle against which nozzles are tested

@@ -16,15 +16,13 @@ from functools import cached_property
 
 import numpy as np
 
-from ...collision.cylinders_apart import nearest
 from ...collision.frustum import Frustum
+from ...collision.separation import nearest
 from ...geometry import frames
 from ...geometry.columns import dots, lengths
 from ...types import Array, Index, Mask
-from .contact import PART, TORCH, ArmContact, Group
-from .nozzle_body import NOZZLE
-from .own import place_cylinder
-from .rounds import Solid
+from .contact import NOZZLE, PART, TORCH, ArmContact, Group
+from .own import Solid, place_cylinder
 
 OFF_RADIUS, OFF_END = (
     0.9,

@@ -19,11 +19,10 @@ from ...types import Array
 from ..chain import Chain
 from ..inverse.opw import OpwArm
 from ..inverse.serial_arm import SerialArm
-from ..links.bodies import Pieces, Primitive
-from ..links.shape import BASE, LinkShape
+from ..links.bodies import BASE, LinkShape, Pieces, Primitive
 from ..urdf import machine as urdf_machine
 from ..urdf.read import Description
-from . import check_poses, pendant
+from . import file, pendant
 from . import file as machine_file
 from . import machine as machines
 from .machine import Machine
@@ -31,7 +30,7 @@ from .pendant import Shown
 
 NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
 # what the deviations of check poses are rounded up to, mm and deg, for the machine file
-_ROUNDINGS = ((0.01, 0.001), (0.05, 0.01), (0.1, 0.05), check_poses.MOST_ROUNDING)
+_ROUNDINGS = ((0.01, 0.001), (0.05, 0.01), (0.1, 0.05), file.MOST_ROUNDING)
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ import json
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,12 @@ from ...geometry import frames
 from ...geometry.file_content import read_content
 from ...issues import InputError, Text, Word
 from ...types import Array
+from ..chain import Chain
+from ..inverse import recognition
+from ..inverse.five_axis import is_five_axis
+from ..inverse.opw import OpwArm
+from ..inverse.serial_arm import SerialArm
+from ..limits import Limits, Payload
 
 MAX_FILE_MB = 16  # MB
 LARGEST_NUMBER = 1e300
@@ -180,3 +186,246 @@ def read(path: Path) -> Node:
 def _short(value: Any) -> str:
     text = json.dumps(value)
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+# what rounding of the check poses may leave: mm, and entries of a rotation
+POSITION_TOLERANCE, ROTATION_TOLERANCE = 1e-6, 1e-9
+MOST_ROUNDING = (0.5, 0.1)  # that may be claimed for a check pose, mm and deg
+
+
+def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
+    """Reject a file (InputError BAD_MACHINE) whose check poses, `node`, do not match its chain
+    and its closed form, if any.
+    """
+    poses = [pose.only("q", "origin", "rotation", "within") for pose in node.items()]
+    if len(poses) < 3:
+        raise node.bad(
+            Text(
+                "the file has {}; give at least 3 joint vectors with their flange poses", len(poses)
+            )
+        )
+    q = np.array([pose["q"].numbers(chain.axes) for pose in poses]) * np.where(
+        chain.sliding, 1.0, math.radians(1.0)
+    )
+    if not (q == 0.0).all(axis=1).any():
+        raise node.bad("the pose at all zeros is missing; add it")
+    expected = np.stack(
+        [frames.pose(pose["rotation"].matrix(3, 3), pose["origin"].numbers(3)) for pose in poses]
+    )
+    allowed = np.array([_tolerance_of(pose) for pose in poses])
+    solvers = {"the joint frames give": chain.forward}
+    if opw is not None:
+        solvers["opw gives"] = opw.forward
+    for solver_gives, forward in solvers.items():
+        off = np.abs(forward(q) - expected)
+        position, rotation = off[:, :3, 3].max(axis=1), off[:, :3, :3].max(axis=(1, 2))
+        wrong = (position > allowed[:, 0]) | (rotation > allowed[:, 1])
+        if wrong.any():
+            index = int(np.argmax(wrong))
+            raise poses[index].bad(
+                Text(
+                    "{} a flange {:.6g} mm and {:.3g} (largest entry of the rotation) from it; correct the geometry or the "
+                    "pose",
+                    solver_gives,
+                    position[index],
+                    rotation[index],
+                )
+            )
+
+
+def _tolerance_of(pose: Node) -> tuple[float, float]:
+    """Return the tolerance of a check pose, mm and as entries of the rotation: `within` for a
+    pose read from a display.
+    """
+    if not pose.has("within"):
+        return POSITION_TOLERANCE, ROTATION_TOLERANCE
+    node = pose["within"].only("mm", "deg")
+    values = []
+    for key, max_value in zip(("mm", "deg"), MOST_ROUNDING, strict=True):
+        value = node[key].number()
+        if not 0.0 <= value <= max_value:
+            raise node[key].bad(
+                Text(
+                    "{:g} exceeds the rounding of a display; give 0 to {:g}",
+                    value,
+                    max_value,
+                )
+            )
+        values.append(value)
+    return max(values[0], POSITION_TOLERANCE), max(math.radians(values[1]), ROTATION_TOLERANCE)
+
+
+SPEED_UNITS = ("mm/s", "cm/min", "mm/min")
+# possible scopes of a warning: positions of Cartesian programs, joint values of joint programs, the limits of all sets or,
+# behind a dot, of one, and the speeds of the axes
+WARNED = ("base", "joint", "limits", "speeds")
+
+
+class MachineWarning(NamedTuple):
+    """A doubt about a machine file that may change a program: its scope, and its text."""
+
+    applies_to: str
+    text: str
+
+
+def warnings_of(top: Node) -> tuple[MachineWarning, ...]:
+    """Return the warnings of a machine file, empty without the key."""
+    return (
+        tuple(_warning(node, top) for node in top["warnings"].items())
+        if top.has("warnings")
+        else ()
+    )
+
+
+def _warning(node: Node, top: Node) -> MachineWarning:
+    node.only("applies_to", "text")
+    applies_to = node["applies_to"].text()
+    sets = [f"limits.{name}" for name, _ in top["limits"].pairs()]
+    if applies_to not in (*WARNED, *sets):
+        raise node["applies_to"].bad(
+            Text(
+                "{!r} is not a valid target of a warning; use {}",
+                applies_to,
+                ", ".join([*WARNED, *sets]),
+            )
+        )
+    return MachineWarning(applies_to, node["text"].text())
+
+
+def pulses_of(controller: Node, count: int) -> tuple[float, ...]:
+    """Return the pulses of each axis, empty if the file does not state them."""
+    if not controller.has("pulses_per_degree"):
+        return ()
+    node = controller["pulses_per_degree"]
+    pulses = node.numbers(count)
+    if (pulses == 0.0).any():
+        raise node.bad(
+            Text(
+                "{} contains a 0; give the pulses per degree of each axis, negative where they "
+                "count down",
+                node.value,
+            )
+        )
+    return tuple(pulses.tolist())
+
+
+def speed_unit_of(node: Node) -> str:
+    if node.text() not in SPEED_UNITS:
+        raise node.bad(
+            Text("{!r} is not a unit of path speed; use {}", node.value, ", ".join(SPEED_UNITS))
+        )
+    return node.text()
+
+
+def name_of(joint: Node, numbered: str, has_name: bool) -> str:
+    """What messages and curves call an axis."""
+    if joint.has("label"):
+        return joint["label"].text()
+    return joint["name"].text() if has_name else numbered
+
+
+def unit_of(node: Node) -> Array:
+    axis = node.numbers(3)
+    length = float(np.linalg.norm(axis))
+    if abs(length - 1.0) > 1e-6:
+        raise node.bad(Text("{} is not a unit vector; give a vector of length 1", node.value))
+    return axis / length
+
+
+def slides(joint: Node) -> bool:
+    kind = joint["type"].text() if joint.has("type") else "revolute"
+    if kind not in ("revolute", "prismatic"):
+        raise joint["type"].bad(Text("{!r} is not a joint type; use revolute or prismatic", kind))
+    return kind == "prismatic"
+
+
+def maximum_of(joint: Node, key: str, what: str) -> float:
+    if not joint.has(key):
+        return math.inf
+    maximum = joint[key].number()
+    if maximum <= 0.0:
+        raise joint[key].bad(
+            Text("{:g} is not {}; give more than 0, or null where not known", maximum, what)
+        )
+    return maximum
+
+
+def payload_of(top: Node) -> Payload:
+    """Return the payload of a machine, as far as its file states it."""
+    if not top.has("payload"):
+        return Payload()
+    payload = top["payload"].only("kg", "from_axis", "source")
+    return Payload(
+        maximum_of(payload, "kg", "a mass"), maximum_of(payload, "from_axis", "a distance")
+    )
+
+
+def recognise_arm(chain: Chain) -> tuple[SerialArm | None, str]:
+    """Return the inverse of a robot whose file has no `opw`, or the reason for having none;
+    `five_axis` handles five-axis machines.
+    """
+    if is_five_axis(chain.sliding):
+        return None, ""
+    try:
+        return recognition.arm_of(chain), ""
+    except InputError as error:
+        return None, error.message
+
+
+def opw_arm(node: Node, count: int) -> OpwArm:
+    lengths = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
+    node.only(*lengths, "offsets", "signs")
+    if count != 6:
+        raise node.bad(
+            Text("the closed form is for six joints, but the machine has {}; remove opw", count)
+        )
+    signs = node["signs"].numbers(6)
+    if (np.abs(signs) != 1.0).any():
+        raise node["signs"].bad(
+            Text("{} must be 1 or -1 each; give one for each joint", node["signs"].value)
+        )
+    offsets = node["offsets"].numbers(6)
+    if (np.abs(offsets) > 180.0).any():
+        raise node["offsets"].bad(
+            Text(
+                "{} must be within +-180; give equivalent angles in that range",
+                node["offsets"].value,
+            )
+        )
+    for name in ("c2", "c3"):
+        if node[name].number() <= 0.0:
+            raise node[name].bad(
+                Text("{} is not the length of an arm; give more than 0 mm", node[name].value)
+            )
+    return OpwArm(
+        **{name: node[name].number() for name in lengths},
+        offsets=tuple(np.radians(offsets).tolist()),
+        signs=tuple(int(sign) for sign in signs),
+    )
+
+
+def limits_of(name: str, node: Node, axes: tuple[str, ...], units: Array) -> Limits:
+    node.only("axes", "coupled", "source")
+    count = len(axes)
+    spans = np.array(
+        [axis.span(unit) for axis, unit in zip(node["axes"].items(count), units, strict=True)]
+    )
+    coupled = (
+        [c.only("label", "coefficients", "range") for c in node["coupled"].items()]
+        if node.has("coupled")
+        else []
+    )
+    ranges = np.array([row["range"].span() for row in coupled]).reshape(len(coupled), 2)
+    coefficients = np.array([row["coefficients"].numbers(count) for row in coupled]).reshape(
+        len(coupled), count
+    )
+    return Limits(
+        name=name,
+        lower=spans[:, 0].copy(),
+        upper=spans[:, 1].copy(),
+        coefficients=coefficients,
+        coupled_lower=ranges[:, 0].copy(),
+        coupled_upper=ranges[:, 1].copy(),
+        labels=axes + tuple(row["label"].text() for row in coupled),
+        source=node["source"].text(),
+    )

@@ -7,6 +7,7 @@ by the joint frames and by the closed form, and a file that does not give them i
 
 from __future__ import annotations
 
+import difflib
 import functools
 import json
 import math
@@ -21,20 +22,44 @@ from ...issues import InputError, Text
 from ...types import Array, ArrayLike, Mask
 from ..arrangement import OF_FIVE_AXES, OF_ROBOTS, Arrangement
 from ..chain import Chain
-from ..inverse.calibrated import CalibratedArm
 from ..inverse.five_axis import is_five_axis
 from ..inverse.opw import OpwArm
 from ..inverse.parallel_axes import ParallelAxesArm
+from ..inverse.recognition import CalibratedArm
 from ..inverse.serial_arm import SerialArm
 from ..limits import Limits, Payload
-from ..links.bodies import Pieces, link_bodies
-from ..links.shape import LinkShape, link_shapes
+from ..links.bodies import LinkShape, Pieces, link_bodies, link_shapes
 from ..urdf import machine as urdf_machine
 from ..urdf.read import Description
 from ..urdf.reference import reference
-from . import calibration, check_poses
-from . import entries as entry
+from . import calibration, file
 from .file import Node, read
+
+
+def unknown(name: str, names: Sequence[str]) -> InputError:
+    """UNKNOWN_MACHINE, of the names that there are."""
+    return InputError(
+        "UNKNOWN_MACHINE", "cell.machine", "unknown name {!r}; {}", name, _near(name, names)
+    )
+
+
+def _near(name: str, names: Sequence[str]) -> str:
+    """Return the most similar names; without any, one name of each manufacturer, because all
+    would fill a page.
+    """
+    alike = difflib.get_close_matches(name.lower().replace("_", "-"), names, n=3, cutoff=0.5)
+    if alike:
+        return Text("did you mean {}?", ", ".join(alike))
+    of_makers = {
+        name_of_maker.partition("-")[0]: name_of_maker for name_of_maker in reversed(names)
+    }
+    return Text(
+        "none of {} machines has a similar name; use a name that `freecad-am machines` lists, "
+        "such as {}, or the path of a machine file or URDF",
+        len(names),
+        ", ".join(sorted(of_makers.values())),
+    )
+
 
 BUILT_IN = Path(__file__).resolve().parents[3] / "machines"
 MAKER = "maker"
@@ -108,7 +133,7 @@ class Machine:
     payload: Payload = Payload()
     bodies: tuple[Pieces, ...] = ()
     of_urdf: bool = False
-    warnings: tuple[entry.MachineWarning, ...] = ()
+    warnings: tuple[file.MachineWarning, ...] = ()
 
     @property
     def opw(self) -> OpwArm | None:
@@ -267,9 +292,6 @@ def file_of(name: str, folders: Sequence[Path | str] = ()) -> Path:
         path = Path(folder).expanduser() / f"{name}.json"
         if path.stem == name and is_there(path):  # a name may be too long for a file
             return path
-    from .near_names import (
-        unknown,  # only when a name was wrong: starting is most of a small job's time
-    )
 
     raise unknown(name, sorted(_files(folders)))
 
@@ -307,11 +329,11 @@ def _parse(top: Node) -> Machine:
     if not joints:
         raise top["joints"].bad("there is no joint; add one for each axis")
     count = len(joints)
-    sliding = np.array([entry.slides(joint) for joint in joints])
+    sliding = np.array([file.slides(joint) for joint in joints])
     units = unit_values(sliding)
     # the axes of a robot are numbered unless the file has the pendant's labels; the axes of a machine tool have names
     names = tuple(
-        entry.name_of(joint, f"q{index + 1}", bool(sliding.any()))
+        file.name_of(joint, f"q{index + 1}", bool(sliding.any()))
         for index, joint in enumerate(joints)
     )
     controller = top["controller"].only(
@@ -319,14 +341,14 @@ def _parse(top: Node) -> Machine:
     )
     chain = Chain(
         np.stack([joint.pose() for joint in joints]),
-        np.stack([entry.unit_of(joint["axis"]) for joint in joints]),
+        np.stack([file.unit_of(joint["axis"]) for joint in joints]),
         top["flange"].only("origin", "rpy").pose(),
         sliding,
     )
     links = tuple(joint["name"].text() for joint in joints)
     shapes = link_shapes(top, links)
     arm, no_arm = (
-        (entry.opw_arm(top["opw"], count), "") if top.has("opw") else entry.recognise_arm(chain)
+        (file.opw_arm(top["opw"], count), "") if top.has("opw") else file.recognise_arm(chain)
     )
     machine = Machine(
         id=top["id"].text(),
@@ -336,30 +358,30 @@ def _parse(top: Node) -> Machine:
         arm=arm,
         no_arm=no_arm,
         base=top["base"].only("origin", "rpy").pose() if top.has("base") else np.eye(4),
-        max_speed=np.array([entry.maximum_of(joint, "max_speed", "a speed") for joint in joints])
+        max_speed=np.array([file.maximum_of(joint, "max_speed", "a speed") for joint in joints])
         * units,
         limit_sets={
-            name: entry.limits_of(name, node, names, units) for name, node in top["limits"].pairs()
+            name: file.limits_of(name, node, names, units) for name, node in top["limits"].pairs()
         },
         controller_matrix=controller["matrix"].matrix(count, count),
         controller_offset=controller["offset"].numbers(count) * units,
         controller_remark=controller["remark"].text(),
         posts=controller["posts"].texts() if controller.has("posts") else None,
-        pulses_per_degree=entry.pulses_of(controller, count),
-        speed_unit=entry.speed_unit_of(controller["speed_unit"])
+        pulses_per_degree=file.pulses_of(controller, count),
+        speed_unit=file.speed_unit_of(controller["speed_unit"])
         if controller.has("speed_unit")
         else "",
         sources=top["sources"].texts(),
         remarks=top["remarks"].texts() if top.has("remarks") else (),
         max_acceleration=np.array(
-            [entry.maximum_of(joint, "max_acceleration", "an acceleration") for joint in joints]
+            [file.maximum_of(joint, "max_acceleration", "an acceleration") for joint in joints]
         )
         * units,
-        max_jerk=np.array([entry.maximum_of(joint, "max_jerk", "a jerk") for joint in joints])
+        max_jerk=np.array([file.maximum_of(joint, "max_jerk", "a jerk") for joint in joints])
         * units,
         shapes=shapes,
-        payload=entry.payload_of(top),
-        warnings=entry.warnings_of(top),
+        payload=file.payload_of(top),
+        warnings=file.warnings_of(top),
         bodies=link_bodies(top, links, shapes),
     )
     if MAKER not in machine.limit_sets:
@@ -377,7 +399,7 @@ def _parse(top: Node) -> Machine:
         machine.controller_offset,
     ):
         array.flags.writeable = False
-    check_poses.check(chain, machine.opw, top["check_poses"])
+    file.check(chain, machine.opw, top["check_poses"])
     return machine
 
 

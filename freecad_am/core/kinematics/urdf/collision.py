@@ -10,8 +10,7 @@ import numpy as np
 from ...issues import Text
 from ...types import Array
 from ..links import bodies
-from ..links.bodies import Pieces
-from ..links.shape import LinkShape
+from ..links.bodies import LinkShape, Pieces
 from ..links.solids import Solid
 from .elements import Element
 from .read import FIXED, Urdf

@@ -15,8 +15,8 @@ from ...parameters.external import WHERE
 from ...types import Array
 from ..chain import Chain
 from ..inverse import opw_recognition, recognition
-from ..inverse.calibrated import CalibratedArm
 from ..inverse.five_axis import is_five_axis
+from ..inverse.recognition import CalibratedArm
 from ..inverse.serial_arm import SerialArm
 from .collision import collision
 from .read import Description, Urdf

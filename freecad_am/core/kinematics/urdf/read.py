@@ -19,8 +19,7 @@ from ...geometry.located import is_there, locate
 from ...issues import InputError, Text
 from ...types import Array
 from ..chain import Chain
-from ..links.bodies import Pieces
-from ..links.shape import FORMATS, LinkShape
+from ..links.bodies import FORMATS, LinkShape, Pieces
 from . import elements as urdf_xml
 from .elements import CODE, Element
 

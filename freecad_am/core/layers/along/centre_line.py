@@ -15,13 +15,125 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import spsolve
 
 from ...geometry.angles import TURN
-from ...geometry.mesh.facets import doubled_areas
+from ...geometry.curves.guide import fit_guide
+from ...geometry.formatting import place
+from ...geometry.mesh.collapsed import doubled_areas
 from ...geometry.mesh.refined import Edges
 from ...geometry.mesh.solid import SolidMesh
 from ...geometry.obstacles import Body
-from ...issues import InputError, Text
+from ...geometry.on_hub import Base, Group, SolidsOnHub, upright
+from ...issues import NOTE, InputError, Issue, Text
+from ...parameters.filled import SolidParameters
 from ...types import Array, Index
-from .guide_edges import Nodes
+from ..planes.stacking import prepare_stack
+
+TOUCHING = 1e-3  # mm between the ends of edges that meet
+CORNER_RAD = np.radians(1.0)
+MIN_LENGTH_MM = 1e-3  # mm; shorter edges, and guides, are none
+MAX_TURN_RAD = np.radians(120.0)  # a corner that turns by more leads back
+WHERE = "strategy.guide"
+
+
+class Nodes(NamedTuple):
+    """Points (n, 3) mm of a curve and unit vectors (n, 3) along it."""
+
+    points: Array
+    tangents: Array
+
+    def reversed(self) -> Nodes:
+        """The same the other way."""
+        return Nodes(self.points[::-1], -self.tangents[::-1])
+
+
+def chain_edges(edges: Sequence[Nodes]) -> Nodes:
+    """Return one curve of edges in any order and direction; it runs as the first given edge
+    does.
+
+    Raises InputError GUIDE_OPEN, GUIDE_CLOSED, GUIDE_CORNER, GUIDE_DOUBLES_BACK.
+    """
+    remaining = [
+        edge
+        for edge in edges
+        if np.linalg.norm(np.diff(edge.points, axis=0), axis=1).sum() > MIN_LENGTH_MM
+    ]
+    if not remaining:
+        raise InputError(
+            "GUIDE_OPEN",
+            WHERE,
+            "the guide has no edge with any length; choose edges, a wire or a sketch",
+        )
+    chain = [remaining.pop(0)]
+    while remaining:
+        ends = chain[0].points[0], chain[-1].points[-1]
+        match = next(
+            (
+                (k, behind, edge if straight else edge.reversed())
+                for k, edge in enumerate(remaining)
+                for behind, end in ((True, ends[1]), (False, ends[0]))
+                for straight in (True, False)
+                if np.linalg.norm(edge.points[0 if straight == behind else -1] - end) < TOUCHING
+            ),
+            None,
+        )
+        if match is None:
+            gap = min(
+                float(np.linalg.norm(edge.points[k] - end))
+                for edge in remaining
+                for k in (0, -1)
+                for end in ends
+            )
+            raise InputError(
+                "GUIDE_OPEN",
+                WHERE,
+                "its edges do not form one curve: {} of {} are disconnected, at {} and {}, and "
+                "the smallest gap is {:.3g} mm; choose edges that meet end to end",
+                len(remaining),
+                len(edges),
+                place(ends[0]),
+                place(ends[1]),
+                gap,
+            )
+        k, behind, edge = match
+        remaining.pop(k)
+        chain = [*chain, edge] if behind else [edge, *chain]
+    _refuse_corners(chain)
+    if np.linalg.norm(chain[0].points[0] - chain[-1].points[-1]) < TOUCHING:
+        raise InputError(
+            "GUIDE_CLOSED",
+            WHERE,
+            "it returns to its start, at {}, so the last layer would overlap the first; remove "
+            "one edge",
+            place(chain[0].points[0]),
+        )
+    return Nodes(
+        np.vstack([chain[0].points[:1], *(edge.points[1:] for edge in chain)]),
+        np.vstack([chain[0].tangents[:1], *(edge.tangents[1:] for edge in chain)]),
+    )
+
+
+def _refuse_corners(chain: Sequence[Nodes]) -> None:
+    for edge, next_edge in zip(chain, chain[1:]):
+        turn = float(np.arccos(np.clip(edge.tangents[-1] @ next_edge.tangents[0], -1.0, 1.0)))
+        position = place(next_edge.points[0])
+        if turn > MAX_TURN_RAD:
+            raise InputError(
+                "GUIDE_DOUBLES_BACK",
+                WHERE,
+                "it turns back by {:.4g} deg at {}: layers would cut through the deposit; choose "
+                "edges that lead forward",
+                np.degrees(turn),
+                position,
+            )
+        if turn > CORNER_RAD:
+            raise InputError(
+                "GUIDE_CORNER",
+                WHERE,
+                "it has a corner of {:.3g} deg at {}, where layers would have zero height on the "
+                "inside; round it with a radius, or choose guide: auto",
+                np.degrees(turn),
+                position,
+            )
+
 
 STEP_SHARE = 0.25  # of the size of a section, from one to the next
 REACH = 1.5  # of the size of the last section; what reaches farther from the middle belongs to another part of the solid
@@ -282,3 +394,67 @@ def _fit_line(middles: Array, start: _Plane, end: _Plane | None) -> tuple[CubicS
 def _evaluate(line: CubicSpline, positions: Array) -> tuple[Array, Array]:
     points, along = line(positions), line(positions, 1)
     return points, along / np.linalg.norm(along, axis=1, keepdims=True)
+
+
+MIN_RISE_SHARE = 1e-6  # of its length; a guide whose ends are no farther apart along the direction runs as it was chosen
+
+
+def prepare_guided(
+    bodies: Sequence[Body],
+    edges: Sequence[tuple[Array, Array]] | None,
+    strategy: SolidParameters,
+    label: str,
+    issues: tuple[Issue, ...] = (),
+) -> SolidsOnHub:
+    """Return the bodies along a guide of edges, by default their centre line, which a note then
+    reports.
+
+    edges: points and unit tangents (n, 3) of each. The guide begins at the end that is lower
+    along `strategy.direction`; the frame has its Z along the guide at the first layer. Raises
+    the InputErrors of `chain_edges` and `centre_line`.
+    """
+    standing = prepare_stack(bodies, strategy, label, issues)
+    direction = standing.groups[0].base.frame[:3, 2]
+    all_issues = standing.issues
+    nodes = None if edges is None else chain_edges([Nodes(*edge) for edge in edges])
+    if nodes is None:
+        nodes = centre_line(
+            bodies, standing.groups[0].base.frame[:3, 3], direction, 0.5 * strategy.layer_height
+        )
+        all_issues = (*all_issues, _note(nodes, label))
+    elif (nodes.points[-1] - nodes.points[0]) @ direction < -MIN_RISE_SHARE * np.linalg.norm(
+        nodes.points[-1] - nodes.points[0]
+    ):
+        nodes = nodes.reversed()
+    full_guide = fit_guide(*nodes)
+    start = float(min(full_guide.distance(body.vertices).min() for body in bodies))
+    origin, z = (rows[0] for rows in full_guide.at(np.array([start])))
+    frame = upright(origin, z)
+    local = fit_guide(
+        (nodes.points - origin) @ frame[:3, :3],
+        nodes.tangents @ frame[:3, :3],
+        np.array([1.0, 0.0, 0.0]),
+        start,
+    )
+    base = Base("the guide", local, frame)
+    return SolidsOnHub(label, (Group(base, tuple(bodies)),), strategy.chord_error, (), all_issues)
+
+
+def _note(nodes: Nodes, label: str) -> Issue:
+    length = float(np.linalg.norm(np.diff(nodes.points, axis=0), axis=1).sum())
+    turn = np.degrees(
+        np.arccos(np.clip((nodes.tangents[1:] * nodes.tangents[:-1]).sum(axis=1), -1.0, 1.0)).sum()
+    )
+    return Issue(
+        NOTE,
+        "GUIDE",
+        Text(
+            "layers of {} are normal to its centre line, {:.4g} mm from {} to {}, turning by "
+            "{:.3g} deg in total",
+            label,
+            length,
+            place(nodes.points[0]),
+            place(nodes.points[-1]),
+            turn,
+        ),
+    )

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 from ...types import Array
 from ..curved.geodesic import GeodesicField
-from .chart import Place
-from .charted import Charted
+from .chart import Charted, Place
 
 CHORD = 1.0  # steps of the grid between tests of an edge
 

@@ -18,7 +18,15 @@ from ..charts.layer import ChartLayer
 from ..surface import Slice
 from . import geodesic
 from .geodesic import GeodesicField
-from .grid import COARSE, step_of
+
+FINE, COARSE = 0.4, 0.8  # layer heights from node to node: as a rule, at most
+MAX_NODES = 2_000_000  # nodes, where that keeps below COARSE
+
+
+def step_of(volume: float, layer_height: float) -> float:
+    """Mm from node to node for solids of a volume, mm3."""
+    return max(FINE * layer_height, float(np.cbrt(volume / MAX_NODES)))
+
 
 CONTACT_HEIGHTS = (
     0.05  # layer heights from the plane or the substrate; facets this near to it are on it

@@ -25,10 +25,8 @@ from ...geometry.walls.surface import dot
 from ...issues import InputError
 from ...parameters.filled import CladdingParameters
 from ...types import Array
-from ..charts.chart import Chart, Place
-from ..charts.charted import Charted, axes
-from ..charts.flattening import flatten
-from ..charts.parted import borders, split_flattenable, stretch_of
+from ..charts.chart import Chart, Charted, Place, axes
+from ..charts.parted import borders, flatten, split_flattenable, stretch_of
 from ..margins import BORDER
 from ..surface import Slice
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,10 +18,63 @@ from ...geometry.step_count import round_up
 from ...issues import InputError, Issue
 from ...parameters.filled import SolidParameters
 from ...slicing.solids.plane_sections import PlaneCuts
-from ...types import Array
+from ...types import Array, Index
 from ..margins import sections
-from ..surface import Slice
-from .layer import PlaneLayer
+from ..surface import Slice, Wrapped
+
+
+class Flat:
+    """The part of `LayerSurface` that is the same for every plane."""
+
+    @property
+    def period(self) -> None:
+        """Nothing goes round it."""
+        return None
+
+    @property
+    def bends_freely(self) -> bool:
+        """It does not bend."""
+        return False
+
+    def plane_rotation(self, azimuth: float) -> float:
+        """Return 0: the plane has only one orientation."""
+        return 0.0
+
+    def pieces(self, flat: Array, chord_error: float) -> Index:
+        """Chords are where they were."""
+        return np.ones(len(flat) - 1, dtype=np.intp)
+
+
+@dataclass(frozen=True)
+class PlaneLayer(Flat):
+    """The plane at a height (mm) along the Z of its frame, with the x and y of the frame. As
+    `LayerSurface`.
+    """
+
+    height: float
+
+    def unroll(self, points: Array) -> Array:
+        """(n, 2) mm."""
+        return points[:, :2].copy()
+
+    def wrap(self, flat: Array) -> Wrapped:
+        """Every point as it is, at the height."""
+        count = len(flat)
+        points = np.column_stack([flat, np.full(count, self.height)])
+        return Wrapped(points, np.tile([0.0, 0.0, 1.0], (count, 1)), np.zeros(count))
+
+    def heights(self, flat: Array) -> None:
+        """The layer height everywhere."""
+
+    def for_sheet(self, flat: Array, sheet: float) -> PlaneLayer:
+        """Return the same plane."""
+        return self
+
+    def axes(self, normals: Array) -> tuple[Array, Array]:
+        """The x and y of the plane."""
+        count = len(normals)
+        return np.tile([1.0, 0.0, 0.0], (count, 1)), np.tile([0.0, 1.0, 0.0], (count, 1))
+
 
 CLEARANCE_SHARE = 0.02  # of the chord error, mm, minimum; clearance of a plane from faces in it
 ROUNDING = 4e-7  # of the extent of the body: rounding of vertices stored as 32-bit numbers

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...collision.inside import inside_of
 from ...geometry.columns import columns
-from ...geometry.mesh.facets import doubled_areas
+from ...geometry.mesh.collapsed import doubled_areas
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base, Group, SolidsOnHub, upright
 from ...geometry.plane import Plane

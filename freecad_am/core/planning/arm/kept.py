@@ -13,8 +13,7 @@ from ...geometry.cylinders import Cylinder
 from ...geometry.obstacles import Body
 from ...issues import ERROR, Issue, Text, Word
 from ...kinematics.cell import Cell
-from ...kinematics.links.contact import BASE, PART, TORCH, ArmContact, Touches
-from ...kinematics.links.nozzle_body import NOZZLE
+from ...kinematics.links.contact import BASE, NOZZLE, PART, TORCH, ArmContact, Touches
 from ...toolpath import Bead, Toolpath
 from ...types import Array, Index, Mask
 from ..points import Points

@@ -10,7 +10,7 @@ from ...kinematics import jacobian as jac
 from ...types import Array, Index
 from ..points import Points
 from ..task import Task
-from .cells import CELLS, divided, possible, whole_turn
+from .lattice import CELLS, divided, possible, whole_turn
 
 LEVELS = 4
 BOUND_TOLERANCE = 1e-3  # share of a point's value at which its bound is near enough

@@ -22,9 +22,8 @@ from ...types import Array
 from ..joint_path import BeadPath, JointPath
 from ..task import Parts
 from ..turns.unwrap import is_otherwise, seam_notes
-from . import courses, stroke
-from .courses import directions_on_face, middle
-from .stroke import ROUNDING
+from . import stroke
+from .stroke import ROUNDING, directions_on_face, middle
 
 Place = tuple[int, int]
 Levelled = tuple[list[Bead], list[Place], list[Issue]]
@@ -215,7 +214,7 @@ def _standing_all(
 
 def _standing(external: ExternalAxes, cell: Cell, direction: Array, previous: Array) -> Array:
     """Values (k,) with a direction (3,) upright, the nearest to those before."""
-    return np.asarray(courses.chosen(cell, courses.upright(external, direction[None]), previous)[0])
+    return np.asarray(stroke.chosen(cell, stroke.upright(external, direction[None]), previous)[0])
 
 
 def _follow_directions(
@@ -231,4 +230,4 @@ def _follow_directions(
         if float(tilt_from(external.upright(directions, values), external.up).max()) <= max_lean:
             return values
         return np.tile(_standing(external, cell, mean_direction, previous), (len(directions), 1))
-    return courses.chosen(cell, courses.upright(external, directions), previous)
+    return stroke.chosen(cell, stroke.upright(external, directions), previous)

@@ -14,7 +14,7 @@ import numpy as np
 from ...geometry import frames
 from ...geometry.obstacles import enclosed_volume
 from ...issues import Text
-from ...kinematics import external, offered
+from ...kinematics import external
 from ...kinematics.arrangement import arrangement_of
 from ...kinematics.machines import machine as machines
 from ...kinematics.machines.machine import Machine
@@ -80,7 +80,7 @@ def added(
         radius = float(
             np.linalg.norm((points @ to_part[:3, :3].T + to_part[:3, 3])[:, :2], axis=1).max()
         )
-        for suited in offered.positioners(robot, mass, radius, folders)[:MAX_POSITIONERS]:
+        for suited in external.positioners(robot, mass, radius, folders)[:MAX_POSITIONERS]:
             face = _face(suited, (0.0,) * 6)
             for position in _before(robot, platform[:2], float(face[2]))[:3]:
                 x, y, _ = position - face
@@ -98,7 +98,7 @@ def added(
         return
     along = frames.bryant(settings.deposition_point)[:3, :3][:, longest]
     turn = math.atan2(along[1], along[0]) if math.hypot(along[0], along[1]) > 0.5 else 0.5 * math.pi
-    for track in offered.tracks(robot, folders)[:1]:
+    for track in external.tracks(robot, folders)[:1]:
         height = float(track.chain.forward(np.zeros(1))[2, 3])
         mechanism = External(track.id, (0.0, 0.0, -height, 0.0, 0.0, turn), ROBOT)
         yield (

@@ -17,10 +17,10 @@ from ...types import Array
 from ..arm import clear as arm_clear
 from ..joint_path import BeadPath
 from ..points import Points, gather
-from ..rotation import elsewhere, given, refine, search, ties
-from ..rotation.evaluation import evaluate_paths
+from ..rotation import given, refine, search
+from ..rotation.refine import evaluate_paths
 from ..task import MIN_MARGIN, Task
-from ..turns import fit
+from ..turns import unwrap
 
 Progress = Callable[[float, str], None]
 Place = tuple[int, int]
@@ -46,7 +46,7 @@ def plan(
         else ([], {})
     )
     of_bead = dict(zip(free, paths)) | given.paths(task, beads, bead_ids, fixed)
-    together, issues = fit.put_in(
+    together, issues = unwrap.put_in(
         task,
         [of_bead[k] for k in range(len(beads))],
         {free[k]: replacements for k, replacements in helped.items()},
@@ -73,7 +73,7 @@ def _searched(
     start = candidates.coefficients[best, bead_rows]
     # a bead that no rotation serves from its own seam may do from another: cheaper to try than a local search
     hopeless = [int(k) for k in np.flatnonzero(candidates.margin[best, bead_rows] < 0.0)]
-    roomy = fit.for_beads(task, [beads[k] for k in hopeless], [bead_ids[k] for k in hopeless])
+    roomy = unwrap.for_beads(task, [beads[k] for k in hopeless], [bead_ids[k] for k in hopeless])
     helped = {k: paths for k, paths in zip(hopeless, roomy) if paths is not None}
     starts = _add_other_turns(start, candidates) if joined.any() else start[None]
     starts[1:, ~joined] = np.nan
@@ -92,7 +92,7 @@ def _searched(
     )
     progress(0.7, "settling")
     paths = _resolved(task, beads, bead_ids, (coarse, coarse_threshold), (full, threshold), refined)
-    retried = elsewhere.replace_infeasible(
+    retried = search.replace_infeasible(
         task,
         beads,
         bead_ids,
@@ -134,7 +134,7 @@ def _searched(
         {
             k: replacements
             for k, replacements in zip(
-                late, fit.for_beads(task, [beads[k] for k in late], [bead_ids[k] for k in late])
+                late, unwrap.for_beads(task, [beads[k] for k in late], [bead_ids[k] for k in late])
             )
             if replacements is not None
         }
@@ -152,9 +152,9 @@ def _resolved(
 ) -> list[BeadPath]:
     """The paths of all beads with the ties of their optima resolved. coarse, full: few and all of their points, with the
     conditions asked for there."""
-    resolved = ties.resolve(task, *coarse, refined.coefficients)
+    resolved = search.resolve(task, *coarse, refined.coefficients)
     paths = evaluate_paths(task, beads, bead_ids, *full, resolved, refined)
-    equal = ties.as_good(task, [path.objective for path in paths], refined.objective)
+    equal = search.as_good(task, [path.objective for path in paths], refined.objective)
     if equal.all() and all(path.margin >= MIN_MARGIN for path in paths):
         return paths
     # ties are resolved at few points of a bead: where all of them say otherwise, the optimum stays as it was found

@@ -18,9 +18,8 @@ from ...issues import Issue
 from ...toolpath import Bead
 from ...types import Array, Index
 from ..joint_path import BeadPath
-from ..limit_rows import UNREACHABLE
 from ..points import Points, gather, unwrapped
-from ..task import Task, condition_margin
+from ..task import UNREACHABLE, Task, condition_margin
 from .constant import bead_paths
 
 Progress = Callable[[float, str], None]

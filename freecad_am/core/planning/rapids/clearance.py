@@ -16,9 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...collision.bead_ends import BeadEnds, Beads, Size
-from ...collision.bodies import Bodies
-from ...collision.nozzle import Nozzle
-from ...collision.scene import scene
+from ...collision.scene import Bodies, Nozzle, scene
 from ...geometry.obstacles import Body, disc
 from ...geometry.step_count import step_counts
 from ...kinematics.cell import Cell

@@ -10,14 +10,66 @@ are always the same, without randomness, so that the same job has the same rapid
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from ...geometry.obstacles import Body
 from ...geometry.spread import spread_points
+from ...kinematics.cell import Cell
 from ...program import SHORTEST_RAPID
+from ...toolpath import Bead
 from ...types import Array, Index, Mask
+from ..reserve import RESERVE
+from .clearance import Moves
+from .retracts import DIRECTIONS, STRAY_MM, Leg, Retracts
+
+# how many times the retract distance is tried where the nozzle would meet something, and further, beyond everything there is
+RETRACT_FACTORS = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
+EXTENSION_FACTOR = 1.5
+# of a retract distance of nothing, mm
+FIRST_RETRACT = 2.0
+# how near to the straight line a retract is held that meets something on its way, mm
+FINE_MM = 0.02
+# retract distances in directions other than the tool axis, as shares of the one asked for
+SIDE_SHARES = (1.0, 4.0)
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """Height (mm) and direction of a retract, and how near (mm) it is held to the line."""
+
+    height: float
+    direction: int = 0
+    tolerance: float = STRAY_MM
+
+
+def attempts(
+    cell: Cell, retract: float, beads: Sequence[Bead], bodies: Sequence[Body]
+) -> list[Attempt]:
+    """Return the retracts to try after the requested one, up to where the nozzle is beyond the sphere
+    about all obstacles.
+    """
+    radius = 0.5 * cell.platform_diameter
+    x, y, origin = cell.mount[:3, 0], cell.mount[:3, 1], cell.mount[:3, 3]
+    platform = [origin + radius * (a * x + b * y) for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
+    all_ = (*bodies, *cell.in_part())
+    points = np.vstack(
+        [*(bead.points for bead in beads), platform, *(body.vertices for body in all_)]
+    )
+    # from anywhere inside, a way of the diameter along any direction leads out of it
+    furthest = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
+    base = retract or FIRST_RETRACT
+    heights = [*([] if retract else [base]), *(factor * base for factor in RETRACT_FACTORS)]
+    while heights[-1] < furthest:
+        heights.append(min(EXTENSION_FACTOR * heights[-1], furthest))
+    return [
+        *([Attempt(retract, 0, FINE_MM)] if retract else []),
+        *(Attempt(height) for height in heights),
+        *(Attempt(share * base, direction) for direction in DIRECTIONS for share in SIDE_SHARES),
+    ]
+
 
 Free = Callable[
     [Array, Array], Mask
@@ -190,3 +242,134 @@ def _shorten_by_pulling(route: Array, ranges: Ranges, free: Free, fits: Fits) ->
         pulled_route.append(layer[position])
         position = 0 if choice is None else int(choice[position])
     return np.array(pulled_route[::-1])
+
+
+# largest turn of an endless axis in one rapid move, rad: such an axis takes the shorter way, so half a turn is in doubt
+LARGEST_TURN = np.radians(170.0)
+MAX_FAILED_DETOURS = 3  # ways for which none is found, after which no more are looked for: looking takes seconds, and the job is none
+KNOWN = 8  # ways found before that are tried first
+
+Legs = dict[int, Leg | None]
+
+
+class LedRound:
+    """Finds ways round. clear: whether nothing is met on moves. ways: the numbers of those that are led round."""
+
+    def __init__(self, cell: Cell, retracts: Retracts, clear: Callable[[Moves], Mask]) -> None:
+        self.cell, self.retracts, self.clear = cell, retracts, clear
+        self.ways: list[int] = []
+        self._lost = 0
+        self._known: list[
+            Array
+        ] = []  # places of the last ways found, there and back: the next one often leads the same way
+
+    def find_detour(
+        self,
+        ends: Mapping[int, Array],
+        legs: Mapping[int, Leg | None],
+        attempts: Sequence[Attempt],
+        deposited: int,
+    ) -> tuple[Legs, Array] | None:
+        """Return legs off the ends of beads, with the joints (axes,) at the ends by their number, and the via
+        points (m, axes) of a path between them, with `deposited` points printed; None without one. legs:
+        the legs tried before.
+        """
+        if not ends or self._lost >= MAX_FAILED_DETOURS:
+            return None
+        new_legs: Legs = {}
+        far_ends: list[Array] = []
+        for end, joints in ends.items():
+            off = self._find_leg(end, joints, legs[end], attempts, deposited)
+            if off is not None:
+                new_legs[end] = off[0]
+                far_ends.append(off[1])
+        via_points = (
+            self._between(far_ends[0], far_ends[1], deposited)
+            if len(far_ends) == len(ends)
+            else None
+        )
+        if via_points is None:
+            self._lost += 1
+            return None
+        self._known = [via_points, via_points[::-1], *self._known][:KNOWN]
+        return new_legs, via_points
+
+    def _find_leg(
+        self,
+        end: int,
+        joints: Array,
+        tried_leg: Leg | None,
+        attempts: Sequence[Attempt],
+        deposited: int,
+    ) -> tuple[Leg | None, Array] | None:
+        """Return a clear leg off the end of a bead, None where it needs none, and its far joints; None without
+        any.
+        """
+        if tried_leg is None and self._clear(joints[None], joints[None], deposited)[0]:
+            return None, joints
+        for leg in self._others(end, tried_leg, attempts):
+            rows = np.vstack([joints, leg.joints])
+            if self._clear(rows[:-1], rows[1:], deposited).all():
+                return leg, leg.joints[-1]
+        return None
+
+    def _others(
+        self, end: int, tried_leg: Leg | None, attempts: Sequence[Attempt]
+    ) -> Iterator[Leg]:
+        """The leg tried before, and those of all attempts."""
+        if tried_leg is not None:
+            yield tried_leg
+        for attempt in attempts:
+            legs, _ = self.retracts.find_legs(
+                np.array([end]),
+                np.array([attempt.height]),
+                attempt.direction,
+                attempt.tolerance,
+                thorough=False,
+            )
+            if legs[0] is not None:
+                yield legs[0]
+
+    def _between(self, start: Array, goal: Array, deposited: int) -> Array | None:
+        """The places of a way round."""
+        for via_points in self._known:
+            route = np.vstack([start, via_points, goal])
+            if self._clear(route[:-1], route[1:], deposited).all():
+                return via_points
+        return way_round(
+            start,
+            goal,
+            self._ranges(start, goal),
+            lambda a, b: self._clear(a, b, deposited),
+            self._fits,
+        )
+
+    def _clear(self, start: Array, end: Array, deposited: int) -> Mask:
+        """(k,) whether moves can be driven, and meet nothing."""
+        continuous = self.cell.limits.continuous
+        short: Mask = (np.abs(end - start)[:, continuous] <= LARGEST_TURN).all(axis=1)
+        rows = np.flatnonzero(short)
+        short[rows] = self.clear(
+            Moves(start[rows], end[rows], np.full(len(rows), deposited, dtype=np.intp))
+        )
+        return short
+
+    def _ranges(self, start: Array, goal: Array) -> Ranges:
+        """Robots move within their limits, axes without end half a turn further than both ends, external axes no
+        further than from one to the other."""
+        limits, robot_axes = self.cell.limits, self.cell.robot.chain.axes
+        lowest, highest = np.minimum(start, goal), np.maximum(start, goal)
+        reserve = self.retracts.reserve_of_limits(RESERVE)[: limits.axes]
+        low = np.where(limits.continuous, lowest - np.pi, limits.lower + reserve)
+        high = np.where(limits.continuous, highest + np.pi, limits.upper - reserve)
+        low[robot_axes:], high[robot_axes:] = lowest[robot_axes:], highest[robot_axes:]
+        return Ranges(low, high, self.cell.machine.max_speed)
+
+    def _fits(self, joints: Array) -> Mask:
+        """(k,) whether joints keep limits and condition, and are of the configuration of the beads."""
+        fits = self.retracts.fits(joints[:, None], self.retracts.reserve_of_limits(RESERVE))
+        arm, branch = self.cell.robot.arm, self.retracts.branch
+        rows = np.flatnonzero(fits)
+        if branch is not None and arm is not None and len(rows):
+            fits[rows] = arm.branch_of(joints[rows, : self.cell.robot.chain.axes]) == branch
+        return fits

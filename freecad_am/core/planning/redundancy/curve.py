@@ -20,7 +20,7 @@ from ..findings import ROUNDING, findings
 from ..joint_path import BeadPath
 from ..plan import METHODS
 from ..points import Points, gather, steps
-from ..rotation import basis
+from ..rotation import refine_state
 from ..task import Task
 
 Progress = Callable[[float, str], None]
@@ -142,7 +142,7 @@ def handles(task: Task, points: Points, bead: int, degree: int) -> Array:
     """(n,) parameters of a bead at which its polynomial is taken hold of: as many as it has freedoms."""
     bead_points, _ = points.only(bead)
     low, high = (float(end[0]) for end in bead_points.ends)
-    count = int(np.abs(basis.changes(task, bead_points, degree)[0]).any(axis=0).sum())
+    count = int(np.abs(refine_state.changes(task, bead_points, degree)[0]).any(axis=0).sum())
     if count == 1:
         return np.array([0.5 * (low + high)])
     # the end of a bead that joins up is its start
@@ -155,7 +155,7 @@ def pull(task: Task, points: Points, bead: int, degree: int, handle: int) -> Arr
     they are; a closed bead that has to join up still does."""
     bead_points, _ = points.only(bead)
     parameters = handles(task, points, bead, degree)
-    free = basis.changes(task, bead_points, degree)[0]
+    free = refine_state.changes(task, bead_points, degree)[0]
     free = free[:, np.abs(free).any(axis=0)]
     unit_change = np.where(np.arange(len(parameters)) == handle, 1.0, 0.0)
     return np.asarray(

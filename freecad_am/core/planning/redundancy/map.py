@@ -15,8 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...collision import nozzle as nozzles
-from ...collision.scene import scene
+from ...collision.scene import depositing, scene
 from ...geometry import frames
 from ...geometry.angles import TURN, shortest
 from ...geometry.obstacles import Body, disc
@@ -25,9 +24,8 @@ from ...kinematics.links.contact import ArmContact
 from ...toolpath import Bead
 from ...types import Array, Index, Mask
 from ..findings import ROUNDING
-from ..limit_rows import UNREACHABLE, LimitRows
 from ..points import Points
-from ..task import Task, append_external
+from ..task import UNREACHABLE, LimitRows, Task, append_external
 
 RZ, ROTATION = "rz", "rotation"
 ROWS, MAX_COLUMNS = 181, 300
@@ -340,7 +338,79 @@ def _touching(cell: Cell, points: Points, bodies: Sequence[Body]) -> Mask:
     if not around:
         return np.zeros(len(points), dtype=bool)
     slope = float(np.tan(cell.nozzle.half_angle))
-    nozzle = nozzles.depositing(0.5 * cell.nozzle.diameter, slope, cell.nozzle.length, 0.0)
+    nozzle = depositing(0.5 * cell.nozzle.diameter, slope, cell.nozzle.length, 0.0)
     return scene(around, points.position, nozzle.reach).find_touching(
         nozzle, points.position, points.tool
     )
+
+
+def across(
+    beads: Sequence[Bead], cell: Cell, bead_point: tuple[int, int], axis: int, values: Array
+) -> Columns:
+    """One point of the beads, at (bead, point), with values (C,) rad or mm of one of the external axes, the others as they
+    are planned there: a column of each."""
+    return _columns_with_external(beads, cell, bead_point, (axis,), (values,))
+
+
+def across_two_axes(
+    beads: Sequence[Bead],
+    cell: Cell,
+    bead_point: tuple[int, int],
+    axes: tuple[int, int],
+    values: tuple[Array, Array],
+) -> Columns:
+    """One point of the beads, at (bead, point), with all pairs of values (C,) and (R,), rad or mm, of two external axes, the
+    others as they are planned there: R rows of C columns, one row after the other."""
+    across, up = np.meshgrid(*values)
+    return _columns_with_external(beads, cell, bead_point, axes, (across.ravel(), up.ravel()))
+
+
+def in_rows(picture: Picture, rows: int) -> Picture:
+    """A picture (1, R C) of pairs as one (R, C)."""
+    return dataclasses.replace(
+        picture,
+        margin=picture.margin.reshape(rows, -1),
+        condition=picture.condition.reshape(rows, -1),
+        threshold=picture.threshold.reshape(rows, -1),
+        outside=picture.outside.reshape(rows, -1),
+        forbidden=picture.forbidden.reshape(rows, -1),
+        arm=None if picture.arm is None else picture.arm.reshape(rows, -1),
+    )
+
+
+def _columns_with_external(
+    beads: Sequence[Bead],
+    cell: Cell,
+    bead_point: tuple[int, int],
+    axes: tuple[int, ...],
+    values: tuple[Array, ...],
+) -> Columns:
+    """One point with external axes elsewhere: each at values (n,)."""
+    bead, point = bead_point
+    count = len(values[0])
+    external = np.tile(planned_external(beads[bead])[point], (count, 1))
+    for axis, value in zip(axes, values, strict=True):
+        external[:, axis] = value
+    position, tool, parameter = (
+        np.repeat(getattr(beads[bead], name)[point : point + 1], count, axis=0)
+        for name in ("points", "tool", "parameter")
+    )
+    return Columns(
+        np.full(count, bead),
+        np.full(count, point),
+        single_points(cell, position, tool, parameter, external),
+    )
+
+
+def span(task: Task, bead: Bead, point: int, axis: int, count: int) -> Array:
+    """(count,) values of an external axis over its range, or over a turn about where it is planned at a point, if that is
+    less."""
+    machine_axis = task.cell.robot.chain.axes + axis
+    planned_value = float(planned_external(bead)[point, axis])
+    low, high = (
+        float(task.cell.limits.lower[machine_axis]),
+        float(task.cell.limits.upper[machine_axis]),
+    )
+    if not task.cell.machine.chain.sliding[machine_axis]:
+        low, high = max(low, planned_value - np.pi), min(high, planned_value + np.pi)
+    return np.linspace(low, high, count)

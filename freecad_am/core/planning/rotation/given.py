@@ -14,7 +14,7 @@ from ..joint_path import BeadPath
 from ..points import gather
 from ..task import Task
 from . import refine
-from .evaluation import evaluate_paths
+from .refine import evaluate_paths
 
 Place = tuple[int, int]
 

@@ -7,7 +7,7 @@ through SLSQP one by one.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,11 +15,67 @@ import numpy as np
 
 from ...geometry.ties import is_tied
 from ...kinematics import jacobian as jac
+from ...toolpath import Bead
 from ...types import Array, Integers, Mask
-from ..points import Points
-from ..task import Task
-from . import basis, feasible
+from .. import criteria
+from ..joint_path import BeadPath
+from ..points import Points, whole_turns
+from ..task import Task, condition_margin
+from . import refine_state
 from .refine_state import State, slopes_of, state_of, values_of
+
+# values (r,) of the constraints at all points, kept where >= 0, and their derivatives (r, k); None where unreachable
+Constraints = Callable[[Array], "tuple[Array, Array] | None"]
+
+REACH = 0.3  # of a first step, rad of the polynomial
+MIN_STEP_RAD = 1e-5  # rad, of a step worth trying
+SUFFICIENT_SLACK = 1e-3  # by how much constraints are wanted to be kept
+GAIN = 1e-6  # of the worst constraint, less than which ends the search
+STEPS = 40
+MOST_ROWS = 600
+
+
+def approached(constraints: Constraints, start: Array) -> Array:
+    """x (k,) at which the worst constraint is as good as steps from the start (k,) make it, or good enough."""
+    from scipy.optimize import (
+        linprog,  # slow to import, and most jobs on parts of revolution never need it
+    )
+
+    x, reach, current = start, REACH, constraints(start)
+    for _ in range(STEPS):
+        if current is None or reach < MIN_STEP_RAD:
+            return x
+        value, rate = current
+        worst = float(value.min())
+        if worst >= SUFFICIENT_SLACK:
+            return x
+        # rows that cannot become the worst within reach are left out
+        lowest = value - reach * np.abs(rate).sum(axis=1)
+        rows = np.flatnonzero(lowest < max(SUFFICIENT_SLACK, float(value.min())) + GAIN)
+        rows = rows[np.argsort(lowest[rows], kind="stable")[:MOST_ROWS]]
+        k = len(x)
+        # the largest t <= SUFFICIENT_SLACK with value + rate step >= t
+        solved = linprog(
+            np.r_[np.zeros(k), -1.0],
+            A_ub=np.c_[-rate[rows], np.ones(len(rows))],
+            b_ub=value[rows],
+            bounds=[(-reach, reach)] * k + [(None, SUFFICIENT_SLACK)],
+            method="highs",
+        )
+        if solved.x is None or solved.x[-1] < worst + GAIN:
+            return x
+        trial = constraints(x + solved.x[:k])
+        hoped, got = (
+            solved.x[-1] - worst,
+            -np.inf if trial is None else float(trial[0].min()) - worst,
+        )
+        if got > 0.1 * hoped:
+            x, current = x + solved.x[:k], trial
+            reach *= 2.0 if got > 0.7 * hoped else 1.0
+        else:
+            reach = 0.25 * min(reach, float(np.abs(solved.x[:k]).max()))
+    return x
+
 
 # by how little a constraint may be violated and count as kept: limits and condition have reserves many times as wide
 CONSTRAINT_TOLERANCE = 4e-7
@@ -73,7 +129,7 @@ def refine(
     coefficients, objective = starts[0].copy(), initial.objective.copy()
     reasons = [STATIONARY] * points.beads
     iterations = [0] * points.beads
-    directions = basis.changes(task, points, starts.shape[2] - 1)
+    directions = refine_state.changes(task, points, starts.shape[2] - 1)
     pending = np.flatnonzero(~finished)
     for number, bead in enumerate(pending):
         report(number / len(pending))
@@ -193,7 +249,7 @@ def _brought_in(
     bead: _Bead, current: Array, free: Array, worth: tuple[float, float]
 ) -> tuple[Array, tuple[float, float]]:
     """Return coefficients that violate the limits less than `current`, if there are any, and their worth."""
-    nearer = current + free @ feasible.approached(
+    nearer = current + free @ approached(
         lambda x: bead.constraints(current + free @ x, free), np.zeros(free.shape[1])
     )
     new_worth = bead.rank_solution(nearer)
@@ -317,3 +373,52 @@ def _at_all_points(
     shape = points.powers(coefficients.shape[1] - 1) @ free
     rate = (np.nan_to_num(slope)[:, :, None] * shape).reshape(-1, free.shape[1])
     return np.nan_to_num(value, nan=-1.0).ravel(), rate
+
+
+Place = tuple[int, int]
+
+
+def evaluate_paths(
+    task: Task,
+    beads: Sequence[Bead],
+    bead_ids: Sequence[Place],
+    points: Points,
+    threshold: Array,
+    coefficients: Array,
+    refined: Refined,
+) -> list[BeadPath]:
+    """Return the paths of all beads for given coefficients (B, degree + 1), evaluated at all their points."""
+    phi, _ = task.rotation(points, points.polynomial(coefficients))
+    joints = task.joints(points, phi)
+    condition = task.condition(points, phi, joints)
+    matrix = None
+    if task.parameters.objective not in criteria.JOINT_ONLY and np.isfinite(joints).all():
+        matrix = task.jacobian_at(points.frames, phi, joints)
+    objective = (
+        criteria.value(task, points, joints, matrix)
+        if matrix is not None or task.parameters.objective in criteria.JOINT_ONLY
+        else np.full(points.beads, np.nan)
+    )
+    margin = points.worst(
+        np.minimum(task.rows.margin(joints), condition_margin(condition, threshold))
+    )
+    ends = np.append(points.first, len(points))
+    # like the joints: on a bead of few points a steep polynomial makes whole turns between two points, the same at both
+    turned = phi - whole_turns(np.diff(phi), points)
+    return [
+        BeadPath(
+            layer,
+            index,
+            bead,
+            turned[a:b],
+            joints[a:b],
+            condition[a:b],
+            threshold[a:b],
+            float(objective[k]),
+            float(margin[k]),
+            coefficients[k],
+            refined.reason[k],
+            refined.iterations[k],
+        )
+        for k, (bead, (layer, index), a, b) in enumerate(zip(beads, bead_ids, ends[:-1], ends[1:]))
+    ]

@@ -6,13 +6,42 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial import chebyshev, polynomial
 
 from ...kinematics import jacobian as jac
 from ...types import Array, Integers
 from .. import criteria
 from ..points import Points, in_pieces
 from ..task import Task
-from . import basis
+
+
+def changes(task: Task, points: Points, degree: int) -> Array:
+    """(B, degree + 1, degree + 1) per bead the coefficients, the constant first, of independent changes as columns.
+
+    They are Chebyshev polynomials over the bead's parameter, so that all are of the size of a rotation; the column that
+    would part the ends of a closed bead is zero.
+    """
+    joined = task.joined & points.closed
+    # most beads have their ends where others have them
+    ends, of_bead = np.unique(np.stack(points.ends, axis=1), axis=0, return_inverse=True)
+    result = np.stack([_chebyshev(low, high, degree) for low, high in ends])[of_bead]
+    if degree > 0:
+        result[joined, :, 3::2] -= result[joined, :, 1:2]
+        result[joined, :, 1] = 0.0
+    return result
+
+
+def _chebyshev(low: float, high: float, degree: int) -> Array:
+    """Columns T_0 .. T_degree of the parameter brought from low .. high to -1 .. 1."""
+    columns = np.zeros((degree + 1, degree + 1))
+    shift = np.array([-(high + low) / (high - low), 2.0 / (high - low)])
+    for j in range(degree + 1):
+        value = np.zeros(1)
+        for coefficient in chebyshev.cheb2poly(np.eye(degree + 1)[j])[::-1]:
+            value = polynomial.polyadd(polynomial.polymul(value, shift), [coefficient])
+        columns[: len(value), j] = value[: degree + 1]
+    return columns
+
 
 # share by which the condition stays above its threshold, so that an optimum on it does not fall below between the points
 CONDITION_RESERVE = 1e-3
@@ -182,7 +211,7 @@ def _predicted(
     Eq. 17 is a sum of squares, so its curvature is known (Gauss-Newton); for other objectives only the
     gradient is used.
     """
-    free = basis.changes(task, points, powers.shape[1] - 1)
+    free = changes(task, points, powers.shape[1] - 1)
     gradient = (gradient[:, None] @ free)[:, 0]
     if task.parameters.objective != "displacement":
         return np.asarray(np.linalg.norm(gradient, axis=1))

@@ -8,18 +8,23 @@ true condition only for what the bound leaves open.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import dataclasses
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...geometry.ties import first_most, index_of_minimum
+from ...geometry.angles import TURN, shortest
+from ...geometry.ties import first_most, index_of_minimum, is_tied
 from ...kinematics import jacobian as jac
-from ...types import Array, Index, Integers, Mask
+from ...toolpath import Bead
+from ...types import Array, ArrayLike, Index, Integers, Mask
 from .. import criteria
-from ..limit_rows import UNREACHABLE
-from ..points import Points, in_pieces, steps
-from ..task import Task, condition_margin
+from ..joint_path import BeadPath
+from ..points import Points, gather, in_pieces, steps
+from ..task import MIN_MARGIN, UNREACHABLE, Task, condition_margin
+from . import refine
+from .refine import evaluate_paths
 
 POINTS_PER_BEAD = 10
 OFFSETS = 24
@@ -247,3 +252,216 @@ def _screened_condition_margin(
         matrices.append(matrix[is_close])
     condition[undecided] = jac.condition(np.concatenate(matrices), length)
     return condition_margin(condition, threshold)
+
+
+COARSE, FINE = 72, 15
+# minimum separation of two different peaks of the margin, in coarse steps (30 deg)
+MIN_PEAK_SEPARATION_STEPS = 6
+# two objectives count as equal within this share, two margins within this distance (1 is the middle of a range)
+OBJECTIVE_TOLERANCE = 1e-6
+MAX_MARGIN_LOSS = 0.01
+
+
+def resolve(task: Task, points: Points, thresholds: Array, coefficients: Array) -> Array:
+    """(B, degree + 1) coefficients moved along their valley; unchanged where the optimum is the only one.
+
+    points may be thinned; coefficients (B, degree + 1) are the optimum found.
+    """
+    current = judge(task, points, thresholds, coefficients[None])
+    coarse = _offset_candidates(
+        coefficients,
+        np.broadcast_to(np.arange(COARSE)[:, None] * (TURN / COARSE), (COARSE, points.beads)),
+    )
+    rough = judge(task, points, thresholds, coarse, conditions=False)
+    flat = as_good(task, rough.objective, current.objective)
+    if not flat[1:].any():
+        return coefficients
+    rough = replace(rough, margin=np.where(flat, rough.margin, -np.inf))
+    around = _peaks(add_conditions(task, points, thresholds, rough, _are_peaks)) * (TURN / COARSE)
+    offsets = (around[:, None] + np.linspace(-1.0, 1.0, FINE)[:, None] * (TURN / COARSE)).reshape(
+        -1, points.beads
+    )
+    fine = judge(task, points, thresholds, _offset_candidates(coefficients, offsets))
+    flat = as_good(task, fine.objective, current.objective)
+    margin = np.where(flat, fine.margin, -np.inf)
+    chosen_ids = _least_motion(task, points, fine.coefficients, margin)
+    improved = ~is_tied(-current.margin[0], -margin[chosen_ids, np.arange(points.beads)])
+    return np.where(
+        improved[:, None], fine.coefficients[chosen_ids, np.arange(points.beads)], coefficients
+    )
+
+
+def as_good(task: Task, objective: ArrayLike, best: Array) -> Mask:
+    """Whether objectives count as equal to the best ones."""
+    good: Mask = (
+        np.asarray(objective) <= best * (1.0 + OBJECTIVE_TOLERANCE) + task.parameters.tolerance
+    )
+    return good
+
+
+def _are_peaks(margin: Array) -> Mask:
+    """(C, B) which candidates are `_peaks`."""
+    is_peak: Mask = (np.arange(COARSE)[:, None] == _peaks(margin)[:, None]).any(axis=0)
+    return is_peak
+
+
+def _peaks(margin: Array) -> Array:
+    """(2, B) coarse steps of the two highest peaks of the margin (C, B) around the turn that are different ones."""
+    highest = first_most(margin, axis=0)
+    separation = np.abs((np.arange(COARSE)[:, None] - highest + COARSE // 2) % COARSE - COARSE // 2)
+    second_highest = first_most(
+        np.where(separation >= MIN_PEAK_SEPARATION_STEPS, margin, -np.inf), axis=0
+    )
+    return np.stack([highest, second_highest]).astype(float)
+
+
+def _offset_candidates(coefficients: Array, offsets: Array) -> Array:
+    offset_coefficients = np.repeat(coefficients[None], len(offsets), axis=0)
+    offset_coefficients[:, :, 0] += offsets
+    return offset_coefficients
+
+
+def _least_motion(task: Task, points: Points, candidates: Array, margin: Array) -> Integers:
+    """Return the index (B,) of each bead's candidate: among those close to its largest margin, the
+    nearest to the previous bead.
+    """
+    start = _joints_at(task, points, candidates, points.first)
+    end = _joints_at(task, points, candidates, np.append(points.first[1:], len(points)) - 1)
+    chosen_ids = np.empty(points.beads, dtype=np.int64)
+    for bead in range(points.beads):
+        close = margin[:, bead] >= margin[:, bead].max() - MAX_MARGIN_LOSS
+        if bead == 0 or not np.isfinite(margin[:, bead].max()):
+            chosen_ids[bead] = first_most(margin[:, bead])
+            continue
+        step = start[:, bead] - end[chosen_ids[bead - 1], bead - 1]
+        step = shortest(step)
+        chosen_ids[bead] = index_of_minimum(np.where(close, (step * step) @ task.weights, np.inf))
+    return chosen_ids
+
+
+def _joints_at(task: Task, points: Points, candidates: Array, index: Integers) -> Array:
+    """(C, B, axes) joints at one point of each bead, zero where unreachable."""
+    bead_points = points.select_points(index)
+    value = np.stack([bead_points.polynomial(row) for row in candidates])
+    phi = np.stack([task.rotation(bead_points, row)[0] for row in value])
+    return np.nan_to_num(task.raw_joints(bead_points, phi))
+
+
+Place = tuple[int, int]
+
+LOW_CONDITION_RATIO = (
+    3.0  # times the condition asked for; from there it may fall short between two points
+)
+HALVINGS = 2  # halvings of each segment to check between its points
+CANDIDATES = 12  # rotations of a bead that are checked there
+BEADS_PER_BATCH = 64  # beads; bounds the memory
+
+
+def find_infeasible(task: Task, beads: Sequence[Bead], paths: Sequence[BeadPath]) -> list[int]:
+    """Return which of the beads exceed a limit with their rotation, at their points or between them."""
+    infeasible = [k for k, path in enumerate(paths) if path.margin < MIN_MARGIN]
+    low = [
+        k
+        for k, path in enumerate(paths)
+        if path.margin >= MIN_MARGIN
+        and (path.condition < LOW_CONDITION_RATIO * path.threshold).any()
+    ]
+    if low:
+        finer = [_finer(beads[k]) for k in low]
+        points = gather(finer, task.cell)
+        share = 0.5**HALVINGS
+        phi = np.concatenate(
+            [
+                np.interp(np.arange(len(bead)) * share, np.arange(len(paths[k].phi)), paths[k].phi)
+                for k, bead in zip(low, finer)
+            ]
+        )
+        joints = task.joints(points, phi)
+        condition = condition_margin(task.condition(points, phi, joints), task.thresholds(points))
+        margin = points.worst(np.minimum(task.rows.margin(joints), condition))
+        infeasible += [k for k, lowest_margin in zip(low, margin) if lowest_margin < MIN_MARGIN]
+    return sorted(infeasible)
+
+
+def replace_infeasible(
+    task: Task,
+    beads: Sequence[Bead],
+    bead_ids: Sequence[Place],
+    paths: Sequence[BeadPath],
+    candidates_found: Found,
+    report: Callable[[float], None],
+) -> dict[int, BeadPath | None]:
+    """Return the results of `find_rotations` for beads that exceed limits though a candidate did not at
+    few of their points. report: takes the finished share; it may raise to cancel.
+    """
+    promising = candidates_found.margin.max(axis=0) >= 0.0
+    rows = [k for k in find_infeasible(task, beads, paths) if promising[k]]
+    replacements: dict[int, BeadPath | None] = {}
+    for start in range(0, len(rows), BEADS_PER_BATCH):
+        report(start / len(rows))
+        batch = rows[start : start + BEADS_PER_BATCH]
+        candidates = candidates_found.select_beads(np.array(batch, dtype=np.intp))
+        replacements |= zip(
+            batch,
+            find_rotations(
+                task, [beads[k] for k in batch], [bead_ids[k] for k in batch], candidates
+            ),
+        )
+    return replacements
+
+
+def find_rotations(
+    task: Task, beads: Sequence[Bead], bead_ids: Sequence[Place], candidates_found: Found
+) -> list[BeadPath | None]:
+    """Return for each bead the path of the rotation best at all its points and between them, refined from
+    there if that keeps all limits too; None if no rotation serves.
+
+    candidates_found: the candidates of these beads, judged at few points.
+    """
+    points, between = gather(beads, task.cell), gather([_finer(bead) for bead in beads], task.cell)
+    thresholds = task.thresholds(points)
+    judged_candidates = _judged_at(
+        task, points, thresholds, candidates_found, len(candidates_found.margin)
+    )
+    judged_candidates = _judged_at(
+        task, between, task.thresholds(between), judged_candidates, CANDIDATES
+    )
+    best, bead_rows = judged_candidates.best(), np.arange(len(beads))
+    start, serves = (
+        judged_candidates.coefficients[best, bead_rows],
+        judged_candidates.margin[best, bead_rows] >= 0.0,
+    )
+    refined = refine.refine(task, points, thresholds, start[None], serves)
+    as_found = dataclasses.replace(refined, coefficients=start)
+    paths: list[BeadPath | None] = [None] * len(beads)
+    for solution in (refined, as_found):
+        attempted = evaluate_paths(
+            task, beads, bead_ids, points, thresholds, solution.coefficients, solution
+        )
+        short = find_infeasible(task, beads, attempted)
+        paths = [
+            path or (attempt if good and k not in short else None)
+            for k, (path, attempt, good) in enumerate(zip(paths, attempted, serves))
+        ]
+    return paths
+
+
+def _judged_at(
+    task: Task, points: Points, thresholds: Array, candidates: Found, max_count: int
+) -> Found:
+    """Of the candidates of each bead that serve, the best, as many as `max_count` at most, judged at these points."""
+    worth = np.where(candidates.margin >= 0.0, candidates.objective, np.inf)
+    count = max(1, min(max_count, int((candidates.margin >= 0.0).sum(axis=0).max())))
+    best_rows = np.argsort(worth, axis=0, kind="stable")[:count]
+    bead_rows = np.arange(points.beads)
+    judged_there = judge(task, points, thresholds, candidates.coefficients[best_rows, bead_rows])
+    serves = candidates.margin[best_rows, bead_rows] >= 0.0
+    return dataclasses.replace(
+        judged_there, margin=np.where(serves, judged_there.margin, UNREACHABLE)
+    )
+
+
+def _finer(bead: Bead) -> Bead:
+    for _ in range(HALVINGS):
+        bead = bead.halved(np.arange(len(bead) - 1))
+    return bead

@@ -4,17 +4,156 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from ...geometry.columns import columns, dots, lengths
+from ...geometry.ramps import limit_growth
 from ...issues import NOTE, WARNING, Issue, Text, Word
 from ...parameters.process import ProcessParameters
-from ...toolpath import Bead
-from ...types import Array, Mask
+from ...toolpath import Bead, Toolpath
+from ...types import Array, Index, Mask
 from .bead_model import MINUTE, BeadModel
-from .predicted import height_issue
 from .wire import model_wire_feed
+
+HEIGHTS = "BEAD_HEIGHT"
+DRIFT = 0.2  # of the layer height; layers that drift by more deserve a warning
+
+
+@dataclass(frozen=True, eq=False)
+class Segments:
+    """The segments (n,) of some beads: length mm, travel speed mm/min, width and height mm halfway, wire mm/s or NaN."""
+
+    length: Array
+    speed: Array
+    width: Array
+    height: Array
+    wire: Array
+
+
+def segments(beads: Sequence[Bead]) -> Segments:
+    """The segments of the beads whose speed a bead model sets."""
+    modelled = [
+        (bead, bead.width, bead.height)
+        for bead in beads
+        if bead.width is not None and bead.height is not None
+    ]
+    if not modelled:
+        return Segments(*(np.empty(0) for _ in range(5)))
+    speed = [bead.speed[1:] for bead, _, _ in modelled]
+    return Segments(
+        np.concatenate(
+            [np.linalg.norm(np.diff(bead.points, axis=0), axis=1) for bead, _, _ in modelled]
+        ),
+        MINUTE * np.concatenate(speed),
+        np.concatenate([0.5 * (width[1:] + width[:-1]) for _, width, _ in modelled]),
+        np.concatenate([0.5 * (height[1:] + height[:-1]) for _, _, height in modelled]),
+        np.concatenate(
+            [
+                (np.nan if bead.wire_share is None else bead.wire_share) * speeds
+                for (bead, _, _), speeds in zip(modelled, speed)
+            ]
+        ),
+    )
+
+
+def beads(
+    toolpath: Toolpath, numbers: Sequence[int] | Index | None = None
+) -> dict[str, Any] | None:
+    """The key `beads` of a report; None without a bead model, and for several features.
+
+    numbers: of the layers of one feature among the layers of several. `drift_mm` of a layer is the sum of the differences of
+    predicted mean heights from layer heights, up to it within its solid.
+    """
+    total = segments([] if toolpath.features else [bead for _, _, bead in toolpath])
+    if not len(total.length):
+        return None
+    rows: list[dict[str, Any]] = []
+    drift = 0.0
+    for number, layer in enumerate(toolpath.layers):
+        layer_segments = segments(layer.beads)
+        if not len(layer_segments.length):
+            continue
+        height = _summarise(layer_segments.height, layer_segments.length)
+        drift = (0.0 if layer.first else drift) + height["mean"] - toolpath.layer_height
+        rows.append(
+            {
+                "layer": number if numbers is None else int(numbers[number]),
+                "height_mm": height,
+                "drift_mm": drift,
+            }
+        )
+    return {
+        "travel_speed_mm_min": _summarise(total.speed, total.length),
+        "width_mm": _summarise(total.width, total.length),
+        "height_mm": _summarise(total.height, total.length),
+        "layer_height_mm": toolpath.layer_height,
+        "wire_feed_mm_s": _summarise(total.wire, total.length)
+        if np.isfinite(total.wire).all()
+        else None,
+        "layers": rows,
+    }
+
+
+def height_issue(
+    beads: Sequence[Bead],
+    layer_height: float,
+    process: ProcessParameters,
+    model: BeadModel,
+    as_run: bool = False,
+) -> Issue:
+    """The issue that compares predicted bead heights with the layers. as_run: axes can follow the speeds."""
+    sized = segments(beads)
+    height = _summarise(sized.height, sized.length)
+    drift = abs(height["mean"] - layer_height) / layer_height
+    return Issue(
+        WARNING if drift > DRIFT else NOTE,
+        HEIGHTS,
+        Text(
+            "{}beads are predicted {:.3g} to {:.3g} mm high, {:.3g} mm on average, for layers of "
+            "{:g} mm{}{}",
+            Word("limited to the speed of the axes, " if as_run else ""),
+            height["min"],
+            height["max"],
+            height["mean"],
+            layer_height,
+            Word("; set strategy.layer_height to the predicted height" if drift > DRIFT else ""),
+            _sections(sized, process, model),
+        ),
+    )
+
+
+def _sections(sized: Segments, process: ProcessParameters, model: BeadModel) -> str:
+    """The wire feed in proportion to the speed, actual or possible, as text where speeds vary."""
+    if np.isfinite(sized.wire).all():
+        low, high = float(sized.wire.min()), float(sized.wire.max())
+        return Text(
+            ". The wire feed follows the speed, at {:.3g} to {:.3g} mm/s, and keeps the "
+            "cross-section",
+            low,
+            high,
+        )
+    per_mm = model_wire_feed(process, model) / model.straight_speed(process.bead_width)
+    slowest, fastest = (
+        per_mm * float(value) / MINUTE for value in (sized.speed.min(), sized.speed.max())
+    )
+    if fastest < 1.05 * slowest:
+        return ""
+    return Text(
+        ". At a constant wire feed faster stretches are lower; process.wire.feed_mode: "
+        "proportional would keep the cross-section, at {:.3g} to {:.3g} mm/s of wire",
+        slowest,
+        fastest,
+    )
+
+
+def _summarise(values: Array, length: Array) -> dict[str, float]:
+    """Least, largest, and the mean over the length."""
+    mean = float((values * length).sum() / length.sum())
+    return {"min": float(values.min()), "mean": mean, "max": float(values.max())}
+
 
 CLAMPED = 0.05  # of the length
 
@@ -158,3 +297,143 @@ def _outside(
             )
         )
     return issues
+
+
+MIN_TURN_RAD = 1e-9  # rad of turn over the window; less is none
+
+
+def radii(flat: Array, closed: bool, window: float) -> Array:
+    """Local radius of curvature (n,) mm of a flattened bead, points (n, 2), infinite where straight.
+
+    The path's turn over `window` mm about each point, for a bead as wide as that feels no sharper bend: a corner counts as
+    the arc of that length. A closed bead repeats its first point.
+    """
+    step = np.diff(flat, axis=0)
+    x, y = columns(step)
+    heading = np.unwrap(np.arctan2(y, x))
+    round_turn = (
+        float(np.unwrap([heading[-1], heading[0]])[1] - heading[0]) if closed else None
+    )  # turn of a whole round
+    return _radii(np.linalg.norm(step, axis=1), heading, round_turn, window)
+
+
+def side_radii(points: Array, build: Array, closed: bool, window: float) -> Array:
+    """The same of a bead in space, points (n, 3): how it bends about its build directions (n, 3), to its sides."""
+    step = np.diff(points, axis=0)
+    incoming, outgoing, up = step[:-1], step[1:], build[1:-1]
+    if closed:
+        incoming, outgoing, up = (
+            np.vstack([rows, closing_row[None]])
+            for rows, closing_row in ((incoming, step[-1]), (outgoing, step[0]), (up, build[0]))
+        )
+    level = dots(incoming, outgoing) - dots(incoming, up) * dots(outgoing, up)
+    turn = np.arctan2(dots(np.cross(incoming, outgoing), up), level)
+    heading = np.r_[0.0, np.cumsum(turn[: len(step) - 1])]
+    return _radii(lengths(step), heading, float(turn.sum()) if closed else None, window)
+
+
+def _radii(length: Array, heading: Array, round_turn: float | None, window: float) -> Array:
+    """The radii at the ends of segments of lengths (n-1,) at headings (n-1,); `round_turn` is the turn of a whole round of a
+    closed bead.
+    """
+    closed = round_turn is not None
+    s = np.r_[0.0, np.cumsum(length)]
+    if round_turn is not None:
+        rounds = max(1, int(np.ceil(window / s[-1])))
+        turns = np.arange(-rounds, rounds + 1)
+        knots = np.concatenate([s[:-1] + k * s[-1] for k in turns])
+        values = np.concatenate([heading + k * round_turn for k in turns])
+    else:
+        knots, values = s[:-1], heading
+    # the heading as a step function of arc length; its means over half a window on either side give the turn between
+    total = np.r_[0.0, np.cumsum(values * np.diff(np.r_[knots, knots[-1] + length[-1]]))]
+    ends = np.r_[knots, knots[-1] + length[-1]]
+    low, high = np.maximum(s - window, ends[0]), np.minimum(s + window, ends[-1])
+    mean_before = (np.interp(s, ends, total) - np.interp(low, ends, total)) / np.maximum(
+        s - low, 1e-12
+    )
+    mean_after = (np.interp(high, ends, total) - np.interp(s, ends, total)) / np.maximum(
+        high - s, 1e-12
+    )
+    spacing = 0.5 * (high - low)
+    at_end = (s - low < 1e-9) | (high - s < 1e-9)
+    turn = np.where(at_end, 0.0, np.abs(mean_after - mean_before))
+    if not closed and len(s) > 2:
+        turn[[0, -1]] = turn[[1, -2]] * (spacing[[0, -1]] / spacing[[1, -2]])
+    radius: Array = np.where(turn > MIN_TURN_RAD, spacing / np.maximum(turn, MIN_TURN_RAD), np.inf)
+    return radius
+
+
+def limit_acceleration(points: Array, speed: Array, closed: bool, acceleration: float) -> Array:
+    """Speeds (n,) mm/s no higher than those asked that change by no more than `acceleration` mm/s^2 along points (n, k)."""
+    s = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    square = speed * speed
+    if closed:
+        s = np.r_[s[:-1] - s[-1], s, s[1:] + s[-1]]
+        square = np.r_[square[:-1], square, square[1:]]
+    limited = np.sqrt(limit_growth(square, 2.0 * acceleration * s))
+    n = len(points)
+    slowed: Array = limited[n - 1 : 2 * n - 1] if closed else limited
+    return np.minimum(slowed, speed)
+
+
+class AtSpeed(NamedTuple):
+    """A bead at the speeds of a model, where (n,) the speed is not what the width asks for, and where it bends more than the
+    table's beads."""
+
+    bead: Bead
+    clamped: Mask
+    tight: Mask
+
+
+def at_speed(
+    bead: Bead,
+    radius: Array,
+    course: Array,
+    closed: bool,
+    process: ProcessParameters,
+    model: BeadModel,
+    share: Array | float = 1.0,
+) -> AtSpeed:
+    """The bead at the speeds that keep its width, or a share (n,) of its width, with radii of curvature (n,) mm.
+
+    Speeds change along its course, points (n, k), by no more than the acceleration of the process.
+    """
+    speeds = model.speed_for(process.bead_width * share, radius)
+    speed = limit_acceleration(course, speeds.speed, closed, process.acceleration)
+    widths, heights, wire_share = model.widths(speed, radius), model.heights(speed, radius), None
+    if process.wire.feed_mode == "proportional":
+        heights = model.heights_of_section(widths, process.bead_width)
+        wire_share = model_wire_feed(process, model) / model.straight_speed(process.bead_width)
+    sized_bead = replace(
+        bead, speed=segment_speeds(speed), width=widths, height=heights, wire_share=wire_share
+    )
+    return AtSpeed(sized_bead, speeds.too_slow | speeds.too_fast, speeds.too_tight)
+
+
+def segment_speeds(speed: Array) -> Array:
+    """Speeds (n,) of the segments that end at points, from those at points (n,)."""
+    return np.concatenate([speed[:1], 0.5 * (speed[:-1] + speed[1:])])
+
+
+def hold_widths(toolpath: Toolpath, process: ProcessParameters, model: BeadModel) -> Toolpath:
+    """The toolpath of beads that fill nothing, each as wide as asked for where it bends about its build directions, with
+    what the model says of widths and heights."""
+    sized: list[AtSpeed] = []
+    layers = []
+    for layer in toolpath.layers:
+        layer_beads = [_hold_bead(bead, process, model) for bead in layer.beads]
+        sized += layer_beads
+        layers.append(replace(layer, beads=tuple(sized_bead.bead for sized_bead in layer_beads)))
+    widened = model_issues(sized, toolpath.layer_height, process, model)
+    return replace(
+        toolpath,
+        layers=tuple(layers),
+        law=model.law(process.acceleration),
+        issues=(*toolpath.issues, *widened),
+    )
+
+
+def _hold_bead(bead: Bead, process: ProcessParameters, model: BeadModel) -> AtSpeed:
+    radius = side_radii(bead.points, bead.build, bead.closed, process.bead_width)
+    return at_speed(bead, radius, bead.points, bead.closed, process, model)

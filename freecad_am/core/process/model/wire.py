@@ -3,16 +3,148 @@
 
 from __future__ import annotations
 
+import csv
 from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from ...issues import WARNING, Issue, Text
+from ...geometry.file_content import read_content
+from ...issues import WARNING, InputError, Issue, Text, Word
+from ...motion import AT_END, AT_START, MIDDLE
 from ...parameters.bead_classes import CLASSES
 from ...parameters.process import ProcessParameters
-from ...toolpath import Toolpath
-from .bead_model import BeadModel
-from .wire_taken import by_wire, follows_speed, taken_of
+from ...parameters.ramp import ramp
+from ...toolpath import Bead, Toolpath
+from ...types import Array
+from .bead_model import MINUTE, BeadModel, fit, row_name
+
+_KEYS = {MIDDLE: "", AT_START: ".start", AT_END: ".end"}
+
+
+class Taken(NamedTuple):
+    """Wire rate, mm3/s, that beads of a class take in one of PHASES, with layer and bead of the first occurrence. section: mean mm2."""
+
+    bead_class: str
+    phase: int
+    rate: float
+    layer: int
+    bead: int
+    section: float
+
+    @property
+    def name(self) -> str:
+        """By the keys of a job: contour, contour.start, contour.end."""
+        return f"{self.bead_class or 'all'}{_KEYS[self.phase]}"
+
+
+def by_wire(taken: Taken, process: ProcessParameters) -> bool:
+    """Whether process.wire feeds beads of a class in this phase: no other schedule does."""
+    class_process = process.for_class(taken.bead_class)
+    phase = {AT_START: class_process.start, AT_END: class_process.end}.get(taken.phase)
+    schedule = class_process.schedule if phase is None or phase.schedule is None else phase.schedule
+    return schedule == process.schedule
+
+
+def by_schedules(toolpath: Toolpath, process: ProcessParameters) -> list[str]:
+    """The keys of the beads fed by a schedule of their own, whose feed is not known here."""
+    return [taken.name for taken in taken_of(toolpath) if not by_wire(taken, process)]
+
+
+def off_most(toolpath: Toolpath, process: ProcessParameters) -> tuple[float, int, int] | None:
+    """The largest relative deviation of wire feed from bead volume over classes and phases, with its layer and bead.
+
+    None if nothing is known. Beads fed by a schedule of their own do not count.
+    """
+    wire_rate = (toolpath.wire_feed or 0.0) * process.wire.section
+    by_wire_ = [taken for taken in taken_of(toolpath) if by_wire(taken, process)]
+    if not by_wire_ or wire_rate == 0.0:
+        return None
+    follows = follows_speed(toolpath)  # mm3 per mm
+    return max(
+        (
+            (
+                abs(
+                    (
+                        wire_rate / process.travel_speed / taken.section
+                        if follows
+                        else wire_rate / taken.rate
+                    )
+                    - 1.0
+                ),
+                taken.layer,
+                taken.bead,
+            )
+            for taken in by_wire_
+        ),
+        key=lambda deviation: deviation[0],
+    )
+
+
+def follows_speed(toolpath: Toolpath) -> bool:
+    """Whether the wire follows the travel speed along a bead."""
+    return any(bead.wire_share is not None for _, _, bead in toolpath)
+
+
+def taken_of(toolpath: Toolpath) -> list[Taken]:
+    """The rates that beads take, by class and phase, from their width, height and speed, in the order of deposit; empty if the width is not known."""
+    if toolpath.bead_width is None:
+        return []
+    sums: dict[tuple[str, int], Array] = {}
+    first_bead: dict[tuple[str, int], tuple[int, int]] = {}
+    for layer, number, bead in toolpath:
+        for phase, sum_ in _sums(
+            bead, toolpath.bead_width * toolpath.layer_height, toolpath
+        ).items():
+            key = bead.bead_class, phase
+            sums[key] = sums.get(key, np.zeros(3)) + sum_
+            first_bead.setdefault(key, (layer, number))
+    return [
+        Taken(*key, float(volume / time), *first_bead[key], float(volume / length))
+        for key, (volume, time, length) in sums.items()
+        if time > 0.0
+    ]
+
+
+def _sums(bead: Bead, usual: float, toolpath: Toolpath) -> dict[int, Array]:
+    """mm3, s and mm (3,) of a bead, by phase; before joints are planned from the lengths of its phases."""
+    length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
+    section: Array | float = usual
+    if bead.width is not None or bead.height is not None:
+        high = toolpath.layer_height if bead.height is None else bead.height
+        area = high * (
+            np.full(len(bead), toolpath.bead_width) if bead.width is None else bead.width
+        )
+        section = 0.5 * (area[1:] + area[:-1])
+    amounts = np.stack([section * length, length / bead.speed[1:], length])
+    if bead.phase is not None:
+        return {
+            phase: amounts[:, bead.phase[1:] == phase].sum(axis=1)
+            for phase in sorted(set(bead.phase[1:].astype(int)))
+        }
+    total = amounts.sum(axis=1)
+    if not bead.ends:
+        return {MIDDLE: total}
+    start_length, slow, end_length, late = bead.ends[:4]
+    sums, size = {MIDDLE: total * (1.0 - (start_length + end_length) / length.sum())}, length.sum()
+    for long, (from_speed, to_speed) in zip(
+        bead.ends[4:], ((slow, float(bead.speed[1])), (float(bead.speed[-1]), late))
+    ):
+        steps = ramp(long, from_speed, to_speed)
+        if len(steps):
+            sums[MIDDLE] = sums[MIDDLE] + [
+                0.0,
+                float((long / len(steps) / steps).sum()) - total[1] * long / size,
+                0.0,
+            ]
+    for phase, long, speed in ((AT_START, start_length, slow), (AT_END, end_length, late)):
+        if long:
+            sums[phase] = np.array(
+                [total[0] * long / size, long / speed if speed else total[1] * long / size, long]
+            )
+    return sums
+
 
 AUTO, CODE = "auto", "FEED_BALANCE"
 TOLERANCE = 0.1  # of the rate that beads take; a wire within this balances
@@ -149,3 +281,168 @@ def _at_other_speeds(process: ProcessParameters) -> bool:
         settings.travel_speed != process.travel_speed or settings.start.there or settings.end.there
         for settings in named
     )
+
+
+BUILT_IN = {"csw": "dai-2020.csv", "li-2025": "li-2025.csv"}
+MAX_FILE_MB = 16  # MB
+FOLDER = Path(__file__).resolve().parents[3] / "beads"
+COLUMNS = ("radius_mm", "travel_speed_mm_min", "width_mm", "height_mm", "wire_feed_m_min")
+
+
+class Measured(NamedTuple):
+    """Beads of a calibration table: columns (n,) in mm and mm/s, and their wire feed, or its mean, mm/s. label: the file's name;
+    lines: line number of each row, from 1. feeds: (n,) mm/s where they differ.
+    """
+
+    radius: Array
+    speed: Array
+    width: Array
+    height: Array
+    wire_feed: float
+    label: str
+    lines: tuple[int, ...]
+    feeds: Array | None = None
+
+
+def process_model(process: ProcessParameters) -> BeadModel | None:
+    """The bead model of a process at its wire feed; None without one. Raises the InputErrors of `load`."""
+    if process.bead_model == "none":
+        return None
+    model = load(process.bead_model)
+    return model.at_feed(model_wire_feed(process, model))
+
+
+def load(name: str, folder: Path | None = None) -> BeadModel:
+    """The bead model of a table by name or path, as in `read_table`. Raises the InputErrors of `read_table` and `bead_model.fit`."""
+    return fit(*read_table(name, folder))
+
+
+def read_table(name: str, folder: Path | None = None) -> Measured:
+    """Read a built-in table ('csw': table 1 of Dai 2020; 'li-2025': from table 5 of Li 2025) or the table at a path, relative to
+    `folder`.
+
+    InputError 'NO_FILE', 'BAD_TABLE' (naming row and column, or that it is not a text).
+    """
+    path = FOLDER / BUILT_IN[name] if name in BUILT_IN else Path(folder or ".", name)
+    try:
+        text = read_content(path, MAX_FILE_MB, "BAD_TABLE", name).decode("utf-8-sig")
+    except (OSError, ValueError) as error:
+        if isinstance(error, UnicodeError):
+            raise InputError(
+                "BAD_TABLE",
+                name,
+                "it is not a table: it contains bytes that are not UTF-8 text; save it as CSV in "
+                "UTF-8",
+            ) from None
+        why = (getattr(error, "strerror", None) or str(error) or "no access").lower()
+        raise InputError(
+            "NO_FILE",
+            name,
+            "the calibration table cannot be read ({}); use none, csw or the path of a table",
+            why,
+        ) from None
+    numbered = enumerate(text.splitlines(), 1)
+    filled = [
+        (number, line)
+        for number, line in numbered
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    lines, numbers = [line for _, line in filled], tuple(number for number, _ in filled[1:])
+    separator = ";" if lines and ";" in lines[0] else ","
+    cells = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=separator)]
+    header = cells[0] if cells else []
+    _check_columns(header, f"{path.name} line {filled[0][0]}" if filled else path.name)
+    rows = [_row(header, row) for row in cells[1:]]
+    missing = [column for column in COLUMNS if column not in header]
+    if missing:
+        raise InputError(
+            "BAD_TABLE",
+            path.name,
+            "the column {} is missing; name in its first line {}",
+            missing[0],
+            ", ".join(COLUMNS),
+        )
+    table = np.array(
+        [
+            [_number(row, column, row_name(path.name, number, numbers)) for column in COLUMNS]
+            for number, row in enumerate(rows)
+        ]
+    )
+    if not len(rows):
+        table = np.empty((0, len(COLUMNS)))
+    radius, speed, width, height, feed = table.T
+    wrong = np.flatnonzero(~(np.isfinite(feed) & (feed > 0.0)))
+    if len(wrong):
+        where = row_name(path.name, int(wrong[0]), numbers)
+        raise InputError(
+            "BAD_TABLE",
+            where,
+            "wire feed {:g} m/min is not a positive number; correct or remove the row",
+            feed[wrong[0]],
+        )
+    several = len(feed) > 0 and np.ptp(feed) > 1e-9 * feed.max()
+    feeds = feed * 1000.0 / MINUTE
+    nominal = (
+        0.0
+        if not len(feed)
+        else float(feeds.mean())
+        if several
+        else float(feed[0]) * 1000.0 / MINUTE
+    )
+    return Measured(
+        radius,
+        speed / MINUTE,
+        width,
+        height,
+        nominal,
+        path.name,
+        numbers,
+        feeds if several else None,
+    )
+
+
+def _check_columns(header: list[str], where: str) -> None:
+    """InputError BAD_TABLE for unknown or repeated columns."""
+    for column in header:
+        if header.count(column) > 1:
+            raise InputError(
+                "BAD_TABLE", where, "the column {!r} appears twice; remove one", column
+            )
+        if column not in COLUMNS and any(name in COLUMNS for name in header):
+            raise InputError(
+                "BAD_TABLE",
+                where,
+                "unknown column {!r}; remove it, or rename it to one of {}",
+                column,
+                ", ".join(COLUMNS),
+            )
+
+
+def _row(header: list[str], cells: list[str]) -> dict[str | None, str | None]:
+    """The cells of a row by column; None for a missing cell, and surplus cells under the key None."""
+    row: dict[str | None, str | None] = dict.fromkeys(header)
+    row.update(zip(header, cells))
+    if len(cells) > len(header):
+        row[None] = "".join(cells[len(header) :])
+    return row
+
+
+def _number(row: dict[str | None, str | None], column: str, where: str) -> float:
+    if None in row:
+        raise InputError(
+            "BAD_TABLE",
+            where,
+            "the row has more values than columns; write decimals with a point",
+        )
+    text = (row[column] or "").strip()
+    try:
+        if "_" in text:
+            raise ValueError
+        return float(text)
+    except ValueError:
+        what = (
+            Text("{} {!r} is not a number", column, text)
+            if text
+            else Text("there is no {}", column)
+        )
+        raise InputError("BAD_TABLE", where, "{}; correct or remove the row", Word(what)) from None

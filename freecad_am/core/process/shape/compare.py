@@ -3,19 +3,109 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ...geometry.columns import dots
-from ...geometry.fitted import PredictedShape
-from ...geometry.formatting import place
+from ...geometry.fitted import DeviationMap, PredictedShape
+from ...geometry.formatting import place, round_step
+from ...geometry.mesh.collapsed import doubled_areas
+from ...geometry.mesh.solid import divide_triangles
 from ...issues import WARNING, Issue, Text, Word
 from ...types import Array, Index, Mask
-from .faces import Faces
-from .grid import Grid
 from .laying import PredictedDeposit
+from .strands import Grid
+
+PLACES = 20_000  # about
+LEAF_SIZE = 2 * PLACES
+FACING = 0.99  # cosine between faces that touch
+CONTACT = 0.05  # mm that such faces are apart at most
+SPACINGS = 1.0  # of the sampling distance, between places of the same face
+OUTSIDE, BOTH = "outside", "both"
+
+
+@dataclass(frozen=True, eq=False)
+class Faces:
+    """Sampled faces of a part. points: (n, 3) mm. normals: (n, 3) outward unit vectors. areas: (n,) mm2 that each represents. open:
+    (n,) faces that enclose nothing: both sides count, and the side with less.
+    """
+
+    points: Array
+    normals: Array
+    areas: Array
+    open: Mask
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def rows(self, mask: Mask) -> Faces:
+        """The rows of a mask."""
+        return Faces(self.points[mask], self.normals[mask], self.areas[mask], self.open[mask])
+
+
+def faces(vertices: Array, triangles: Index, side: str = OUTSIDE) -> Faces:
+    """Places evenly spread over triangles (m, 3) of vertices (k, 3) mm, which are counter-clockwise seen from outside; with
+    BOTH they enclose nothing."""
+    corners = vertices[triangles]
+    vectors = doubled_areas(corners)
+    twice = np.linalg.norm(vectors, axis=1)
+    is_proper = twice > 1e-12 * max(float(twice.max(initial=0.0)), 1e-300)
+    corners, vectors, twice = corners[is_proper], vectors[is_proper], twice[is_proper]
+    points, triangle = divide_triangles(
+        corners, float(np.sqrt(2.0 * twice.sum() / PLACES))
+    )  # halves of squares
+    areas = 0.5 * twice[triangle] / np.bincount(triangle, minlength=len(corners))[triangle]
+    return Faces(
+        points, vectors[triangle] / twice[triangle, None], areas, np.full(len(points), side == BOTH)
+    )
+
+
+def thin_faces(dense: Faces) -> Faces:
+    """Reduce faces with many more places than PLACES to places of about equal area. Slivers, whose normals are unreliable,
+    disappear.
+    """
+    if len(dense) <= LEAF_SIZE:
+        return dense
+    ends = np.cumsum(dense.areas)
+    sample = np.unique(np.searchsorted(ends, (np.arange(PLACES) + 0.5) / PLACES * ends[-1]))
+    areas = np.diff(ends[sample], prepend=0.0)
+    areas[-1] += ends[-1] - ends[sample[-1]]
+    return Faces(dense.points[sample], dense.normals[sample], areas, dense.open[sample])
+
+
+def uncovered_faces(parts: Sequence[Faces]) -> Faces:
+    """Faces of several parts as one, without contact areas between parts, where nothing is machined. A place is covered if the
+    nearest place of another part is in the same plane, faces the other way, and is no farther than the sampling distance.
+    """
+    free_faces = []
+    for k, part in enumerate(parts):
+        free = ~part.open
+        for other_part in (*parts[:k], *parts[k + 1 :]):
+            distance, nearest = cKDTree(other_part.points).query(part.points)
+            out = np.abs(dots(part.points - other_part.points[nearest], part.normals))
+            facing = dots(part.normals, other_part.normals[nearest]) < -FACING
+            free &= ~(
+                (distance < SPACINGS * np.sqrt(other_part.areas[nearest]))
+                & (out < CONTACT)
+                & facing
+                & ~other_part.open[nearest]
+            )
+        free_faces.append(part.rows(free | part.open))
+    return join_faces(free_faces)
+
+
+def join_faces(parts: Sequence[Faces]) -> Faces:
+    """Faces of several parts as one."""
+    return Faces(
+        *(
+            np.concatenate([getattr(part, name) for part in parts])
+            for name in ("points", "normals", "areas", "open")
+        )
+    )
+
 
 CODE, DRIFT = "ALLOWANCE", "LAYER_DRIFT"
 MAX_DRIFT_SHARE = 0.5  # of a layer height: layers that end farther off than this are reported
@@ -247,3 +337,77 @@ def _drift(
             worst,
         ),
     ), bool(drift[worst] < 0.0)
+
+
+MOST_PLACES = 3000  # that are kept
+NAMED = 5  # worst places
+MIN_SEPARATION_SHARE = 0.1  # of the part's size, the least distance between two named places
+STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)  # widths of a histogram's bars, times powers of ten
+BARS = 40  # of a histogram, about
+
+
+def deviation_map(deposit: PredictedDeposit, comparison: Compared, layers: int) -> DeviationMap:
+    """The map of a comparison for a path with a number of layers: regularly sampled places, the worst first."""
+    named = _worst(comparison.faces.points, comparison.deviation)
+    count = len(comparison.deviation)
+    sample = np.arange(0, count, -(-count // MOST_PLACES))
+    rows = np.concatenate([named, sample[~np.isin(sample, named)]])
+    pieces, worst_pieces = deposit.pieces, comparison.piece_rows[named]
+    edges, shares = _histogram(comparison.deviation, comparison.faces.areas)
+    return DeviationMap(
+        comparison.faces.points[rows],
+        comparison.faces.normals[rows],
+        comparison.deviation[rows],
+        np.column_stack(
+            [
+                pieces.layer[worst_pieces],
+                deposit.bead_in_layer[worst_pieces],
+                pieces.point[worst_pieces],
+            ]
+        ).astype(np.int64),
+        edges,
+        shares,
+        _by_layer(
+            comparison.deviation,
+            comparison.faces.areas,
+            np.asarray(pieces.layer[comparison.piece_rows], dtype=np.intp),
+            layers,
+        ),
+    )
+
+
+def name_of(number: int) -> str:
+    """The name of the worst place of this number."""
+    return "ABCDEFGHIJ"[number]
+
+
+def _worst(points: Array, deviation: Array) -> Index:
+    """Rows of the places with the least, each away from those before."""
+    separation = MIN_SEPARATION_SHARE * float(np.linalg.norm(np.ptp(points, axis=0)))
+    remaining: Index = np.argsort(deviation, kind="stable")
+    rows: list[int] = []
+    while len(remaining) and len(rows) < NAMED:
+        rows.append(int(remaining[0]))
+        remaining = remaining[
+            np.linalg.norm(points[remaining] - points[remaining[0]], axis=1) > separation
+        ]
+    return np.array(rows, dtype=np.intp)
+
+
+def _histogram(deviation: Array, areas: Array) -> tuple[Array, Array]:
+    """Edges (k + 1,) mm of bars, and the share (k,) of the area in each; 0 is an edge."""
+    low, high = float(deviation.min()), float(deviation.max())
+    width = round_step(max(high - low, 1e-6) / BARS, STEPS)
+    edges = width * np.arange(np.floor(low / width), np.floor(high / width) + 2)
+    return edges, np.histogram(deviation, edges, weights=areas)[0] / areas.sum()
+
+
+def _by_layer(deviation: Array, areas: Array, layer: Index, layers: int) -> Array:
+    """Least and mean (layers, 2) mm at the places nearest to each layer, NaN without any."""
+    lowest, area = np.full(layers, np.inf), np.bincount(layer, areas, layers)
+    np.minimum.at(lowest, layer, deviation)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = np.bincount(layer, areas * deviation, layers) / area
+    return np.column_stack(
+        [np.where(area > 0.0, lowest, np.nan), np.where(area > 0.0, mean, np.nan)]
+    )

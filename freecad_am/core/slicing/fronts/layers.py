@@ -28,13 +28,10 @@ from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface import dot
 from ...issues import Text
 from ...types import Array, Index, Mask
-from ..backstop import refuse_too_many
-from ..banded import HEAVY
+from ..banded import HEAVY, refuse_too_many
 from .closing import close_gaps
-from .curve import fit_front
-from .feet import local_distances, nearest_feet, points_near_fronts
-from .rims import Rims, cut_at_rims
-from .slicing import Slicing, Smoothing
+from .curve import Slicing, Smoothing, fit_front
+from .rims import Rims, cut_at_rims, local_distances, nearest_feet, points_near_fronts
 from .smooth import SmoothFront, smooth_front
 
 MIN_LENGTH = 0.2  # of the layer height; shorter fronts are no bead

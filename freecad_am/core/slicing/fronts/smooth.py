@@ -22,11 +22,8 @@ from ...geometry.walls.surface import dot
 from ...types import Array, Mask
 from ..banded import AIM, HEAVY, MARGIN, WEIGHTS, lightest, smooth_between
 from ..directions.wall_turn import turns_in_wall
-from .curve import fit_to_wall
-from .even_line import resample, smooth_points, spline
-from .feet import local_distances, nearest_feet
-from .rims import ON_RIM
-from .slicing import Slicing
+from .curve import Slicing, fit_to_wall
+from .rims import ON_RIM, local_distances, nearest_feet, resample, smooth_points, spline
 
 PLACES = 8  # per layer height along a front
 MIN_POINTS = 48  # of a front

@@ -16,10 +16,10 @@ import numpy as np
 from ...geometry.walls.surface import Surface
 from ...issues import InputError
 from ...types import Array
-from ..backstop import refuse_too_many
-from ..refinement import ROUNDS, finer_grid
+from ..banded import refuse_too_many
+from ..first_layer import ROUNDS, finer_grid
 from .offset import Offset, Places
-from .wall_layer import WallLayer
+from .smooth_spacing import WallLayer
 
 AT_CORNER = 1e-9  # of the period; a grid point this near to a corner is the corner
 ABOVE = (

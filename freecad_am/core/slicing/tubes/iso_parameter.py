@@ -8,9 +8,9 @@ import numpy as np
 from ...geometry.walls.surface import Surface, dot
 from ...issues import InputError
 from ...types import Array
-from ..backstop import refuse_too_many
-from ..refinement import ROUNDS, finer_grid
-from .wall_layer import WallLayer
+from ..banded import refuse_too_many
+from ..first_layer import ROUNDS, finer_grid
+from .smooth_spacing import WallLayer
 
 STEPS = 40
 

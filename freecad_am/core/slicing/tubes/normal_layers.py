@@ -18,8 +18,8 @@ from scipy.interpolate import CubicSpline
 from ...geometry.walls.surface import Surface, dot
 from ...issues import InputError
 from ...types import Array
-from ..backstop import refuse_too_many
-from .wall_layer import WallLayer
+from ..banded import refuse_too_many
+from .smooth_spacing import WallLayer
 
 SECTIONS, SAMPLES_AROUND = (
     401,

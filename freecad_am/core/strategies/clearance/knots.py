@@ -12,7 +12,7 @@ import dataclasses
 import numpy as np
 
 from ...types import Array, Index, Mask
-from .places import Space
+from .look import Space
 
 MAX_POINTS = 2500  # points of a bead at which tilts are searched
 

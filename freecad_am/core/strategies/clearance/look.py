@@ -3,18 +3,248 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...collision.bodies import build_bodies
+from ...collision import deposit
+from ...collision.scene import Nozzle, Scene, build_bodies, depositing, scene
+from ...geometry.columns import columns
 from ...geometry.obstacles import Body
-from ...issues import ERROR, Issue, Text
+from ...geometry.walls.surface import dot
+from ...issues import ERROR, NOTE, WARNING, Issue, Text, Word
 from ...parameters.cell import NozzleParameters
-from ...toolpath import Toolpath
-from .notes import CLEARANCE, locate_row
-from .places import beads_of, halfway, nozzle_of, space_of
+from ...toolpath import Bead, Toolpath
+from ...types import Array, Index, Mask
+
+CAP = 1e-9  # rad
+SEAM = 1e-6  # rad that a closed bead's end may be past a turn
+
+
+@dataclass(frozen=True, eq=False)
+class Space:
+    """Data that decide whether an axis at a point is clear: points (n, 3) in the order of deposit, own_start (n,) the first point
+    of the beads that each overlaps by intention next to them.
+    """
+
+    points: Array
+    own_start: Index
+    scene: Scene
+    nozzle: Nozzle
+    max_tilt: float
+
+    def clear(self, rows_: Index, axis: Array) -> Mask:
+        """Whether the axes (k, 3) at the points numbered `rows_` (k,) are clear and within the cap."""
+        x, y, z = columns(axis)
+        clear: Mask = np.arctan2(np.hypot(x, y), z) <= self.max_tilt + CAP
+        rows = np.flatnonzero(clear)
+        clear_rows = rows_[rows]
+        clear[rows] = ~self.scene.find_touching(
+            self.nozzle,
+            self.points[clear_rows],
+            axis[rows],
+            clear_rows + 1,
+            self.own_start[clear_rows],
+        )
+        return clear
+
+
+def nozzle_of(nozzle: NozzleParameters, bead_height: float = 0.0, lean: float = 0.0) -> Nozzle:
+    """The nozzle for clearance checks of beads up to a height, mm, leaning by intention, rad."""
+    return depositing(
+        0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, bead_height, lean
+    )
+
+
+def space_of(
+    toolpath: Toolpath,
+    bodies: Sequence[Body],
+    nozzle: NozzleParameters,
+    max_tilt: float,
+    often: bool = True,
+    feature: int = 0,
+) -> Space:
+    """The clearance data of the points of a toolpath, in order, among bodies.
+
+    max_tilt: rad. often: the data are used repeatedly; if not, they take less memory. feature: number of the feature whose points
+    are checked, if several.
+    """
+    beads = [bead for _, _, bead in toolpath]
+    points, build = (
+        np.concatenate([getattr(bead, name) for bead in beads]) for name in ("points", "build")
+    )
+    counts = np.array([len(bead) for bead in beads])
+    starts = np.cumsum(counts) - counts
+    layer = np.repeat([i for i, _, _ in toolpath], counts)
+    heights = toolpath.heights
+    lean, own_start = 0.0, np.searchsorted(layer, layer)
+    if (toolpath.features[feature] if toolpath.features else toolpath).family == "revolution":
+        # directions and tools are turned as one there; the last turn of a spiral belongs to the current layer
+        feature_rows = np.repeat(beads_of(toolpath, feature), counts)
+        turned = np.arccos(
+            np.clip(dot(build, np.concatenate([bead.tool for bead in beads])), -1.0, 1.0)
+        )
+        lean = float(turned[feature_rows].max())
+        own_start = np.concatenate(
+            [
+                start + _turn_before(bead.parameter)
+                for start, bead in zip(own_start[starts], beads, strict=True)
+            ]
+        )
+    nozzle_ = nozzle_of(nozzle, float(heights.max()), lean)
+    build_obstacles = deposit.build_deposit if often else deposit.in_parts
+    obstacles = build_obstacles(points, build, toolpath.widths, heights, starts, foot=nozzle_.foot)
+    # a bead that closes a gap overlaps those about the gap, of layers below too
+    own_start = np.where(np.repeat([bead.closing for bead in beads], counts), 0, own_start)
+    return Space(
+        points, own_start, scene(bodies, points, nozzle_.reach, obstacles), nozzle_, max_tilt
+    )
+
+
+def beads_of(toolpath: Toolpath, feature: int | None) -> Mask:
+    """(beads,) which beads are of a feature, where a toolpath has several; all where None is asked about."""
+    mask: Mask = np.array(
+        [
+            feature is None or not toolpath.features or toolpath.layers[i].feature == feature
+            for i, _, _ in toolpath
+        ]
+    )
+    return mask
+
+
+def _turn_before(angle: Array) -> Index:
+    """(n,) the first point of a bead that is a turn or less before each of its points, of angles rising or falling."""
+    turned = np.abs(angle - angle[0])
+    return np.asarray(np.searchsorted(turned, turned - 2.0 * np.pi - SEAM))
+
+
+def halfway(beads: Sequence[Bead], tool: Array) -> tuple[Array, Array]:
+    """Points and axes (n, 3) halfway from each point to the next of its bead; at the last of a bead its own."""
+    points, axes, start = [], [], 0
+    for bead in beads:
+        bead_tool = tool[start : start + len(bead)]
+        start += len(bead)
+        mean = bead_tool[:-1] + bead_tool[1:]
+        points += [bead.outline.at(np.arange(len(bead) - 1), 0.5)[0], bead.points[-1:]]
+        axes += [
+            mean / np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), CAP),
+            bead_tool[-1:],
+        ]
+    return np.concatenate(points), np.concatenate(axes)
+
+
+def touched_between(space: Space, beads: Sequence[Bead], tool: Array, free: Mask) -> Mask:
+    """The points (n,) that are free as the next of their bead is, and the nozzle touches halfway to it."""
+    points, axes = halfway(beads, tool)
+    both_free = free & np.r_[free[1:], False]
+    both_free[np.cumsum([len(bead) for bead in beads]) - 1] = False
+    midway = dataclasses.replace(
+        space, points=points, nozzle=space.nozzle.halfway(), max_tilt=float(np.pi)
+    )
+    touched = np.zeros(len(points), dtype=bool)
+    rows = np.flatnonzero(both_free)
+    touched[rows] = ~midway.clear(rows, axes[rows])
+    return touched
+
+
+def halved(toolpath: Toolpath, between: Mask) -> Toolpath:
+    """The toolpath with a point halfway after each marked point (n,)."""
+    marks = iter(np.split(between, np.cumsum([len(bead) for _, _, bead in toolpath])[:-1]))
+    return dataclasses.replace(
+        toolpath,
+        layers=tuple(
+            dataclasses.replace(
+                layer,
+                beads=tuple(
+                    bead.halved(np.flatnonzero(mark)) if mark.any() else bead
+                    for bead, mark in zip(layer.beads, marks)
+                ),
+            )
+            for layer in toolpath.layers
+        ),
+    )
+
+
+CLEARANCE = "CLEARANCE"  # the nozzle touches something while it deposits
+
+
+def locate_row(
+    bead_keys: list[tuple[int, int]], begin: Index, row: int
+) -> tuple[tuple[int, int], int]:
+    """Layer and bead of a row of the joined points, and its number in its bead. bead_keys: (layer, bead) pairs; begin: first rows."""
+    bead = int(np.searchsorted(begin, row, side="right")) - 1
+    return bead_keys[bead], row - int(begin[bead])
+
+
+def tilt_issues(
+    bead_keys: list[tuple[int, int]], begin: Index, tilt: Array, stuck: Mask
+) -> list[Issue]:
+    """Where tools are tilted, by tilt (n,) rad, and at which points (n,) that does not help."""
+    bead = np.repeat(np.arange(len(bead_keys)), np.diff(begin))
+    layer = np.array([key[0] for key in bead_keys])[bead]
+    issues = []
+    if stuck.any():
+        bead_key, point = locate_row(bead_keys, begin, int(np.argmax(stuck)))
+        issues.append(
+            Issue(
+                ERROR,
+                CLEARANCE,
+                Text(
+                    "at every possible tilt, the nozzle touches substrate, fixture, platform or "
+                    "deposit at {} point(s) of layers {} to {}",
+                    int(stuck.sum()),
+                    layer[stuck].min(),
+                    layer[stuck].max(),
+                ),
+                *bead_key,
+                point,
+            )
+        )
+    moved = ~stuck & (tilt > 1e-9)
+    if moved.any():
+        worst = int(np.argmax(np.where(moved, tilt, 0.0)))
+        bead_key, point = locate_row(bead_keys, begin, worst)
+        first_layer, last_layer = int(layer[moved].min()), int(layer[moved].max())
+        where = (
+            Text("in layer {}", first_layer)
+            if first_layer == last_layer
+            else Text("in layers {} to {}", first_layer, last_layer)
+        )
+        issues.append(
+            Issue(
+                NOTE,
+                "TILT_BACK",
+                Text(
+                    "{}, tool axes are tilted back for clearance, by up to {:.2f} deg",
+                    Word(where),
+                    np.degrees(tilt[worst]),
+                ),
+                *bead_key,
+                point,
+            )
+        )
+    return issues
+
+
+def turn_issues(fastest: float, limit: float) -> list[Issue]:
+    """A warning that tilted tools turn by `fastest` rad/mm, if not 0. limit: the maximum turn."""
+    if not fastest:
+        return []
+    return [
+        Issue(
+            WARNING,
+            "TURN_PASSED",
+            Text(
+                "for clearance, tool axes turn by up to {:.3g} deg/mm, faster than "
+                "build_direction.max_turn ({:.3g} deg/mm); use a slimmer nozzle or allow a "
+                "faster turn",
+                np.degrees(fastest),
+                np.degrees(limit),
+            ),
+        )
+    ]
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Keeps the nozzle clear of bodies and deposit along any beads, by tilting the tool axis no more than needed.
 
-The nozzle is a frustum without its lowest section (`collision.nozzle`), which touches the current bead and its neighbours on
+The nozzle is a frustum without its lowest section (`collision.scene`), which touches the current bead and its neighbours on
 purpose. The deposit has its width and height at that moment; later deposit does not count, nor does anything at or behind
 the tip plane.
 
@@ -27,10 +27,17 @@ from ...toolpath import Bead, Toolpath
 from ...types import Array, Index, Mask
 from ..progress import Watch
 from . import knots as clearance_knots
-from .helpful import Change, Touching, what_helps
-from .notes import CLEARANCE, tilt_issues, turn_issues
-from .places import Space, beads_of, halved, space_of, touched_between
-from .tilt_search import SPREAD, TiltSearch
+from .look import (
+    CLEARANCE,
+    Space,
+    beads_of,
+    halved,
+    space_of,
+    tilt_issues,
+    touched_between,
+    turn_issues,
+)
+from .tilt_search import SPREAD, Change, TiltSearch, Touching, what_helps
 
 SLOWER = 6  # times that a bead is tilted again if it turns too fast
 SEARCHED = 0.7  # of the search when that begins

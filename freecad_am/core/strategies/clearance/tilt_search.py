@@ -8,14 +8,83 @@ integral of tilt^2 + (SPREAD d tilt / ds)^2 along the bead. Finer candidates abo
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.ties import index_of_minimum
+from ...geometry.obstacles import Body
+from ...geometry.ties import index_of_minimum, is_tied
+from ...issues import Text
+from ...parameters.build_direction import BuildDirectionParameters
+from ...parameters.cell import NozzleParameters
+from ...toolpath import Toolpath
 from ...types import Array, Index, Mask
 from ..progress import Watch
-from .least_turn import least_cost_states
-from .places import CAP, Space
+from .look import CAP, Space, space_of
+
+BARRED = 1e9  # cost of a state that is not allowed; finite, so that a chain without a way through has a least bad one
+AT_ONCE = 1_000_000  # pairs of states worked on at once
+
+
+def least_cost_states(states: Array, allowed: Mask, weight: Array, change: Array) -> Index:
+    """The number (b, n) of the state of each point of b chains for which the sum of two costs is least.
+
+    Parameters
+    ----------
+    states
+        (b, n, s, d), or (1, 1, s, d) if every point has the same.
+    allowed
+        (b, n, s).
+    weight
+        (b, n), of the square of a state.
+    change
+        (b, n - 1), of the square of the difference of neighbouring states; 0 behind the end of a shorter chain.
+    """
+    b, n, s = allowed.shape
+    step = max(1, AT_ONCE // (s * s))
+    if b > step:
+        chunks = (slice(k, k + step) for k in range(0, b, step))
+        return np.concatenate(
+            [
+                least_cost_states(
+                    states if len(states) == 1 else states[chunk],
+                    allowed[chunk],
+                    weight[chunk],
+                    change[chunk],
+                )
+                for chunk in chunks
+            ]
+        )
+    same = states.shape[1] == 1
+    size = np.broadcast_to((states**2).sum(axis=3), (b, n, s))
+    state_cost = np.where(allowed, weight[:, :, None] * size, BARRED)
+    fixed = _between(states[:, 0], states[:, 0]) if same else None
+    total, came = state_cost[:, 0], np.zeros((b, n, s), dtype=np.int32)
+    for k in range(1, n):
+        between = fixed if fixed is not None else _between(states[:, k - 1], states[:, k])
+        costs = total[:, :, None] + change[:, k - 1, None, None] * between
+        best = costs.min(axis=1)
+        came[:, k] = is_tied(costs, best[:, None]).argmax(
+            axis=1
+        )  # what first_least finds, of numbers that are all finite
+        total = best + state_cost[:, k]
+    states_ = np.zeros((b, n), dtype=np.intp)
+    states_[:, -1] = index_of_minimum(total, axis=1)
+    for k in range(n - 1, 0, -1):
+        states_[:, k - 1] = came[np.arange(b), k, states_[:, k]]
+    return states_
+
+
+def _between(a: Array, b: Array) -> Array:
+    """Squares (b, s, t) of the differences of states (b, s, d) and (b, t, d), component by component, which is quicker."""
+    total: Array = np.square(a[:, :, None, 0] - b[:, None, :, 0])
+    for component in range(1, a.shape[2]):
+        total += np.square(a[:, :, None, component] - b[:, None, :, component])
+    return total
+
 
 RING, AZIMUTHS = np.radians(5.0), 16  # between the cones of candidates, and candidates on each
 MAX_TILT_RAD = np.radians(90.0)  # tilt that is tried
@@ -288,3 +357,150 @@ def _sides(tool: Array, plane: Array | None) -> Array:
     level = frames.smallest_rotation(middle, np.array([0.0, 0.0, 1.0]))[:2]
     sides: Array = np.einsum("nij,kj->nki", frames.smallest_rotation(middle, tool), level)
     return sides
+
+
+LOOKED_AT = 240  # points, at most
+BATCH_POINTS = 24  # points in a batch; if one has no room, later batches are skipped
+SHARES = (0.75, 0.5, 0.25)  # half angles of the nozzle that are tried
+FARTHER = np.radians(15.0)  # by which the largest tilt is raised
+MAX_TRIALS = 4  # changes with which every bead is tilted again, at most
+MAX_TRIAL_POINTS = 20_000  # points of a toolpath that is
+
+
+class Change(NamedTuple):
+    """Bodies, nozzle and build directions in place of others, and the words for it."""
+
+    bodies: Sequence[Body]
+    nozzle: NozzleParameters
+    build: BuildDirectionParameters
+    words: Text
+
+
+class Touching(NamedTuple):
+    """A toolpath with the axes asked for, and the points (k,) that no tilt clears. plane, feature: as of
+    `tilt_back.keep_clear`."""
+
+    toolpath: Toolpath
+    rows: Index
+    plane: Array | None
+    feature: int | None
+
+    def clear_at(self, change: Change) -> bool:
+        """Whether each of the points has a clear tilt, by up to LARGEST, after a change; of many points, a regular sample is checked."""
+        space = space_of(
+            self.toolpath,
+            change.bodies,
+            change.nozzle,
+            change.build.max_tilt,
+            False,
+            self.feature or 0,
+        )
+        sample = self.rows[
+            np.unique(
+                np.linspace(0, len(self.rows) - 1, min(LOOKED_AT, len(self.rows))).astype(np.intp)
+            )
+        ]
+        tool = np.concatenate([bead.tool for _, _, bead in self.toolpath])
+        return all(
+            self._clear_at(space, tool, sample[start : start + BATCH_POINTS])
+            for start in range(0, len(sample), BATCH_POINTS)
+        )
+
+    def _clear_at(self, space: Space, tool: Array, rows: Index) -> bool:
+        for number in range(round(MAX_TILT_RAD / RING) + 1):
+            axes = self._cone(tool[rows], number * RING)
+            free = (
+                space.clear(np.repeat(rows, axes.shape[1]), axes.reshape(-1, 3))
+                .reshape(len(rows), -1)
+                .any(axis=1)
+            )
+            rows = rows[~free]
+            if not len(rows):
+                return True
+        return False
+
+    def _cone(self, tool: Array, angle: float) -> Array:
+        """Axes (k, s, 3) at an angle, rad, from those asked for (k, 3)."""
+        if self.plane is not None:
+            sides = np.cross(self.plane, tool)[:, None] * np.array([1.0, -1.0])[:, None]
+        else:
+            turn = 2.0 * np.pi * np.arange(AZIMUTHS) / AZIMUTHS
+            level = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(AZIMUTHS)])
+            sides = np.einsum(
+                "sj,kij->ksi", level, frames.smallest_rotation(np.array([0.0, 0.0, 1.0]), tool)
+            )
+        axes: Array = np.cos(angle) * tool[:, None] + np.sin(angle) * sides
+        return axes
+
+
+def what_helps(touching: Touching, now: Change, clears: Callable[[Change], bool]) -> Text:
+    """The remedy as the end of a message: the first change with which the nozzle is clear, or that none is known. clears: tilts
+    every bead again.
+    """
+    trials: list[Text] = []
+    trials_left = MAX_TRIALS
+    for changes in (_tilts(now), _half_angles(now), _cleared_away(now)):
+        for change in _useful_changes(touching, changes):
+            if touching.toolpath.point_count > MAX_TRIAL_POINTS:
+                return Text(
+                    "these points would be clear with {}, which was not tested for the others",
+                    change.words,
+                )
+            trials_left -= 1
+            if trials_left >= 0 and clears(change):
+                return Text("with {} the nozzle is clear (tested)", change.words)
+        trials += [change.words for change in changes[-1:] if trials_left >= 0]
+    fallback = Text("use other layers or another direction, or exclude the region of these points")
+    return (
+        Text(
+            "it still does with {} (all tested); {}",
+            Text.joined(", ", trials),
+            fallback,
+        )
+        if trials
+        else fallback
+    )
+
+
+def _useful_changes(touching: Touching, changes: list[Change]) -> list[Change]:
+    """The smallest change that gives every point room, and the largest; empty if the largest does not."""
+    if not changes or not touching.clear_at(changes[-1]):
+        return []
+    smallest = next((change for change in changes[:-1] if touching.clear_at(change)), changes[-1])
+    return [smallest] if smallest is changes[-1] else [smallest, changes[-1]]
+
+
+def _tilts(now: Change) -> list[Change]:
+    """Larger tilts, the largest last."""
+    max_tilt = now.build.max_tilt
+    angles = [
+        min(np.pi, max_tilt + FARTHER * (k + 1))
+        for k in range(int(np.ceil((np.pi - max_tilt) / FARTHER - CAP)))
+    ]
+    return [
+        now._replace(
+            build=dataclasses.replace(now.build, max_tilt=angle),
+            words=Text("`build_direction.max_tilt: {:.3g} deg`", np.degrees(angle)),
+        )
+        for angle in angles
+    ]
+
+
+def _cleared_away(now: Change) -> list[Change]:
+    """Nothing but the deposit itself in the way."""
+    names = Text.joined(", ", (body.name for body in now.bodies))
+    return [now._replace(bodies=(), words=Text("{} out of the way", names))] if now.bodies else []
+
+
+def _half_angles(now: Change) -> list[Change]:
+    """Slimmer nozzles, half angles in whole degrees, the slimmest last."""
+    half = float(np.degrees(now.nozzle.half_angle))
+    angles = sorted({round(share * half) for share in SHARES} - {0}, reverse=True)
+    return [
+        now._replace(
+            nozzle=dataclasses.replace(now.nozzle, half_angle=float(np.radians(angle))),
+            words=Text("`cell.nozzle.half_angle: {:d} deg`", angle),
+        )
+        for angle in angles
+        if angle < half
+    ]

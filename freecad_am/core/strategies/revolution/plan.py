@@ -22,7 +22,7 @@ from ...toolpath import Bead, Layer, Toolpath
 from ...types import Array, Index
 from .. import size
 from ..progress import Progress, silent
-from . import platform, spiral
+from . import clearance, spiral
 from .tilt import Tilting
 
 SPACING_BAND = 0.2  # of the layer height (Chalvin 2020, section 2.1)
@@ -73,7 +73,7 @@ def plan(
         )
     size.refuse_absurd(size.revolution_size(wall, strategy), strategy)
     progress(0.0, "cutting layers")
-    under = platform.under(wall, platform_diameter, platform_frame)
+    under = clearance.under(wall, platform_diameter, platform_frame)
     leaning_build = classes.leaning(build, process, WALL)
     tilting = Tilting(wall, strategy, leaning_build, nozzle, under, process.bead_width)
     issues: list[Issue] = []
@@ -95,7 +95,7 @@ def plan(
         first_tilting = replace(tilting, parameters=classes.leaning(build, process, FIRST_LAYER))
         layers, plan_issues = _layers(wall, slices, strategy, process, tilting, first_tilting)
     progress(0.9, "checking")
-    issues = [*wall.issues, *platform.overhanging(wall, under), *issues, *plan_issues]
+    issues = [*wall.issues, *clearance.overhanging(wall, under), *issues, *plan_issues]
     return Toolpath(
         layers,
         wall.frame,

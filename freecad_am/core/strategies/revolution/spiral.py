@@ -19,7 +19,7 @@ from ...process import seam
 from ...slicing import arc_length
 from ...toolpath import Bead, Layer
 from ...types import Array, Index
-from ..clearance.places import SEAM
+from ..clearance.look import SEAM
 from .clearance import Deposit, Tips
 from .tilt import Tilting
 

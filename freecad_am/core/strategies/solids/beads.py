@@ -3,30 +3,69 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from ...filling.curve import PlaneCurve
+from ...filling.centre import PlaneCurve
+from ...filling.cover import Cover, total
 from ...geometry.angles import TURN
-from ...geometry.curves.plane_curve import arcs, divide_edges, fractions
-from ...geometry.regions.region import simplified
-from ...geometry.regions.telling import select_significant
+from ...geometry.curves.plane_curve import (
+    arcs,
+    divide_edges,
+    fractions,
+    nearest_among,
+    sines,
+    steps,
+)
+from ...geometry.on_hub import SolidsOnHub
+from ...geometry.regions.region import select_significant, simplified
+from ...layers.planes.slabs import group_of, slabs
 from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process import classes
 from ...process.model.bead_model import BeadModel
-from ...process.model.bead_speed import limit_acceleration, radii
-from ...process.model.held_width import at_speed, segment_speeds
+from ...process.model.notes import at_speed, limit_acceleration, radii, segment_speeds
 from ...toolpath import Bead
 from ...types import Array, Mask
 from .course import Course
 from .filling import bead_width
-from .lean import Turned, hold_torch
-from .outlines import leaning
+from .lean import Lean, Turned, hold_torch
+
+OUTLINE = 0.55  # of the bead spacing; beads along an outline are half a spacing inside, the next are farther
+PROBES = 9  # the longest edges, which decide the side of the outline
+
+
+def leaning(
+    curve: PlaneCurve, layer: Slice, strategy: FilledParameters, build: BuildDirectionParameters
+) -> Lean:
+    """How the torch leans on a curve: as the build direction says, and by the deflection towards the outline where the curve
+    is a contour or a spiral that begins along it, a spiral for as long as it does."""
+    plain = Lean(build.lead, build.tilt)
+    if strategy.deflection == 0.0 or curve.kind not in ("contour", "spiral") or curve.ring > 0:
+        return plain
+    count, until = len(curve.points), math.inf
+    if not curve.closed:
+        adjacent = nearest_among(layer.borders, curve.points)[1] < OUTLINE * strategy.bead_spacing
+        count = len(adjacent) if adjacent.all() else int(np.argmin(adjacent))
+        if count < 2:
+            return plain
+        if count < len(adjacent):
+            until = float(np.hypot(*steps(curve.points[:count], False).T).sum())
+    edges = steps(curve.points[:count], curve.closed and not curve.turns)
+    longest = np.argsort(-np.hypot(*edges.T), kind="stable")[:PROBES]
+    middle = curve.points[longest] + 0.5 * edges[longest]
+    is_left = (
+        sines(edges[longest], nearest_among(layer.borders, middle)[0] - middle).sum() > 0.0
+    )  # the outline, of the curve
+    side = -1.0 if is_left else 1.0
+    return Lean(build.lead, build.tilt + side * strategy.deflection, build.tilt, until)
+
 
 WRAP_SHARE = 0.5  # share of the chord error between a bead's chords and the surface
 GRID = 6  # decimals of mm that decide between points
@@ -174,3 +213,89 @@ def needed(line: Array, chord_error: float, besides: Mask | None = None) -> Arra
     line = line[is_kept if besides is None else is_kept | besides]
     result: Array = line[_sparse(line, np.ones(len(line) - 1), MIN_DISTANCE_MM)]
     return result
+
+
+EXACT = 3e-3  # of the volume of a part; solids that share more overlap
+
+
+def layer_volumes(
+    strategy: FilledParameters, covers: Sequence[Cover]
+) -> tuple[float, float, float]:
+    """mm3 of the layers, of their missed volume, and of stray deposit."""
+    total_, missed, outside, _ = (strategy.layer_height * area for area in total(covers))
+    return total_, missed, outside
+
+
+def volumes(
+    part_volume: float | None,
+    strategy: FilledParameters,
+    covers: Sequence[Cover],
+    uncut: float = 0.0,
+    within: Array | None = None,
+    numbers: Sequence[int] = (),
+) -> tuple[float, float, float]:
+    """mm3 of the part, of its missed volume, and of stray deposit.
+
+    The cut solids count as high as their layers, so that the volume above the last cut is missed, and layers beyond the part are
+    stray.
+
+    Parameters
+    ----------
+    part_volume
+        mm3; None, with a margin or an open part, for a part as large as its layers.
+    uncut
+        mm3 of solids without a layer cut, which are missed, whatever layers of others reach beyond them.
+    within
+        (k,) mm3 of the part within each layer, so that missed volume of one layer is not balanced by stray deposit of another.
+        None: only the sum over the layers is compared.
+    numbers
+        Layer numbers of the covers.
+    """
+    layer_volume, missed, outside = layer_volumes(strategy, covers)
+    if part_volume is None:
+        return layer_volume, missed, outside
+    if within is not None and abs(float(within.sum()) - part_volume) <= EXACT * part_volume:
+        areas = np.bincount(
+            np.asarray(numbers, dtype=np.intp),
+            [cover.area for cover in covers],
+            minlength=len(within),
+        )
+        within = np.r_[within, np.zeros(len(areas) - len(within))]
+        lacking = within - strategy.layer_height * areas
+        return (
+            part_volume,
+            missed + float(np.maximum(lacking, 0.0).sum()),
+            outside + float(np.maximum(-lacking, 0.0).sum()),
+        )
+    uncut = min(uncut, part_volume)
+    cut = part_volume - uncut
+    return (
+        part_volume,
+        missed + uncut + max(cut - layer_volume, 0.0),
+        outside + max(layer_volume - cut, 0.0),
+    )
+
+
+def slab_volumes(solids: SolidsOnHub, strategy: FilledParameters) -> Array | None:
+    """mm3 (k,) that solids in plane layers have between the planes of each; None for other layers."""
+    group = group_of(solids)
+    if group is None or getattr(strategy, "layers", "planes") != "planes":
+        return None  # curved layers may begin on a plane too
+    return slabs(group, strategy.layer_height, np.zeros((0, 3)), np.zeros(0)).part_volume
+
+
+def twice_volume(
+    made_beads: Sequence[MadeBead],
+    strategy: FilledParameters,
+    covers: Sequence[Cover],
+    width: float,
+) -> float:
+    """mm3 of beads that count as `width` mm wide, each as wide as its spacing, beyond the area they cover."""
+    area = 0.0
+    for bead in (made_bead.bead for made_bead in made_beads):
+        step = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
+        wide = np.full(len(bead), width) if bead.width is None else bead.width
+        high = np.ones(len(bead)) if bead.height is None else bead.height / strategy.layer_height
+        section = wide * high * strategy.bead_spacing / width
+        area += float((0.5 * (section[1:] + section[:-1])) @ step)
+    return max(total(covers).over(area), 0.0) * strategy.layer_height

@@ -17,8 +17,7 @@ from ...geometry.curves.guide import Guide
 from ...geometry.curves.plane_curve import divide_edges
 from ...geometry.developable import Developable
 from ...geometry.formatting import place
-from ...geometry.mesh.orientation import connected_pieces
-from ...geometry.mesh.solid import SolidMesh
+from ...geometry.mesh.solid import SolidMesh, connected_pieces
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Group, SolidsOnHub
 from ...geometry.plane import Plane

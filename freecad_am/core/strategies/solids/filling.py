@@ -11,9 +11,8 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from ...filling.centre import bare_parts
+from ...filling.centre import OVER, Beads, PlaneCurve, bare_parts
 from ...filling.cover import Cover, measure_cover, total
-from ...filling.curve import OVER, Beads, PlaneCurve
 from ...filling.fill import Gaps, fill, open_places
 from ...filling.free_width import fit_beads, narrow_beads, share_widths
 from ...filling.sparse import Infill

@@ -13,8 +13,7 @@ from ...issues import InputError
 from ...parameters.strategy import SurfaceParameters
 from ...slicing.first_layer import interpolate_polyline
 from ...slicing.tubes import normal_layers
-from ...slicing.tubes.smooth_spacing import turns_in_wall
-from ...slicing.tubes.wall_layer import WallLayer, local_distances
+from ...slicing.tubes.smooth_spacing import WallLayer, local_distances, turns_in_wall
 from ...types import Array
 from .plan import sliced
 

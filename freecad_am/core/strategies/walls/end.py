@@ -9,7 +9,7 @@ import numpy as np
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.walls.surface_wall import Placed
-from ...slicing.tubes.wall_layer import WallLayer
+from ...slicing.tubes.smooth_spacing import WallLayer
 from ...types import Array, Mask
 
 SAME_END = 1e-6  # mm; a point above the end by no more than this is on it

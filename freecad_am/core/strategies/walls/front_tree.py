@@ -10,8 +10,7 @@ import numpy as np
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...issues import NOTE, Issue, Text
-from ...slicing.fronts.feet import nearest_feet
-from ...slicing.fronts.rims import Rims
+from ...slicing.fronts.rims import Rims, nearest_feet
 
 SAMPLES = 100  # sample points along a front for its parents
 LEAST_COMMON = 2  # of the samples; fewer are a touch at an end

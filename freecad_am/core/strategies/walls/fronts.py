@@ -21,9 +21,8 @@ from ...parameters.process import ProcessParameters
 from ...parameters.strategy import SurfaceParameters
 from ...slicing.curve_points import sample_within_chord
 from ...slicing.fronts import layers as slicing
-from ...slicing.fronts.feet import local_distances, nearest_feet
-from ...slicing.fronts.rims import Rims
-from ...slicing.fronts.slicing import Smoothing
+from ...slicing.fronts.curve import Smoothing
+from ...slicing.fronts.rims import Rims, local_distances, nearest_feet
 from ...slicing.fronts.smooth import turn
 from ...toolpath import Bead, Layer, Toolpath
 from ...types import Array
@@ -33,12 +32,13 @@ from .beads import (
     BeadSettings,
     corner_notes,
     directions_along,
+    notes,
     short_note,
     spacing_issues,
+    symmetry_plane,
     traced,
     turn_notes,
 )
-from .directions import notes, symmetry_plane
 from .front_seams import Middle, seam
 from .front_tree import Piece, drop_short_pieces, events, tree, uncut_pieces
 

@@ -18,22 +18,24 @@ from ...parameters.strategy import SurfaceParameters
 from ...slicing.curve_points import sample_within_chord
 from ...slicing.first_layer import interpolate_polyline
 from ...slicing.tubes import constant_distance, iso_parameter, smooth_spacing
-from ...slicing.tubes.wall_layer import WallLayer, local_distances
+from ...slicing.tubes.smooth_spacing import WallLayer, local_distances
 from ...toolpath import Layer, Toolpath
 from ...types import Array
 from .. import size
 from ..progress import Progress, silent
 from .beads import (
+    Along,
     BeadSettings,
     Traced,
     corner_notes,
     directions_along,
+    notes,
     short_note,
     spacing_issues,
+    symmetry_plane,
     traced,
     turn_notes,
 )
-from .directions import Along, notes, symmetry_plane
 from .end import Stretch, trimmed
 
 FINER = 4  # places per arc of a layer at which its distance from the one below is measured

@@ -8,17 +8,17 @@ from typing import Any
 
 from ....core.parameters.filled import CladdingParameters
 from ....objects.cladding_feature import CladdingFeature
-from ....objects.fields.shown_units import in_user_units
+from ....objects.fields.preferences import in_user_units
 from ....objects.shapes.bodies import FIXTURES
 from ....objects.stage_parts import Link, Outcome
 from ... import recorded
 from ...nodes.wall import WallNodes
 from ...picking import picking
 from ...picking.pick_field import PickField
-from ...texts.translation import marked, sentence, tr
+from ...texts.in_language import marked, sentence, tr
 from ...views.cladding import borders_of
 from ...views.preview import Draft
-from ..pick import PickPanel
+from ..preview import PickPanel
 
 FACES = Link(
     "Source",

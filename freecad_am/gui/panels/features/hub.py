@@ -8,24 +8,22 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
 from ....core.issues import AmError, Issue
 from ....core.parameters.filled import DevelopableParameters
 from ....core.strategies import size
+from ....core.types import Array
 from ....objects.checks import deposit
 from ....objects.developable_feature import DevelopableFeature
-from ....objects.fields.shown_units import in_user_units
+from ....objects.fields.preferences import in_user_units
 from ....objects.shapes.bodies import FIXTURES
 from ....objects.stage_parts import Link, Outcome
 from ... import recorded
 from ...nodes.hub import NOTHING, Drawing, HubNodes, drawing
 from ...picking import picking
 from ...picking.pick_field import PickField
-from ...texts.translation import marked, sentence, tr
+from ...texts.in_language import marked, sentence, tr
 from ...views.preview import Draft
-from ..pick import PickPanel
-from ..preview import coarsened
+from ..preview import PickPanel, coarsened
 
 SOLIDS = Link(
     "Solids",

@@ -11,11 +11,11 @@ from ....core.parameters.strategy import RevolutionParameters
 from ....core.strategies.revolution.plan import Slices, sliced
 from ....objects.checks import deposit
 from ....objects.feature import RevolutionFeature
-from ....objects.fields.shown_units import in_user_units
+from ....objects.fields.preferences import in_user_units
 from ....objects.stage_parts import Outcome
-from ...nodes.meridian import MeridianNodes
-from ...picking import inputs
-from ...texts.translation import sentence, tr, translated
+from ...nodes.lines import MeridianNodes
+from ...picking import shape_inputs
+from ...texts.in_language import sentence, tr, translated
 from ...views.preview import Draft
 from ..preview import PreviewPanel
 
@@ -29,7 +29,7 @@ class FeaturePanel(PreviewPanel):
 
     def __init__(self, obj: Any = None) -> None:
         title = tr("Feature") if obj is None else obj.Label
-        super().__init__(title, inputs.of(RevolutionFeature, obj), obj, MeridianNodes())
+        super().__init__(title, shape_inputs.of(RevolutionFeature, obj), obj, MeridianNodes())
         self.say("")  # what is missing is told where the preview will be
         self.tell(self.choices[0].label, self.choices[0].note, wrong=False)
 

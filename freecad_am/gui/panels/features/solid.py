@@ -10,16 +10,15 @@ from typing import Any
 import numpy as np
 from PySide import QtCore, QtGui
 
-from freecad_am.core.types import Array
-
 from ....core.issues import AmError
+from ....core.layers.along import centre_line
 from ....core.layers.along import field as along
-from ....core.layers.along import guide_edges
 from ....core.layers.leaning import Leaning, find_leaning
 from ....core.layers.planes.stacking import CONTACT_HEIGHTS, prepare_stack
 from ....core.parameters.filled import SolidParameters
 from ....core.strategies import size
-from ....objects.fields.shown_units import in_user_units
+from ....core.types import Array
+from ....objects.fields.preferences import in_user_units
 from ....objects.shapes.bodies import FIXTURES
 from ....objects.solid_feature import SolidFeature
 from ....objects.stage_parts import Link, Outcome
@@ -28,11 +27,10 @@ from ...nodes.hub import NOTHING, Drawing, HubNodes, drawing
 from ...nodes.lines import Faces
 from ...picking import picking
 from ...picking.pick_field import PickField
-from ...texts.translation import marked, sentence, tr
+from ...texts.in_language import marked, sentence, tr
 from ...views.preview import Draft
-from ...widgets.wheel import scrolls
-from ..pick import PickPanel
-from ..preview import coarsened
+from ...widgets.upright import scrolls
+from ..preview import PickPanel, coarsened
 
 STEEPEST = 89  # deg of the slider
 MM2_PER_CM2 = 100.0
@@ -225,7 +223,7 @@ class SolidPanel(PickPanel):
         }
 
     def _placed(self, error: AmError) -> tuple[str, str]:
-        if error.where == guide_edges.WHERE:
+        if error.where == centre_line.WHERE:
             return self.guide.label, sentence(error.message)
         return super()._placed(error)
 

@@ -10,16 +10,16 @@ import numpy as np
 
 from ....core.issues import Issue
 from ....objects.checks import deposit
-from ....objects.fields.shown_units import in_user_units
+from ....objects.fields.preferences import in_user_units
 from ....objects.shapes.bodies import snapshot_of
 from ....objects.stage_parts import Outcome
 from ....objects.surface_feature import SurfaceFeature
 from ...nodes.wall import WallNodes, drawn, first_curves
 from ...picking import picking
 from ...picking.pick_field import PickField
-from ...texts.translation import marked, sentence, tr, translated
+from ...texts.in_language import marked, sentence, tr, translated
 from ...views.preview import Draft
-from ..pick import PickPanel
+from ..preview import PickPanel
 
 _NAMES = {"Source": marked("Wall")}
 _ELEMENTS = {"Source": picking.FACE, "StartEdges": picking.EDGE}

@@ -4,22 +4,21 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from freecad_am.core.geometry.angles import TURN
-from freecad_am.core.types import Array, Integers, Mask
-
+from ....core.geometry.angles import TURN
 from ....core.planning.joint_path import BeadPath
-from ....core.planning.redundancy import across as rotation_across
+from ....core.planning.redundancy import map
 from ....core.planning.redundancy import map as redundancy_map
-from ....core.planning.redundancy.curve import Followed
+from ....core.planning.redundancy.curve import Compared, Followed
 from ....core.planning.redundancy.map import RZ, Columns, Picture, RedundancyMap
-from ...texts.translation import tr
-from ..draft import CONSTANT, Draft
-from ..pair import Pair, pair_of
-from ..source import Source
+from ....core.types import Array, Integers, Mask
+from ...texts.in_language import tr
+from ..draft import CONSTANT, Draft, Pair, Source, pair_of
 
 MOST_LABELS = 14
 ACROSS = 121  # columns of the values of an external axis
@@ -67,10 +66,8 @@ class Board:
         else:
             bead = source.beads[at[0]]
             point = len(bead) // 2 if at[1] is None else at[1]
-            self.offsets = rotation_across.span(
-                source.task(source.branch), bead, point, across, ACROSS
-            )
-            self.columns = rotation_across.across(
+            self.offsets = map.span(source.task(source.branch), bead, point, across, ACROSS)
+            self.columns = map.across(
                 source.beads, source.cell, (at[0], point), across, self.offsets
             )
             if up is not None:
@@ -312,3 +309,81 @@ class Board:
         if not found.any[0]:
             return None
         return arm.links[found.link[0]], arm.names[found.what[0]]
+
+
+OWN, PLANNED = "own", "planned"
+COLOURS = {
+    OWN: (255, 140, 0),
+    PLANNED: (255, 255, 255),
+    "constant": (0, 215, 255),
+    "point-by-point": (255, 70, 220),
+    "layer-by-layer": (140, 255, 120),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A line over the map: values (C,) rad, counted on along each bead; bold: the one that can be dragged."""
+
+    values: Array
+    colour: tuple[int, int, int]
+    bold: bool = False
+    dashed: bool = False
+
+
+@dataclass(frozen=True)
+class Handle:
+    """What the curve is taken hold of by: bead, number among its handles, place."""
+
+    bead: int
+    number: int
+    column: float
+    value: float
+
+
+@dataclass
+class Dragged:
+    """What is being dragged, and the value it was last dragged to. handle: None for the curve itself."""
+
+    handle: Handle | None
+    column: int
+    value: float
+    moved: bool = False
+
+
+def drawn(
+    board: Board,
+    draft: Draft,
+    bead: int,
+    planned: Sequence[Any],
+    compared: Sequence[Compared],
+    followed: Followed,
+    shows: Callable[[str], bool],
+) -> tuple[list[Curve], list[Handle], Array]:
+    """Curves, handles of the user's own at a bead, and places (n, 2) of it that are bad, column and value.
+
+    planned: beads of the joint path; compared: other methods; followed: what the user's own asks of the machine; shows:
+    whether the curve of a name is to be seen.
+    """
+    if board.pair is not None:
+        return [], [], np.zeros((0, 2))  # the rotation is what is planned there
+    curves = [
+        Curve(board.path_values(draft, paths), COLOURS[name], dashed=name == PLANNED)
+        for name, paths in [(PLANNED, planned), *((one.name, one.paths) for one in compared)]
+        if shows(name)
+    ]
+    if not shows(OWN):
+        return curves, [], np.zeros((0, 2))
+    values = board.draft_values(draft)
+    curves.append(Curve(values, COLOURS[OWN], bold=True))
+    return curves, _handles(board, draft, bead, values), board.bad(draft, followed, values)
+
+
+def _handles(board: Board, draft: Draft, bead: int, values: Array) -> list[Handle]:
+    if draft.kind == CONSTANT or not board.shows(bead):
+        return []
+    columns = [board.column_of(bead, float(parameter)) for parameter in draft.handles(bead)]
+    return [
+        Handle(bead, number, column, float(np.interp(column, np.arange(len(values)), values)))
+        for number, column in enumerate(columns)
+    ]

@@ -21,8 +21,8 @@ from ....geometry.angles import TURN
 from ....types import Array, ArrayLike, Index, Mask
 from ...chain import Chain
 from . import on_axis, polynomial, search
-from .plane import Curves, geometry
 from .search import Zeros
+from .shoulder_loops import Curves, geometry
 
 CHUNK = 2048
 MAX_SOLUTIONS = 16  # solutions of six revolute joints

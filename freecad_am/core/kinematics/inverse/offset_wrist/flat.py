@@ -16,9 +16,8 @@ import numpy as np
 
 from ....types import Array, Index
 from . import search
-from .loops import EDGE, whole_turns
-from .plane import Curves
 from .search import SAME_RAD, Zeros
+from .shoulder_loops import EDGE, Curves, whole_turns
 
 SAMPLES = 24  # of a span, finer where the condition is nearly zero
 SEARCH_LEVEL = 1  # level of the search from which steps are divided: samples of a span are as close as those of its first pieces

@@ -16,8 +16,8 @@ import numpy as np
 
 from ....geometry.angles import TURN
 from ....types import Array, Index, Mask
-from .plane import TINY, Curves, geometry
 from .search import Zeros
+from .shoulder_loops import TINY, Curves, geometry
 
 # of the length of the stretched arm: how near to axis 1 the point passes where this is done, how far from it solutions are
 # taken, and within what no others are, for their planes have too few digits

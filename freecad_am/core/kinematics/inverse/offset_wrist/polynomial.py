@@ -40,8 +40,8 @@ from ....types import Array, Index, Mask
 from . import flat as without_digits
 from . import search
 from . import trigonometric_zeros as trigonometric
-from .plane import TINY, Curves
 from .search import Zeros
+from .shoulder_loops import TINY, Curves
 
 NEWTON, NEWTON_RAD = 12, 5e-10  # turns of the flange that follow are off by as much
 SAME_RAD = 1e-6  # nearer zeros that the search finds are those found here

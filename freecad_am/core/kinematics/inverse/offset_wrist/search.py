@@ -19,8 +19,17 @@ import numpy as np
 
 from ....types import Array, Index
 from . import shoulder_loops
-from .loops import Loops, angle_along, loops_of
-from .plane import TINY, Curves, Spot, geometry, plane_of, spot_of
+from .shoulder_loops import (
+    TINY,
+    Curves,
+    Loops,
+    Spot,
+    angle_along,
+    geometry,
+    loops_of,
+    plane_of,
+    spot_of,
+)
 
 SAMPLES = 36
 SAMPLE_SHIFT = 0.37  # of a step: no sample where the arm is stretched or folded, where a zero could have either sign
