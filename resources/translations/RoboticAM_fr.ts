@@ -484,7 +484,7 @@
         <translation>Longueur de tous les cordons.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/macro/parts.py"/>
+        <location filename="../../freecad_am/macro/scan.py"/>
         <source>Length of one unit of the file.</source>
         <translation>Longueur d&apos;une unité du fichier.</translation>
     </message>
@@ -649,7 +649,7 @@
         <translation>Normale du plan de symmetry-plane, en x y z dans les coordonnées de la pièce ; auto : le plan d&apos;un coude.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/file_issues.py"/>
+        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
         <source>Notes on the content of the file.</source>
         <translation>Remarques sur le contenu du fichier.</translation>
     </message>
@@ -836,7 +836,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Robots: obstacles in the cell that nozzle, part and links must clear, such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg of the origin of the file, or of the centre of the box, in the manufacturer&apos;s base frame.</source>
-        <translation>Robots : obstacles dans la cellule que buse, pièce et segments évitent, par exemple : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du centre de la boîte, dans le repère de base du constructeur.</translation>
+        <translation>Robots : obstacles dans la cellule que buse, pièce et corps évitent, comme : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du centre de la boîte, dans le repère de base du fabricant.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -1407,7 +1407,7 @@
         <translation>, car son contenu ne fait pas partie de la forme ({0})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/predicted.py"/>
+        <location filename="../../freecad_am/core/process/model/notes.py"/>
         <source>. At a constant wire feed faster stretches are lower; process.wire.feed_mode: proportional would keep the cross-section, at {0} to {1} mm/s of wire</source>
         <translation>. Au même dévidage les passages plus rapides sont plus bas ; process.wire.feed_mode: proportional garderait la section, à {0} à {1} mm/s de fil</translation>
     </message>
@@ -1417,7 +1417,7 @@
         <translation>. Multiplié par {0} il atteindrait {1} : son fichier est-il en {2} ? Alors exportez-le en mm, ou donnez `scale: {3} mm` avec lui, comme part.scale (dans la fenêtre : Maillages, Échelle)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/predicted.py"/>
+        <location filename="../../freecad_am/core/process/model/notes.py"/>
         <source>. The wire feed follows the speed, at {0} to {1} mm/s, and keeps the cross-section</source>
         <translation>. Le fil court en proportion de la vitesse, de {0} à {1} mm/s, et garde leur section</translation>
     </message>
@@ -1617,7 +1617,7 @@
         <translation>Environ {} tours le long de {:.4g} mm de paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Acceleration</source>
         <translation>Accélération</translation>
     </message>
@@ -1667,7 +1667,7 @@
         <translation>Tous les points de dépôt sont réalisables.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>All files</source>
         <translation>Tous les fichiers</translation>
     </message>
@@ -1767,7 +1767,7 @@
         <translation>ArcL est un mouvement linéaire, et ceux-ci sont des mouvements articulaires, que motion: cartesian remplace</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka/arc.py"/>
+        <location filename="../../freecad_am/posts/kuka/text.py"/>
         <source>ArcTech ends the arc with the last move of a bead and waits there for the crater time of its weld data; use lead_off 0 and set the crater time of {0}, or another program.schedule.by</source>
         <translation>ArcTech termine l&apos;arc avec le dernier mouvement d&apos;un cordon et y reste le temps de cratère de ses données de soudage ; employez lead_off 0 et réglez le temps de cratère de {0}, ou un autre program.schedule.by</translation>
     </message>
@@ -1797,7 +1797,7 @@
         <translation>Axes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Axes on the pendant: -1 if the axis counts the other way; the value shown at zero</source>
         <translation>Axes sur le pupitre : -1 si l&apos;axe compte dans l&apos;autre sens ; la valeur montrée à zéro</translation>
     </message>
@@ -1812,12 +1812,12 @@
         <translation>L&apos;axe 2 est à a1 devant l&apos;axe 1 et à c1 au-dessus de la base ; c2 jusqu&apos;à l&apos;axe 3 ; l&apos;axe 4 est à a2 de l&apos;axe 3 (négatif : au-dessus de lui), b de côté ; c3 jusqu&apos;au centre du poignet, c4 jusqu&apos;à la bride. L&apos;angle du bras est q · signe - décalage ; à zéro il se tend droit vers le haut.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Axis 3 is shown relative to link 2, unchanged</source>
         <translation>L&apos;axe 3 est montré par rapport au corps 2, tel qu&apos;il est</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Axis 3 is shown relative to the horizontal (FANUC, some ABB)</source>
         <translation>L&apos;axe 3 est montré par rapport à l&apos;horizontale (FANUC, certains ABB)</translation>
     </message>
@@ -1827,7 +1827,7 @@
         <translation>Les BASE_DATA et TOOL_DATA des numéros du programme sont ceux de la cellule, avec leur charge</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Back</source>
         <translation>Retour</translation>
     </message>
@@ -1842,7 +1842,7 @@
         <translation>Bande</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Base</source>
         <translation>Base</translation>
     </message>
@@ -1852,7 +1852,7 @@
         <translation>Faces de base</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Base: the manufacturer&apos;s base frame, in which the pendant shows positions, relative to the floor plate. FANUC places it at the height of axis 2. Flange: in the last link, with Z out of the plate. Rotation: about X, then Y, then Z.</source>
         <translation>Base : le repère de base du fabricant, dans lequel le pupitre montre les positions, par rapport à la plaque au sol. FANUC le place à la hauteur de l&apos;axe 2. Bride : dans le dernier corps, Z sortant de la plaque. Rotation : autour de X, puis Y, puis Z.</translation>
     </message>
@@ -1942,7 +1942,7 @@
         <translation>Direction de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/form.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>Build directions</source>
         <translation>Directions de dépôt</translation>
     </message>
@@ -1957,12 +1957,12 @@
         <translation>Par défaut : {}.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/cam_path.py"/>
+        <location filename="../../freecad_am/interop/export.py"/>
         <source>CAM (Path)</source>
         <translation>CAM (Path)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/cam_path.py"/>
+        <location filename="../../freecad_am/interop/export.py"/>
         <source>CAM path</source>
         <translation>trajectoire CAM</translation>
     </message>
@@ -2042,7 +2042,7 @@
         <translation>Certificat</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/readout.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Certificate: {:.4g} as planned, no rotation goes below {:.4g}: a gap of {:.1f} %, {:.1f} % in layer {} bead {}</source>
         <translation>Certificat : {:.4g} tel que planifié, aucune rotation ne descend sous {:.4g} : un écart de {:.1f} %, de {:.1f} % dans la couche {} cordon {}</translation>
     </message>
@@ -2092,12 +2092,12 @@
         <translation>Choisir le fichier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>Choose the file of the measured points.</source>
         <translation>Choisissez le fichier des points mesurés.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>Choose…</source>
         <translation>Choisir…</translation>
     </message>
@@ -2197,7 +2197,7 @@
         <translation>Cordons fermés couche par couche, ou une spirale continue.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Closed form (mm): {}</source>
         <translation>Forme explicite (mm) : {}</translation>
     </message>
@@ -2212,7 +2212,7 @@
         <translation>Couleur des machines</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/form.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>Colours</source>
         <translation>Couleurs</translation>
     </message>
@@ -2222,7 +2222,7 @@
         <translation>Couleurs des trajectoires</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/dock.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Compare methods</source>
         <translation>Comparer les méthodes</translation>
     </message>
@@ -2262,7 +2262,7 @@
         <translation>Recalculer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/work.py"/>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>Computing</source>
         <translation>Calcul</translation>
     </message>
@@ -2277,12 +2277,12 @@
         <translation>Calcul en cours…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Condition</source>
         <translation>Condition</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Condition of the Jacobian (0 is singular)</source>
         <translation>Condition du jacobien (0 est singulier)</translation>
     </message>
@@ -2327,7 +2327,7 @@
         <translation>Fait toutes les étapes pour la forme sélectionnée, de la cellule au programme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Criterion</source>
         <translation>Critère</translation>
     </message>
@@ -2342,7 +2342,7 @@
         <translation>Cubique</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Curve</source>
         <translation>Courbe</translation>
     </message>
@@ -2462,17 +2462,17 @@
         <translation>Sortie de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Deposit rate</source>
         <translation>Débit de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Deposited mass</source>
         <translation>Masse déposée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/process.py"/>
+        <location filename="../../freecad_am/plots/joints.py"/>
         <source>Deposited of the part: {0} %</source>
         <translation>Déposé de la pièce : {0} %</translation>
     </message>
@@ -2587,7 +2587,7 @@
         <translation>Direction x y z du dépôt vers l&apos;outil, dans les coordonnées de la pièce, là où ni les courbes ni des faces n&apos;en indiquent.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Distance between layers</source>
         <translation>Distance entre les couches</translation>
     </message>
@@ -2602,7 +2602,7 @@
         <translation>Distance entre couches voisines.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/process.py"/>
+        <location filename="../../freecad_am/plots/joints.py"/>
         <source>Distance to the layer before (asked: {0} mm)</source>
         <translation>Distance à la couche précédente (demandée : {0} mm)</translation>
     </message>
@@ -2622,7 +2622,7 @@
         <translation>Descendre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/form.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>Draw beads as lines, or as tubes of their width and layer height</source>
         <translation>Dessiner les cordons en lignes, ou en tubes de leur largeur et hauteur de couche</translation>
     </message>
@@ -2672,7 +2672,7 @@
         <translation>Arêtes, fil, esquisse ou tableau de points à déposer en cordons.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>Edge{0} at {1}</source>
         <translation>Edge{0} en {1}</translation>
     </message>
@@ -2692,12 +2692,12 @@
         <translation>Fin</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>Enter the pose selected in the table into the cell</source>
         <translation>Entrer dans la cellule la pose choisie dans le tableau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Equipment next to a robot: a cell uses it as external axes.</source>
         <translation>Équipement à côté d&apos;un robot : une cellule l&apos;utilise comme axes externes.</translation>
     </message>
@@ -2852,7 +2852,7 @@
         <translation>Nombre minimal de points d&apos;un tour entier, si petit que soit son rayon.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>File</source>
         <translation>Fichier</translation>
     </message>
@@ -2892,7 +2892,7 @@
         <translation>Largeur de remplissage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/parts.py"/>
+        <location filename="../../freecad_am/gui/panels/stage.py"/>
         <source>Filling in detail</source>
         <translation>Détails du remplissage</translation>
     </message>
@@ -2922,37 +2922,37 @@
         <translation>Première couche : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/needs.py"/>
+        <location filename="../../freecad_am/gui/tools/whats_this.py"/>
         <source>First make a cell: Cell….</source>
         <translation>Faites d&apos;abord une cellule : Cellule….</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/needs.py"/>
+        <location filename="../../freecad_am/gui/tools/whats_this.py"/>
         <source>First make a feature with Feature…, Wall on Part…, Solid…, Solids on Hub…, Curves… or Cladding….</source>
         <translation>Créez d&apos;abord un élément : avec Élément…, Paroi sur pièce…, Solide…, Solides sur moyeu…, Courbes… ou Rechargement….</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/needs.py"/>
+        <location filename="../../freecad_am/gui/tools/whats_this.py"/>
         <source>First make a joint path: Joint Path…, or all stages at once: New Job….</source>
         <translation>Faites d&apos;abord une trajectoire articulaire : Trajectoire articulaire…, ou toutes les étapes à la fois : Nouveau travail….</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/needs.py"/>
+        <location filename="../../freecad_am/gui/tools/whats_this.py"/>
         <source>First make a toolpath: Toolpath….</source>
         <translation>Faites d&apos;abord une trajectoire d&apos;outil : Trajectoire d&apos;outil….</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/needs.py"/>
+        <location filename="../../freecad_am/gui/tools/whats_this.py"/>
         <source>First open a part with faces, such as a STEP file; a mesh has none.</source>
         <translation>Ouvrez d&apos;abord une pièce à faces, comme un fichier STEP ; un maillage n&apos;en a pas.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/needs.py"/>
+        <location filename="../../freecad_am/gui/tools/tool.py"/>
         <source>First open a part, or create a document.</source>
         <translation>Ouvrez d&apos;abord une pièce, ou créez un document.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/needs.py"/>
+        <location filename="../../freecad_am/gui/tools/whats_this.py"/>
         <source>First open a part, or import one into this document.</source>
         <translation>Ouvrez d&apos;abord une pièce, ou importez-en une dans ce document.</translation>
     </message>
@@ -2962,7 +2962,7 @@
         <translation>Ajustement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Fit of the bead widths</source>
         <translation>Ajustement des largeurs de cordon</translation>
     </message>
@@ -2977,7 +2977,7 @@
         <translation>Montages</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Flange</source>
         <translation>Bride</translation>
     </message>
@@ -2992,7 +2992,7 @@
         <translation>Pour les trajectoires, de la plus petite à la plus grande valeur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>For serial angles: each axis relative to the previous link. Revolute axes in deg, deg/s, deg/s² and deg/s³, prismatic ones in mm, mm/s, mm/s² and mm/s³. Leave both ends of a range empty for a continuous axis; leave unknown speeds, accelerations and jerks empty.</source>
         <translation>Pour les angles en série : chaque axe par rapport au corps précédent. Axes rotatifs en deg, deg/s, deg/s² et deg/s³, axes linéaires en mm, mm/s, mm/s² et mm/s³. Laissez vides les deux bouts d&apos;une plage pour un axe continu ; laissez vides les vitesses, accélérations et jerks inconnus.</translation>
     </message>
@@ -3032,12 +3032,12 @@
         <translation>Repère à poser sur le plateau : celui de l&apos;élément, ou celui du fichier de la pièce.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Frames (mm, deg): the manufacturer&apos;s base on the floor, the flange in the last link</source>
         <translation>Repères (mm, deg) : la base du constructeur sur le sol, la bride dans le dernier corps</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Frames and conventions</source>
         <translation>Repères et conventions</translation>
     </message>
@@ -3062,12 +3062,12 @@
         <translation>FreeCAD n&apos;a pas écrit de fichier STEP ; voyez la vue rapport, ou écrivez DXF</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>From</source>
         <translation>De</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/form.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>From layer</source>
         <translation>De la couche</translation>
     </message>
@@ -3272,7 +3272,7 @@
         <translation>H{0} commute le dépôt ; prenez-en un autre pour les programmes de soudage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/fields.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>If empty, it is sized for the first layer.</source>
         <translation>Laissé vide, il est aussi grand que la première couche le demande.</translation>
     </message>
@@ -3287,7 +3287,7 @@
         <translation>Dans un fichier de travail : {} ; dans les macros : {}.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/after.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>In planar layers, as curved ones were infeasible. {}</source>
         <translation>En couches planes, car des couches courbes n’étaient pas réalisables. {}</translation>
     </message>
@@ -3342,17 +3342,17 @@
         <translation>Nombre d&apos;itérations après lequel l&apos;optimiseur renonce à une couche.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Its controller reads</source>
         <translation>Sa commande lit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>J3 as shown</source>
         <translation>J3 tel que montré</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Jerk</source>
         <translation>Jerk</translation>
     </message>
@@ -3367,17 +3367,17 @@
         <translation>Trajectoire articulaire…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Joint accelerations</source>
         <translation>Accélérations articulaires</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Joint angles</source>
         <translation>Angles articulaires</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Joint jerks</source>
         <translation>Jerks articulaires</translation>
     </message>
@@ -3392,12 +3392,12 @@
         <translation>Les programmes articulaires comptent sur le bras nominal ; le bras étalonné s&apos;en écarte jusqu&apos;à quelques millimètres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Joint speeds</source>
         <translation>Vitesses articulaires</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Joint speeds in %</source>
         <translation>Vitesses articulaires en %</translation>
     </message>
@@ -3407,7 +3407,7 @@
         <translation>Les vitesses articulaires du fichier de machine sont celles que la commande appelle 100 %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Joint speeds while depositing</source>
         <translation>Vitesses articulaires pendant le dépôt</translation>
     </message>
@@ -3552,12 +3552,12 @@
         <translation>Couche {layer} ({first} à {last}), cordon {bead}, point {point}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>Layer {} (0 to {})</source>
         <translation>Couche {} (0 à {})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/readout.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Layer {} bead {} point {}</source>
         <translation>Couche {} cordon {} point {}</translation>
     </message>
@@ -3727,7 +3727,7 @@
         <translation>Le faire suivre une expression, comme {}Spreadsheet.height / 2</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Let the planner choose</source>
         <translation>Laisser choisir</translation>
     </message>
@@ -3747,12 +3747,12 @@
         <translation>Limites</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Limits from the data sheet; leave them empty if unknown. The limits on the previous page are relative to link 2.</source>
         <translation>Limites de la fiche technique ; laissez vide si elles sont inconnues. Les limites de la page précédente sont relatives au corps 2.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Limits, speeds, accelerations and jerks</source>
         <translation>Limites, vitesses, accélérations et jerks</translation>
     </message>
@@ -3812,7 +3812,7 @@
         <translation>Plus long chemin d&apos;une ligne d&apos;un zigzag à la suivante, en part de la distance des cordons ; là où il serait plus long un autre zigzag commence.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/form.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>Look</source>
         <translation>Aspect</translation>
     </message>
@@ -3822,7 +3822,7 @@
         <translation>Aspect</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Lost</source>
         <translation>Perdus</translation>
     </message>
@@ -3887,7 +3887,7 @@
         <translation>Constructeur et modèle de la machine.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Manufacturer and model</source>
         <translation>Constructeur et modèle</translation>
     </message>
@@ -3897,7 +3897,7 @@
         <translation>Carte de la rotation libre…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Margin</source>
         <translation>Marge</translation>
     </message>
@@ -3977,7 +3977,7 @@
         <translation>Épaisseur moyenne</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>Measured points</source>
         <translation>Points mesurés</translation>
     </message>
@@ -4057,7 +4057,7 @@
         <translation>Modifié (Craig) : Rot(x, alpha) Trans(x, a) Rot(z, theta) Trans(z, d)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>More</source>
         <translation>Plus</translation>
     </message>
@@ -4097,12 +4097,12 @@
         <translation>Nom</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Name and posts</source>
         <translation>Nom et post-processeurs</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Name in jobs</source>
         <translation>Nom dans les travaux</translation>
     </message>
@@ -4117,7 +4117,7 @@
         <translation>Nom du matériau ; repris dans le rapport.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
         <source>Name of the program and of its files; the controller may reject some names</source>
         <translation>Nom du programme et de ses fichiers ; la commande peut en refuser</translation>
     </message>
@@ -4187,7 +4187,7 @@
         <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche, et aucun corps du robot ne touche rien</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>No measurement: compare the deposit predicted for the toolpath</source>
         <translation>Rien n&apos;a été mesuré : le dépôt que la trajectoire d&apos;outil devrait laisser</translation>
     </message>
@@ -4357,12 +4357,12 @@
         <translation>À la couche suivante</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/slider_row.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>One back</source>
         <translation>Un en arrière</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/form.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>One layer only</source>
         <translation>Une seule couche</translation>
     </message>
@@ -4372,7 +4372,7 @@
         <translation>Une ligne de plus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/slider_row.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>One on</source>
         <translation>Un en avant</translation>
     </message>
@@ -4407,7 +4407,7 @@
         <translation>Ouvrir une pièce…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/open_part.py"/>
+        <location filename="../../freecad_am/gui/tools/openers.py"/>
         <source>Open part</source>
         <translation>Ouvrir une pièce</translation>
     </message>
@@ -4427,7 +4427,7 @@
         <translation>Ordre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/parts.py"/>
+        <location filename="../../freecad_am/gui/panels/stage.py"/>
         <source>Order and waits</source>
         <translation>Ordre et attentes</translation>
     </message>
@@ -4537,7 +4537,7 @@
         <translation>Partie de la cellule</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/open_part.py"/>
+        <location filename="../../freecad_am/gui/tools/openers.py"/>
         <source>Parts, meshes and tables of points ({})</source>
         <translation>Pièces, maillages et tableaux de points ({})</translation>
     </message>
@@ -4577,7 +4577,7 @@
         <translation>Placement…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Plan constant, point-by-point and layer-by-layer in this configuration, for comparison</source>
         <translation>Planifier constant, point-by-point et layer-by-layer dans cette configuration, pour comparer</translation>
     </message>
@@ -4587,7 +4587,7 @@
         <translation>Planifier la trajectoire articulaire…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Plan the joint path again layer by layer, without a given curve</source>
         <translation>Replanifier la trajectoire articulaire couche par couche, sans courbe donnée</translation>
     </message>
@@ -4597,12 +4597,12 @@
         <translation>Plan</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>Planned</source>
         <translation>Prévu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>Planned is missing, as it was deleted; choose another</source>
         <translation>Planned manque ; il a été supprimé, choisissez-en un autre</translation>
     </message>
@@ -4667,7 +4667,7 @@
         <translation>Graphiques…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/form.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>Point</source>
         <translation>Point</translation>
     </message>
@@ -4677,7 +4677,7 @@
         <translation>Points</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>Points and meshes</source>
         <translation>Points et maillages</translation>
     </message>
@@ -4702,7 +4702,7 @@
         <translation>Points desservis, %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Points that are unreachable, beyond a limit, near a singularity or not allowed</source>
         <translation>Points hors d&apos;atteinte, au-delà d&apos;une limite, près d&apos;une singularité ou non permis</translation>
     </message>
@@ -4727,7 +4727,7 @@
         <translation>Poses avant la première ligne et après la dernière, si le tableau en a</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>Poses to try</source>
         <translation>Poses à essayer</translation>
     </message>
@@ -4752,32 +4752,32 @@
         <translation>Post-processeur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>Predicted</source>
         <translation>Prédit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Predicted height by layer</source>
         <translation>Hauteur prévue par couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Predicted height of the bead</source>
         <translation>Hauteur prévue du cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Predicted heights</source>
         <translation>Hauteurs prévues</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Predicted width of the bead</source>
         <translation>Largeur prévue du cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Predicted widths and speeds</source>
         <translation>Largeurs et vitesses prévues</translation>
     </message>
@@ -4892,12 +4892,12 @@
         <translation>Ce que disent les couleurs</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/form.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>Quantity shown by the colours of the beads</source>
         <translation>Ce que disent les couleurs des cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>Quantity shown by the colours of the places</source>
         <translation>Ce que disent les couleurs des endroits</translation>
     </message>
@@ -4987,12 +4987,12 @@
         <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Range of each joint on this curve; red beyond a limit</source>
         <translation>D&apos;où à où va chaque articulation sur cette courbe ; rouge au-delà d&apos;une limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/bars.py"/>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>Range of each joint, its distance to the nearer limit, and its speed as a share of the maximum</source>
         <translation>Plage de chaque articulation, sa distance à la limite la plus proche, et sa vitesse en part du maximum</translation>
     </message>
@@ -5027,7 +5027,7 @@
         <translation>Vitesse rapide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>Reach of the robot</source>
         <translation>Portée du robot</translation>
     </message>
@@ -5042,7 +5042,7 @@
         <translation>Prend les cordons qui ont été mesurés dans un fichier de valeurs séparées par des virgules</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Remarks</source>
         <translation>Remarques</translation>
     </message>
@@ -5072,7 +5072,7 @@
         <translation>De combien le dépôt doit dépasser la pièce partout, pour être usiné : sa forme est prédite et comparée à la pièce ; rien : elle ne l&apos;est pas.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Reset to the planned curve</source>
         <translation>Revenir à la courbe planifiée</translation>
     </message>
@@ -5134,7 +5134,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Robots: obstacles in the cell that nozzle, part and links must clear, such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg of the origin of the file, or of the centre of the box, in the manufacturer&apos;s base frame.</source>
-        <translation>Robots : obstacles dans la cellule que buse, pièce et segments évitent, par exemple : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du centre de la boîte, dans le repère de base du constructeur.</translation>
+        <translation>Robots : obstacles dans la cellule que buse, pièce et corps évitent, comme : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du centre de la boîte, dans le repère de base du fabricant.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -5272,12 +5272,12 @@
         <translation>Cherche des positions de la pièce, de son positionneur ou du point de dépôt, et montre l&apos;espace de travail du robot</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/process.py"/>
+        <location filename="../../freecad_am/plots/joints.py"/>
         <source>Section of layer {0}</source>
         <translation>Section de la couche {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Section of the last layer</source>
         <translation>Section de la dernière couche</translation>
     </message>
@@ -5377,7 +5377,7 @@
         <translation>Épaule, coude et poignet ; derrière, la part de la carte qu&apos;elle atteint dans ses limites</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/form.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>Show all</source>
         <translation>Tout montrer</translation>
     </message>
@@ -5402,7 +5402,7 @@
         <translation>Montrer la machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>Show the workspace of the robot: blue for few directions, yellow for all directions</source>
         <translation>Montrer l&apos;espace de travail du robot : bleu pour peu de directions, jaune pour toutes</translation>
     </message>
@@ -5412,7 +5412,7 @@
         <translation>Montrer ce travail seul</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Shown on the map</source>
         <translation>Montré sur la carte</translation>
     </message>
@@ -5422,7 +5422,7 @@
         <translation>Montre une trajectoire d&apos;outil ou articulaire couche par couche et point par point</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Shows at zero</source>
         <translation>Montre à zéro</translation>
     </message>
@@ -5447,7 +5447,7 @@
         <translation>Le côté des faces qui est recouvert : celui vers lequel pointent leurs normales, l&apos;extérieur d&apos;un solide (front), ou l&apos;autre côté de faces qui ne sont d&apos;aucun solide (back).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>Sign</source>
         <translation>Signe</translation>
     </message>
@@ -5472,7 +5472,7 @@
         <translation>Simulation de {title}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Six revolute axes, without a spherical wrist.</source>
         <translation>Six axes rotatifs, sans poignet sphérique.</translation>
     </message>
@@ -5582,7 +5582,7 @@
         <translation>Source manque ; choisissez la forme à déposer, ou certaines de ses faces</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Source of the check poses</source>
         <translation>D&apos;où viennent les poses de contrôle</translation>
     </message>
@@ -5617,12 +5617,12 @@
         <translation>Écartement à</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Speed</source>
         <translation>Vitesse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Speed along the path</source>
         <translation>Vitesse le long de la trajectoire</translation>
     </message>
@@ -5717,7 +5717,7 @@
         <translation>Départs</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/parts.py"/>
+        <location filename="../../freecad_am/gui/panels/stage.py"/>
         <source>Starts and ends of beads</source>
         <translation>Débuts et fins des cordons</translation>
     </message>
@@ -5727,7 +5727,7 @@
         <translation>Commence sur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/standing.py"/>
+        <location filename="../../freecad_am/gui/panels/stage.py"/>
         <source>Status: {}</source>
         <translation>État : {}</translation>
     </message>
@@ -5772,7 +5772,7 @@
         <translation>Substrat : cliquez-le avec Ctrl dans l&apos;arbre ou la vue 3D</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Sum of the heights, off the layers</source>
         <translation>Somme des hauteurs, écart aux couches</translation>
     </message>
@@ -5882,7 +5882,7 @@
         <translation>Les broches numériques et analogiques sont reliées au procédé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>The displacement of the joints (Chalvin 2020, eq. 17), and its ratio to the plan</source>
         <translation>Le déplacement des articulations (Chalvin 2020, éq. 17), et son rapport au plan</translation>
     </message>
@@ -5937,7 +5937,7 @@
         <translation>La première couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/form.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>The first layer shown</source>
         <translation>La première couche montrée</translation>
     </message>
@@ -5967,12 +5967,12 @@
         <translation>Valeur de l&apos;entrée dans un programme à 0 degré Celsius.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/after.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>The job is ready. Simulate… plays it; double-click Program to read it, Cell to configure your machine.</source>
         <translation>Le travail est prêt. Simuler… le joue ; double-cliquez sur le programme pour le lire, sur la cellule pour régler votre machine.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/after.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>The joint path is ready, but no post writes a program for this machine and setup yet. Simulate… plays it, Export Path… writes its points as a table.</source>
         <translation>La trajectoire articulaire est prête ; aucun post-processeur n&apos;écrit encore de programme pour cette machine et cette configuration. Simuler… la joue, Exporter la trajectoire… écrit ses points dans un tableau.</translation>
     </message>
@@ -5987,7 +5987,7 @@
         <translation>Les articulations amènent l’outil à chaque point</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>The largest joint speed at the travel speed, as a share of its maximum</source>
         <translation>La plus grande part de la vitesse maximale d&apos;une articulation à la vitesse d&apos;avance</translation>
     </message>
@@ -5997,12 +5997,12 @@
         <translation>La dernière couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/form.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>The last layer shown</source>
         <translation>La dernière couche montrée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/form.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>The last point shown, counted from 0 in the last layer</source>
         <translation>Le dernier point montré, compté à partir de 0 dans la dernière couche</translation>
     </message>
@@ -6037,7 +6037,7 @@
         <translation>La machine ne donne pas ces poses ; entrez-en au moins trois pour localiser l&apos;erreur.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>The machine is saved in the folder of your own machines; cells and jobs refer to it by this name.</source>
         <translation>La machine est gardée dans le dossier de vos propres machines ; cellules et travaux la connaissent par son nom.</translation>
     </message>
@@ -6047,12 +6047,12 @@
         <translation>La machine donne toutes les {} poses, à {} mm près.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/fields.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>The machine that deposits, or a saved cell; the program matches its controller</source>
         <translation>La machine qui dépose, ou une cellule enregistrée ; le programme est écrit pour sa commande</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/drawn/canvas.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/drawn/painting.py"/>
         <source>The map is being computed…</source>
         <translation>La carte est en cours de calcul…</translation>
     </message>
@@ -6062,12 +6062,12 @@
         <translation>La carte a été fermée : {why}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>The measured points, or a scanned mesh: {}</source>
         <translation>Les points mesurés, ou un maillage numérisé : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>The next page compares these values with poses of your controller and points out likely errors: leave unknown values as they are.</source>
         <translation>La page suivante compare ces valeurs avec des poses de votre commande et indique les erreurs probables : laissez les valeurs inconnues telles quelles.</translation>
     </message>
@@ -6152,12 +6152,12 @@
         <translation>La simulation est terminée : {why}.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>The smallest distance to a limit, as a share of half the range of the joint</source>
         <translation>La plus petite part de la demi-plage d&apos;une articulation qui reste jusqu&apos;à une limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>The smallest inverse condition number of the Jacobian, sigma_min / sigma_max</source>
         <translation>Le plus petit sigma_min / sigma_max du jacobien</translation>
     </message>
@@ -6212,7 +6212,7 @@
         <translation>La table d’outils a la longueur de la torche, et la cinématique a les décalages du fichier machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/form.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>The toolpath or joint path to show</source>
         <translation>La trajectoire d&apos;outil ou articulaire à montrer</translation>
     </message>
@@ -6332,7 +6332,7 @@
         <translation>Il n&apos;y a pas d&apos;autre élément dans ce document ; créez-le d&apos;abord.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>This document has nothing to compare with; open the part first.</source>
         <translation>Il n&apos;y a rien à quoi comparer dans ce document ; ouvrez d&apos;abord la pièce.</translation>
     </message>
@@ -6347,7 +6347,7 @@
         <translation>Ce texte est d&apos;une planification antérieure ; ne l&apos;exécutez pas.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Three prismatic and two revolute axes.</source>
         <translation>Trois axes de translation et deux de rotation.</translation>
     </message>
@@ -6402,12 +6402,12 @@
         <translation>Durée : {}, {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>To</source>
         <translation>À</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/form.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>To layer</source>
         <translation>À la couche</translation>
     </message>
@@ -6487,7 +6487,7 @@
         <translation>Rail</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Travel speed</source>
         <translation>Vitesse d&apos;avance</translation>
     </message>
@@ -6517,7 +6517,7 @@
         <translation>Écrêtage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>Try all poses in the background; can be cancelled</source>
         <translation>Essayer toutes les poses en arrière-plan ; peut être annulé</translation>
     </message>
@@ -6537,7 +6537,7 @@
         <translation>Torsion autour de x, deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/pendant.py"/>
+        <location filename="../../freecad_am/gui/widgets/fields.py"/>
         <source>Type the pose as this controller&apos;s pendant shows it, X Y Z in mm first</source>
         <translation>Saisissez la pose telle que le pupitre de cette commande l&apos;affiche, X Y Z en mm d&apos;abord</translation>
     </message>
@@ -6607,12 +6607,12 @@
         <translation>Utilisez des cordons plus larges de {0} mm de chaque côté, par process.bead_width, ou laissez moins à usiner</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Use the curve for the joint path, and plan it again</source>
         <translation>Utiliser la courbe pour la trajectoire articulaire, et la planifier de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>Use this</source>
         <translation>Utiliser</translation>
     </message>
@@ -6677,7 +6677,7 @@
         <translation>Volume</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Volume by layer</source>
         <translation>Volume par couche</translation>
     </message>
@@ -6752,7 +6752,7 @@
         <translation>Ce que donne le polynôme : la vraie rotation autour de l&apos;axe de l&apos;outil, ou le RZ de l&apos;article.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/fields.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>What the robot carries. If the job is infeasible in the proposed cell, another position, another branch or a positioner is proposed and shown.</source>
         <translation>Ce que porte le robot. Si le travail ne peut se faire dans la cellule qui convient au robot, un autre emplacement, une autre branche ou un positionneur est proposé, et le robot y est montré.</translation>
     </message>
@@ -6782,7 +6782,7 @@
         <translation>Largeur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Width of beads</source>
         <translation>Largeur des cordons</translation>
     </message>
@@ -6967,7 +6967,7 @@
         <translation>un étalonnage demande sa machine ; écrivez machine: {{name: ur-ur10e, calibration: my_robot.yaml}}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/placement/moved.py"/>
+        <location filename="../../freecad_am/core/placement/place.py"/>
         <source>a cell with {0} has no {1} that places the part; use {2}</source>
         <translation>une cellule avec {0} n&apos;a pas de {1} qui place la pièce ; utilisez {2}</translation>
     </message>
@@ -7122,7 +7122,7 @@
         <translation>un mouvement de {0} s est plus long que {1} s ; augmentez la vitesse ou ajoutez des points</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur/numbers.py"/>
+        <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>a move takes {0} ms, less than the {1} ms cycle of the controller; use a larger strategy.chord_error or a lower process.travel_speed</source>
         <translation>un mouvement dure {0} ms, moins que le pas de {1} ms de la commande ; utilisez un strategy.chord_error plus grand ou un process.travel_speed plus petit</translation>
     </message>
@@ -7172,7 +7172,7 @@
         <translation>un plan</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/moves.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>a point of {0} needs another arm configuration</source>
         <translation>un point de {0} demande une autre configuration du bras</translation>
     </message>
@@ -7212,12 +7212,12 @@
         <translation>une position sur la pièce demande X Y Z et tous les axes rotatifs</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>a prismatic axis has two ends; enter both</source>
         <translation>un axe de translation a deux bouts ; saisissez les deux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/names.py"/>
+        <location filename="../../freecad_am/posts/catalogue.py"/>
         <source>a program&apos;s name</source>
         <translation>le nom d&apos;un programme</translation>
     </message>
@@ -7252,7 +7252,7 @@
         <translation>un rapide demanderait {0} % de la plus grande vitesse articulaire, et KRL prend des pourcentages entiers de {1} à 100 ; prenez une autre vitesse rapide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/filling/strips.py"/>
+        <location filename="../../freecad_am/core/filling/fill.py"/>
         <source>a region around the hub is narrower than a bead ({0} mm) everywhere; use thin = single, a narrower bead or a margin</source>
         <translation>une région autour du moyeu n&apos;est nulle part aussi large qu&apos;un cordon ({0} mm) ; choisissez thin = single, un cordon plus étroit ou une marge</translation>
     </message>
@@ -7282,7 +7282,7 @@
         <translation>une seconde sortie est commandée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>a solid was inside out and was turned</source>
         <translation>un solide était à l’envers et a été retourné</translation>
     </message>
@@ -7307,7 +7307,7 @@
         <translation>une spirale n&apos;a pas de couches entre lesquelles attendre ; utilisez path: layers, une process.travel_speed plus lente, ou retirez cette clé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/turns/fit.py"/>
+        <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
         <source>a spiral needs a continuous axis, but this set of limits bounds it; use path: layers, or a limit set with a continuous axis</source>
         <translation>une spirale tourne un axe sans fin, et ce jeu de limites l&apos;arrête ; utilisez path: layers, ou un jeu de limites à axe sans fin</translation>
     </message>
@@ -7332,7 +7332,7 @@
         <translation>un temps comme 0.1 s</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>a toolpath has no joints yet; choose a joint path</source>
         <translation>une trajectoire d&apos;outil n&apos;a pas encore d&apos;articulations ; choisissez une trajectoire articulaire</translation>
     </message>
@@ -7352,7 +7352,7 @@
         <translation>un triangle y a un point dont le numéro dépasse 64 bits</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/process_data.py"/>
+        <location filename="../../freecad_am/posts/abb/modules.py"/>
         <source>a trigger is not of the module, or set twice</source>
         <translation>un déclencheur n&apos;est pas du module, ou est défini deux fois</translation>
     </message>
@@ -7377,7 +7377,7 @@
         <translation>une valeur de {0} est fixée, mais {1} n&apos;en dépend pas ; vérifiez les noms</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>a vertex coordinate is not a number; export it again</source>
         <translation>une coordonnée de ses sommets n&apos;est pas un nombre ; exportez-le de nouveau</translation>
     </message>
@@ -7457,7 +7457,7 @@
         <translation>les centres d&apos;arc absolus sont inconnus ; donnez I et J depuis le début de l&apos;arc</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>acceleration</source>
         <translation>accélération</translation>
     </message>
@@ -7472,7 +7472,7 @@
         <translation>toutes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution/turn.py"/>
+        <location filename="../../freecad_am/brep/revolution/patch.py"/>
         <source>all around</source>
         <translation>sur tout le tour</translation>
     </message>
@@ -7617,7 +7617,7 @@
         <translation>et {} autres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>angle</source>
         <translation>angle</translation>
     </message>
@@ -7642,7 +7642,7 @@
         <translation>un autre programme est appelé au sein d&apos;un cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/placement/moved.py"/>
+        <location filename="../../freecad_am/core/placement/place.py"/>
         <source>another set-up</source>
         <translation>une autre installation</translation>
     </message>
@@ -7702,12 +7702,12 @@
         <translation>la hauteur que leur couche a là, {0} à {1} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/pendant.py"/>
+        <location filename="../../freecad_am/gui/widgets/fields.py"/>
         <source>as on the pendant of</source>
         <translation>comme sur le pupitre de</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>as the axes can</source>
         <translation>selon les axes</translation>
     </message>
@@ -7737,7 +7737,7 @@
         <translation>si fort qu&apos;elle soit redressée, la buse touche le plateau ou le dépôt, des cordons de {0} mm, dans {1} couche(s), à partir de la couche {2} ; utilisez une buse plus fine, une autre paroi, ou un process.bead_width plus petit là où les cordons sont moins larges</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance/notes.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/look.py"/>
         <source>at every possible tilt, the nozzle touches substrate, fixture, platform or deposit at {0} point(s) of layers {1} to {2}</source>
         <translation>quelle que soit l&apos;inclinaison de l&apos;outil, la buse touche le substrat, un montage, la plateforme ou le dépôt en {0} point(s) des couches {1} à {2}</translation>
     </message>
@@ -7753,7 +7753,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/size.py"/>
-        <source>at the requested tool axes the nozzle touches beads of {0} points; the search for clear tilts takes about {1} min of the processor, several times that where the tool would turn too fast; a smaller build_direction.lead and build_direction.tilt, or clearance: none, avoids it</source>
+        <source>at the requested tool axes the nozzle touches beads of {0} points; the search for clear tilts takes about {1} min of processor time, several times that where the tool would turn too fast; a smaller build_direction.lead and build_direction.tilt, or clearance: none, avoids it</source>
         <translation>avec les axes d&apos;outil demandés, la buse touche des cordons de {0} points ; trouver des inclinaisons qui la dégagent prend environ {1} min de processeur, plusieurs fois plus là où l&apos;outil tournerait trop vite ; un build_direction.lead et un build_direction.tilt plus petits, ou clearance: none, l&apos;évitent</translation>
     </message>
     <message>
@@ -7762,7 +7762,7 @@
         <translation>au point de commutation la pointe avance à {0} mm/s, trop lentement pour programmer l&apos;avance comme une distance ; fixez une distance de retrait, ou retirez program.trigger.lead</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/ways.py"/>
         <source>at {0} bead ends the retract of {1} mm would violate limits, reach or the condition; it is {2} to {3} mm there, {4} times off the tool axis and {5} times with the tool turned</source>
         <translation>à {0} extrémités de cordons le retrait de {1} mm sortirait des limites, de l&apos;atteinte ou du conditionnement ; il y est de {2} à {3} mm, {4} fois dans une autre direction que le long de l&apos;axe de l&apos;outil et {5} fois avec l&apos;outil tourné</translation>
     </message>
@@ -7772,7 +7772,7 @@
         <translation>à {0} des {1} endroits de la couche {2} il n&apos;y a pas de points de la numérisation autour, le premier en {3} ; elle s&apos;étend sur {4} mm, la couche sur {5} mm : numérisez tout ce sur quoi la couche repose, ou vérifiez son unité et son ajustement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/fields.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>auto</source>
         <translation>auto</translation>
     </message>
@@ -7892,7 +7892,7 @@
         <translation>arrière-haut-non retourné</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>bead</source>
         <translation>cordon</translation>
     </message>
@@ -7917,7 +7917,7 @@
         <translation>le cordon {0} recommence ; gardez ensemble les lignes d&apos;un cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>bead {} (0 to {}), {}</source>
         <translation>cordon {} (0 à {}), {}</translation>
     </message>
@@ -7927,12 +7927,12 @@
         <translation>largeur de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/predicted.py"/>
+        <location filename="../../freecad_am/core/process/model/notes.py"/>
         <source>beads are predicted {0} to {1} mm high, {2} mm on average, for layers of {3} mm; set strategy.layer_height to the predicted height{4}</source>
         <translation>les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm ; réglez strategy.layer_height sur ce que font les cordons{4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/predicted.py"/>
+        <location filename="../../freecad_am/core/process/model/notes.py"/>
         <source>beads are predicted {0} to {1} mm high, {2} mm on average, for layers of {3} mm{4}</source>
         <translation>les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
     </message>
@@ -7982,17 +7982,17 @@
         <translation>avant le premier type</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/ways.py"/>
         <source>before {0} beads the rapid takes a detour through intermediate points, as all direct retracts are blocked</source>
         <translation>avant {0} cordons le rapide fait un détour par des points intermédiaires, car tous les retraits directs sont bloqués</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/ways.py"/>
         <source>before {0} beads the tool retracts off its axis, or turns on the way, for clearance</source>
         <translation>avant {0} cordons l&apos;outil est retiré dans une autre direction que le long de son axe, ou tourné en chemin, pour passer sans toucher</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/ways.py"/>
         <source>before {0} beads the tool retracts up to {1} mm instead of {2} mm for clearance</source>
         <translation>avant {0} cordons l&apos;outil est retiré jusqu&apos;à {1} mm au lieu de {2} mm pour passer sans toucher</translation>
     </message>
@@ -8037,7 +8037,7 @@
         <translation>bleu à jaune</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>blue {:.4g} … yellow {:.4g}; grey: not feasible</source>
         <translation>bleu {:.4g} … jaune {:.4g} ; gris : pas réalisable</translation>
     </message>
@@ -8162,7 +8162,7 @@
         <translation>choisissez une pièce solide sur laquelle la paroi s&apos;élève</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/substrate.py"/>
+        <location filename="../../freecad_am/brep/walls/sheet.py"/>
         <source>choose a solid part or a closed mesh as substrate of the wall</source>
         <translation>choisissez une pièce solide ou un maillage fermé sur lequel la paroi s&apos;élève</translation>
     </message>
@@ -8192,12 +8192,12 @@
         <translation>cliquez sur des faces ou un objet</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/fields.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>click it</source>
         <translation>cliquez dessus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/fields.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>click it with Ctrl</source>
         <translation>cliquez avec Ctrl</translation>
     </message>
@@ -8212,7 +8212,7 @@
         <translation>sens horaire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>closed</source>
         <translation>fermé</translation>
     </message>
@@ -8222,7 +8222,7 @@
         <translation>fermée, {:.1f} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>closed-form inverse</source>
         <translation>inverse sous forme close</translation>
     </message>
@@ -8262,7 +8262,7 @@
         <translation>condition</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/readout.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>condition {:.4f}, least {:.4f}</source>
         <translation>condition {:.4f}, minimum {:.4f}</translation>
     </message>
@@ -8297,7 +8297,7 @@
         <translation>distance constante</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>contour</source>
         <translation>contour</translation>
     </message>
@@ -8372,7 +8372,7 @@
         <translation>cylindre, R {:.4g} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>deposit</source>
         <translation>dépôt</translation>
     </message>
@@ -8387,7 +8387,7 @@
         <translation>dépôt et substrat fermé, à {0} g/cm3 (process.density), comparés à la charge de {1}, et son moment autour du dernier axe, à mesure qu&apos;il croît</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>deposited</source>
         <translation>déposé</translation>
     </message>
@@ -8407,17 +8407,17 @@
         <translation>écart</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/histogram.py"/>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>deviation, {} (most: 1 point)</source>
         <translation>écart, {} (maximum : 1 point)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/histogram.py"/>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>deviation, {} (most: {} points)</source>
         <translation>écart, {} (maximum : {} points)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/near_names.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>did you mean {0}?</source>
         <translation>vouliez-vous dire {0} ?</translation>
     </message>
@@ -8497,7 +8497,7 @@
         <translation>dessin de la page</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>drift</source>
         <translation>dérive</translation>
     </message>
@@ -8522,17 +8522,17 @@
         <translation>fr</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>enter both ends of the range, or neither for a continuous axis</source>
         <translation>donnez les deux bouts de sa plage, ou aucun pour un axe sans fin</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>enter positive values for speed, acceleration and jerk, or leave them empty</source>
         <translation>saisissez une vitesse, une accélération et un jerk supérieurs à 0, ou laissez-les vides</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>enter the lower end first, or leave both empty</source>
         <translation>donnez d&apos;abord la valeur basse, ou laissez les deux vides</translation>
     </message>
@@ -8547,7 +8547,7 @@
         <translation>erreur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>every point of the motion, rapids included, against the machine file</source>
         <translation>chaque point du mouvement, rapides compris, comparé au fichier machine</translation>
     </message>
@@ -8682,7 +8682,7 @@
         <translation>suivi des cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance/notes.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/look.py"/>
         <source>for clearance, tool axes turn by up to {0} deg/mm, faster than build_direction.max_turn ({1} deg/mm); use a slimmer nozzle or allow a faster turn</source>
         <translation>pour tenir la buse éloignée, les axes de l&apos;outil tournent jusqu&apos;à {0} deg/mm, plus vite que build_direction.max_turn ({1} deg/mm) ; utilisez une buse plus fine ou permettez une rotation plus rapide</translation>
     </message>
@@ -8732,7 +8732,7 @@
         <translation>de {0} points {1} sont gardés, également répartis</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution/turn.py"/>
+        <location filename="../../freecad_am/brep/revolution/patch.py"/>
         <source>from {0} to {1} deg</source>
         <translation>de {0} à {1} deg</translation>
     </message>
@@ -8857,7 +8857,7 @@
         <translation>tête BC</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>height</source>
         <translation>hauteur</translation>
     </message>
@@ -8867,7 +8867,7 @@
         <translation>hauteur de chaque point au-dessus de l’endroit le plus proche de la couche inférieure, selon la direction de dépôt à cet endroit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>highest</source>
         <translation>la plus haute</translation>
     </message>
@@ -8892,12 +8892,12 @@
         <translation>i, j, k sont 0 ; donnez une direction, comme 0, 0, 1</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance/notes.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/look.py"/>
         <source>in layer {0}, tool axes are tilted back for clearance, by up to {1} deg</source>
         <translation>dans la couche {0}, les axes de l&apos;outil sont redressés pour tenir la buse éloignée, jusqu&apos;à {1} deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance/notes.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/look.py"/>
         <source>in layers {0} to {1}, tool axes are tilted back for clearance, by up to {2} deg</source>
         <translation>dans les couches {0} à {1}, les axes de l&apos;outil sont redressés pour tenir la buse éloignée, jusqu&apos;à {2} deg</translation>
     </message>
@@ -8932,7 +8932,7 @@
         <translation>contrôle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>inverse condition number of the Jacobian at the points of the deposit, against the least one allowed</source>
         <translation>inverse du conditionnement de la jacobienne aux points du dépôt, comparé au minimum permis</translation>
     </message>
@@ -8942,7 +8942,7 @@
         <translation>la condition {0} est au-dessous de {1} demandés : trop près d&apos;une singularité</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/ways.py"/>
         <source>inverse condition number {0} on a rapid before or after the bead is below {1}, and no other height, direction or rotation is farther from a singularity; lower joints.min_condition or move the part in the cell</source>
         <translation>le conditionnement {0} lors d&apos;un mouvement rapide avant ou après le cordon est inférieur aux {1} admis, et aucune autre hauteur, direction ou rotation n&apos;est plus loin d&apos;une singularité ; diminuez joints.min_condition ou déplacez la pièce dans la cellule</translation>
     </message>
@@ -8997,6 +8997,11 @@
         <translation>il touche déjà la buse au premier point du travail, dans toute configuration du bras ; sa pose est dans le repère de base du fabricant, et son fichier en mm : déplacez-le, ou le point de dépôt</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
+        <source>it and {0} overlap, as at {1}, and the overlap would be deposited twice; fuse them into one solid, or move one</source>
+        <translation>lui et {0} remplissent le même endroit, comme en {1}, qui serait déposé deux fois ; fusionnez-les en un solide, ou déplacez-en un</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>it applies to the whole program, not to one feature; set it at the top level</source>
         <translation>cela vaut pour tout le programme, non pour un de ses éléments ; donnez-le au premier niveau</translation>
@@ -9012,12 +9017,12 @@
         <translation>il s&apos;appelle lui-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/scan_motion.py"/>
+        <location filename="../../freecad_am/core/inspection/planned.py"/>
         <source>it cannot be aligned with {0}: {1}</source>
         <translation>elle ne peut pas être alignée avec {0} : {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/document_file.py"/>
+        <location filename="../../freecad_am/objects/shapes/linked_files.py"/>
         <source>it cannot be read as a FreeCAD document; save it again</source>
         <translation>il ne peut pas être lu comme un document FreeCAD ; enregistrez-le de nouveau</translation>
     </message>
@@ -9082,7 +9087,7 @@
         <translation>il contient des formes et des maillages, et une seule sorte est utilisable à la fois ; choisissez ses objets un par un</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution/wire.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>it crosses the axis by {0} mm; keep it on one side</source>
         <translation>il croise l&apos;axe de {0} mm ; gardez-le d&apos;un seul côté</translation>
     </message>
@@ -9172,7 +9177,7 @@
         <translation>il extrude avant que le programme ne dise où : X, Y et Z doivent être donnés d&apos;abord ; {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/scan_motion.py"/>
+        <location filename="../../freecad_am/core/inspection/planned.py"/>
         <source>it fits equally well on the part rotated by {0} deg, so its orientation is ambiguous; give three pairs of points as substrate.scan_pairs, or measure in part coordinates</source>
         <translation>elle convient aussi bien à la pièce tournée de {0} deg, si bien que son orientation est ambiguë ; donnez trois paires de points comme substrate.scan_pairs, ou mesurez dans les coordonnées de la pièce</translation>
     </message>
@@ -9182,7 +9187,7 @@
         <translation>il a 1 ligne ; mesurez au moins {0} cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
+        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
         <source>it has a corner of {0} deg at {1}, where layers would have zero height on the inside; round it with a radius, or choose guide: auto</source>
         <translation>il a un angle vif de {0} deg en {1}, où les couches n&apos;auraient pas de hauteur à l&apos;intérieur ; arrondissez-le par un rayon, ou choisissez guide: auto</translation>
     </message>
@@ -9212,7 +9217,7 @@
         <translation>il a des surfaces libres ({0} à la ligne {1}), qui ne sont pas lues ; exportez des triangles ou du STEP</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/names.py"/>
+        <location filename="../../freecad_am/posts/catalogue.py"/>
         <source>it has more than {0} characters</source>
         <translation>il a plus de {0} caractères</translation>
     </message>
@@ -9247,7 +9252,7 @@
         <translation>il n&apos;a pas d&apos;arêtes à déposer en cordons ; choisissez des arêtes, un fil ou une esquisse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/array_elements.py"/>
+        <location filename="../../freecad_am/objects/shapes/places.py"/>
         <source>it has no element {0}; its {1} elements are numbered from 0</source>
         <translation>il n&apos;a pas d&apos;élément {0} ; ses {1} éléments sont numérotés à partir de 0</translation>
     </message>
@@ -9272,12 +9277,12 @@
         <translation>il n&apos;a pas de faces ; choisissez une pièce avec les faces de la paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/source.py"/>
+        <location filename="../../freecad_am/interop/export.py"/>
         <source>it has no path; choose a toolpath, joint path or program</source>
         <translation>il n&apos;a pas de trajectoire ; choisissez une trajectoire d&apos;outil, une trajectoire articulaire ou un programme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/run.py"/>
+        <location filename="../../freecad_am/gui/simulation/player.py"/>
         <source>it has no points to play; choose another path</source>
         <translation>elle n&apos;a pas de points à jouer ; choisissez une autre trajectoire</translation>
     </message>
@@ -9312,7 +9317,7 @@
         <translation>il n&apos;a pas de {0} ; choisissez de Face1 à Face{1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>it has no {0}; choose from the open ends of the mesh, sorted by height: {1}</source>
         <translation>il n&apos;a pas de {0} ; choisissez parmi les extrémités ouvertes du maillage, par hauteur : {1}</translation>
     </message>
@@ -9362,7 +9367,7 @@
         <translation>il a {0} lignes ; mesurez au moins {1} cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>it has {0} separate pieces, and no layer starts on the piece at {1}, {2} mm from the start of the layers; choose its start edge too, or deposit it as a separate feature</source>
         <translation>ce sont {0} morceaux qui ne tiennent pas ensemble, et aucune couche ne commence sur celui en {1}, à {2} mm du départ des couches ; choisissez aussi son arête comme départ, ou déposez-le seul</translation>
     </message>
@@ -9392,7 +9397,7 @@
         <translation>il interrompt les lignes d&apos;une autre instruction</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/walls/clad_mesh.py"/>
+        <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
         <source>it is a closed mesh without selectable faces; cut out the surface to cover (Mesh, Cutting), or use the original CAD file</source>
         <translation>c&apos;est un maillage fermé sans faces à choisir ; découpez la surface à couvrir (Mesh, Découper), ou prenez le fichier CAO d&apos;origine</translation>
     </message>
@@ -9402,7 +9407,7 @@
         <translation>c&apos;est un dossier ; nommez le fichier de la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/names.py"/>
+        <location filename="../../freecad_am/posts/catalogue.py"/>
         <source>it is a reserved word</source>
         <translation>c&apos;est un mot réservé</translation>
     </message>
@@ -9462,7 +9467,7 @@
         <translation>il est déclaré après une instruction</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/names.py"/>
+        <location filename="../../freecad_am/posts/catalogue.py"/>
         <source>it is empty</source>
         <translation>il est vide</translation>
     </message>
@@ -9492,12 +9497,12 @@
         <translation>ce n&apos;est ni un cylindre ni un cône ; choisissez une autre face, ou donnez strategy.base</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/run.py"/>
+        <location filename="../../freecad_am/gui/simulation/player.py"/>
         <source>it is neither a joint path nor a program; select one</source>
         <translation>ce n&apos;est ni une trajectoire articulaire ni un programme ; sélectionnez l&apos;un d&apos;eux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/macro/export.py"/>
+        <location filename="../../freecad_am/macro/scan.py"/>
         <source>it is neither a program nor an inspection; choose one</source>
         <translation>ce n’est ni un programme ni une inspection ; choisissez-en un</translation>
     </message>
@@ -9517,7 +9522,7 @@
         <translation>ce n&apos;est aucune des lignes qu&apos;ArcTech a ici, ou elle nomme d&apos;autres données que celles d&apos;avant</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>it is not a PLY file with vertices first; export it again</source>
         <translation>ce n&apos;est pas un fichier PLY qui commence par ses sommets ; exportez-le de nouveau</translation>
     </message>
@@ -9527,12 +9532,12 @@
         <translation>ce n&apos;est pas un job de /JOB à END</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/source.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/draft.py"/>
         <source>it is not a joint path; select one</source>
         <translation>ce n&apos;est pas une trajectoire articulaire ; sélectionnez-en une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/array_elements.py"/>
+        <location filename="../../freecad_am/objects/shapes/places.py"/>
         <source>it is not a link array; choose the object itself</source>
         <translation>ce n&apos;est pas un réseau de liens ; donnez l&apos;objet lui-même</translation>
     </message>
@@ -9582,12 +9587,12 @@
         <translation>ce n&apos;est pas un fichier zip sain ({0})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/macro/steps.py"/>
+        <location filename="../../freecad_am/macro/arguments.py"/>
         <source>it is not a stage of the workbench; choose one</source>
         <translation>ce n&apos;est pas une étape de cet atelier ; choisissez-en une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/wire.py"/>
         <source>it is not a table: it contains bytes that are not UTF-8 text; save it as CSV in UTF-8</source>
         <translation>ce n&apos;est pas un tableau : il contient des octets qui ne sont pas du texte UTF-8 ; enregistrez-le en CSV UTF-8</translation>
     </message>
@@ -9672,7 +9677,7 @@
         <translation>il est le même dans toutes les poses, ce qui ne prouve rien ; ajoutez une autre pose</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>it is truncated after {0} of {1} vertices; export it again</source>
         <translation>il est coupé après {0} de {1} sommets ; exportez-le de nouveau</translation>
     </message>
@@ -9707,12 +9712,12 @@
         <translation>elle est à {0} mm de son origine, d&apos;où sort le dépôt ; placez la pointe du fil ou de la buse à l&apos;origine du fichier, Z sortant de la buse, en mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution/wire.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>it is {0} mm off the plane of the wire and the axis; draw the wire in a plane through the axis</source>
         <translation>il est à {0} mm hors du plan du fil et de son axe ; dessinez le fil dans un plan qui contient l&apos;axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/names.py"/>
+        <location filename="../../freecad_am/posts/catalogue.py"/>
         <source>it may hold only the letters A to Z, digits and underscores</source>
         <translation>il ne peut contenir que les lettres A à Z, des chiffres et des tirets bas</translation>
     </message>
@@ -9722,7 +9727,7 @@
         <translation>il ne déplace qu&apos;un moteur ; retirez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/found.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>it moves other groups than the programs before</source>
         <translation>il déplace d&apos;autres groupes que les programmes précédents</translation>
     </message>
@@ -9732,7 +9737,7 @@
         <translation>il se déplace sans outil, sans plateau, ou en valeurs articulaires là où des positions sont dites</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/names.py"/>
+        <location filename="../../freecad_am/posts/catalogue.py"/>
         <source>it must start with {0}</source>
         <translation>il doit commencer par {0}</translation>
     </message>
@@ -9750,11 +9755,6 @@
         <location filename="../../freecad_am/core/layers/curved/field.py"/>
         <source>it needs planar layers; use {0}, or layers: planes</source>
         <translation>c&apos;est pour les couches planes, pas pour les courbes ; utilisez {0}, ou layers: planes</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/slicing/solids/overlap.py"/>
-        <source>it overlaps {0}, as at {1}, so the overlap would be deposited twice; fuse them into one solid, or move one</source>
-        <translation>lui et {0} remplissent le même endroit, comme en {1}, qui serait déposé deux fois ; fusionnez-les en un solide, ou déplacez-en un</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -9792,12 +9792,12 @@
         <translation>il revient à une position mémorisée ; écrivez le déplacement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
+        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
         <source>it returns to its start, at {0}, so the last layer would overlap the first; remove one edge</source>
         <translation>il revient à son départ, en {0}, si bien que la dernière couche recouvrirait la première ; retirez une arête</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/moves.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>it rounds corners or accelerates in a way that is not understood</source>
         <translation>il arrondit les angles ou accélère d&apos;une façon qui n&apos;est pas comprise</translation>
     </message>
@@ -9817,7 +9817,7 @@
         <translation>il commence par une position et ne nomme aucune configuration du bras ; indiquez-la dans la cellule, branch: [front, up, flip]</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance/helpful.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/tilt_search.py"/>
         <source>it still does with {0} (all tested); {1}</source>
         <translation>elle la touche encore avec {0} (tous essayés) ; {1}</translation>
     </message>
@@ -9827,12 +9827,12 @@
         <translation>il prend un seul objet ; donnez-le, et les noms de ses faces à part</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
+        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
         <source>it turns back by {0} deg at {1}: layers would cut through the deposit; choose edges that lead forward</source>
         <translation>il rebrousse de {0} deg en {1} : des couches traverseraient le dépôt ; choisissez des arêtes qui mènent en avant</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/solids/unrolled.py"/>
+        <location filename="../../freecad_am/core/slicing/solids/equidistant.py"/>
         <source>it winds {0} times around the cone and would overlap when unrolled; divide it into shorter solids</source>
         <translation>il s&apos;enroule {0} fois autour du cône et se recouvrirait une fois déroulé ; divisez-le en solides plus courts</translation>
     </message>
@@ -9897,12 +9897,12 @@
         <translation>ses faces non planes se prolongent sans cassure en {0}, qui l&apos;est ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution/wire.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>its edges coincide with the axis; choose another axis</source>
         <translation>ses arêtes coïncident avec l&apos;axe ; choisissez un autre axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
+        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
         <source>its edges do not form one curve: {0} of {1} are disconnected, at {2} and {3}, and the smallest gap is {4} mm; choose edges that meet end to end</source>
         <translation>ses arêtes ne font pas une courbe : {0} sur {1} ne continuent pas là où les autres finissent, en {2} et {3}, et la plus proche en est à {4} mm ; choisissez des arêtes qui se touchent bout à bout</translation>
     </message>
@@ -9947,7 +9947,7 @@
         <translation>son en-tête déplace les groupes {0} et ses positions sont des groupes {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/found.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>its header names other motion groups than programs before</source>
         <translation>son en-tête nomme d&apos;autres groupes de mouvement que les programmes précédents</translation>
     </message>
@@ -9957,7 +9957,7 @@
         <translation>son job s&apos;appelle {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/source.py"/>
+        <location filename="../../freecad_am/interop/export.py"/>
         <source>its joint path was deleted; choose a joint path</source>
         <translation>sa trajectoire articulaire a disparu ; choisissez-en une</translation>
     </message>
@@ -9967,7 +9967,7 @@
         <translation>cette machine ne peut pas être planifiée : {0} ; {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/source.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/draft.py"/>
         <source>its machine has two rotary axes and no tool redundancy; open the map of a robot</source>
         <translation>sa machine a deux axes rotatifs, qui ne laissent aucune rotation autour de l&apos;outil à choisir ; ouvrez la carte d&apos;un robot</translation>
     </message>
@@ -10007,7 +10007,7 @@
         <translation>ses solutions ne redonnent pas ses poses</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/moves.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>its speed is limited, or its tool fixed, in a way that is not understood</source>
         <translation>sa vitesse est limitée, ou son outil fixé, d&apos;une façon qui n&apos;est pas comprise</translation>
     </message>
@@ -10037,7 +10037,7 @@
         <translation>son unité {0} n&apos;est aucune de {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>its vertices lack plain x, y and z; export it again</source>
         <translation>ses sommets n&apos;ont pas de x, y et z simples ; exportez-le de nouveau</translation>
     </message>
@@ -10057,7 +10057,7 @@
         <translation>son {0} manque ; choisissez-en un et recalculez</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>jerk</source>
         <translation>jerk</translation>
     </message>
@@ -10122,7 +10122,7 @@
         <translation>joints.certificate : la borne inférieure n&apos;est pas définie, car plusieurs solutions du bras partagent une configuration ; retirez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/external/rule.py"/>
+        <location filename="../../freecad_am/core/planning/external/optimised.py"/>
         <source>joints.external_axes: {0} has no effect without cell.external; remove it</source>
         <translation>joints.external_axes : {0} est sans effet sans cell.external ; à omettre</translation>
     </message>
@@ -10167,7 +10167,7 @@
         <translation>couche par couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>layer height</source>
         <translation>hauteur de couche</translation>
     </message>
@@ -10207,12 +10207,12 @@
         <translation>couche {0} point {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/reading.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>layer {}</source>
         <translation>couche {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/located.py"/>
+        <location filename="../../freecad_am/gui/program/window.py"/>
         <source>layer {} bead {}</source>
         <translation>couche {} cordon {}</translation>
     </message>
@@ -10242,7 +10242,7 @@
         <translation>les couches de la famille {0} ne s&apos;ajustent pas encore à une numérisation ; les solides en couches planes et les parois sur un substrat le font : retirez la numérisation</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/guided.py"/>
+        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
         <source>layers of {0} are normal to its centre line, {1} mm from {2} to {3}, turning by {4} deg in total</source>
         <translation>les couches de {0} sont normales à sa ligne médiane, {1} mm de {2} à {3}, qui tourne de {4} deg en tout</translation>
     </message>
@@ -10252,7 +10252,7 @@
         <translation>des couches de {0} mm sont plus hautes que le plus petit rayon de courbure de la paroi, {1} mm en {2} ; prenez des couches plus basses, ou un plus grand rayon à cet endroit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>layers of {0} mm need a mesh of about {1} triangles, but the limit is {2}; use layers above {3} mm, or deposit the wall in parts</source>
         <translation>des couches de {0} mm demandent un maillage de la paroi d&apos;environ {1} triangles, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez plus de {3} mm, ou déposez la paroi en plusieurs parties</translation>
     </message>
@@ -10277,7 +10277,7 @@
         <translation>l&apos;angle d&apos;avance et l&apos;inclinaison ensemble dépassent déjà max_tilt ({0} deg) ; réduisez-les ou augmentez la limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>least allowed</source>
         <translation>minimum permis</translation>
     </message>
@@ -10292,12 +10292,12 @@
         <translation>à plat</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/predicted.py"/>
+        <location filename="../../freecad_am/core/process/model/notes.py"/>
         <source>limited to the speed of the axes, beads are predicted {0} to {1} mm high, {2} mm on average, for layers of {3} mm; set strategy.layer_height to the predicted height{4}</source>
         <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm ; réglez strategy.layer_height sur ce que font les cordons{4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/predicted.py"/>
+        <location filename="../../freecad_am/core/process/model/notes.py"/>
         <source>limited to the speed of the axes, beads are predicted {0} to {1} mm high, {2} mm on average, for layers of {3} mm{4}</source>
         <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
     </message>
@@ -10307,7 +10307,7 @@
         <translation>limite {0} {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>limits up to {} {}</source>
         <translation>limite {} {}</translation>
     </message>
@@ -10317,7 +10317,7 @@
         <translation>limites {0} à {1} {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>limits {} to {} {}</source>
         <translation>limites {} à {} {}</translation>
     </message>
@@ -10337,7 +10337,7 @@
         <translation>limites (Liégeois)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>line</source>
         <translation>ligne</translation>
     </message>
@@ -10472,7 +10472,7 @@
         <translation>diminuez la vitesse d&apos;avance à {0} mm/s</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>lowest</source>
         <translation>la plus basse</translation>
     </message>
@@ -10512,17 +10512,17 @@
         <translation>manipulabilité</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/bars.py"/>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>margin</source>
         <translation>marge</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/readout.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>margin {:.1f} % ({})</source>
         <translation>marge {:.1f} % ({})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>mass</source>
         <translation>masse</translation>
     </message>
@@ -10532,12 +10532,12 @@
         <translation>masse : {:.1f} g</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>mean</source>
         <translation>moyenne</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>mean speed of each axis on each move, rapids included, against the machine file</source>
         <translation>vitesse moyenne de chaque axe sur chaque déplacement, rapides compris, comparée au fichier machine</translation>
     </message>
@@ -10587,7 +10587,7 @@
         <translation>plus de {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/backstop.py"/>
+        <location filename="../../freecad_am/core/slicing/banded.py"/>
         <source>more than {0} layers of {1} mm: use a larger layer height</source>
         <translation>plus de {0} couches de {1} mm : utilisez une plus grande hauteur de couche</translation>
     </message>
@@ -10597,7 +10597,7 @@
         <translation>celle-ci et la plupart des autres lignes ne sont pas des points ; donnez des lignes de x y z</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
         <source>move the part up in its file, or set cell.platform_diameter to what there is (0 for none)</source>
         <translation>remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur ce qui existe (0 pour aucun)</translation>
     </message>
@@ -10617,7 +10617,7 @@
         <translation>des mouvements avec d&apos;autres axes externes sont mêlés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/drawn/picture.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>near a singularity</source>
         <translation>près d&apos;une singularité</translation>
     </message>
@@ -10637,12 +10637,12 @@
         <translation>le poignet n&apos;est pas sphérique et les axes 4 et 5 ne se coupent pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/wire.py"/>
         <source>no access</source>
         <translation>pas d&apos;accès</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>no axis has limits, or no point is reached</source>
         <translation>aucun axe n’a de limites, ou aucun point n’est atteint</translation>
     </message>
@@ -10652,7 +10652,7 @@
         <translation>pas de modèle de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>no bead model sets the speeds (process.bead_model)</source>
         <translation>aucun modèle de cordon ne règle les vitesses (process.bead_model)</translation>
     </message>
@@ -10717,17 +10717,17 @@
         <translation>aucune couche n&apos;a d&apos;angle ; dans la paroi elles tournent jusqu&apos;à {0} deg/mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>no limit known: the machine file has no max_acceleration</source>
         <translation>aucune limite connue : le fichier machine n&apos;a pas de max_acceleration</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>no limit known: the machine file has no max_jerk</source>
         <translation>aucune limite connue : le fichier machine n&apos;a pas de max_jerk</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>no limit known: the machine file has no max_speed</source>
         <translation>aucune limite connue : le fichier machine n&apos;a pas de max_speed</translation>
     </message>
@@ -10752,7 +10752,7 @@
         <translation>aucun objet avec une forme ne s&apos;appelle {0} ; nommez l&apos;un de {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>no point is reached</source>
         <translation>aucun point n’est atteint</translation>
     </message>
@@ -10792,7 +10792,7 @@
         <translation>résultat nodal</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
         <source>none</source>
         <translation>aucun</translation>
     </message>
@@ -10817,12 +10817,12 @@
         <translation>aucun de ses {0} solides n&apos;est de révolution ; nommez les faces de la paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>none of these layers rests on another</source>
         <translation>aucune de ces couches ne repose sur une autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/near_names.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>none of {0} machines has a similar name; use a name that `freecad-am machines` lists, such as {1}, or the path of a machine file or URDF</source>
         <translation>aucune des {0} machines n’a un nom semblable ; utilisez l’une de celles que `freecad-am machines` énumère, comme {1}, ou le chemin d’un fichier de machine ou d’un URDF</translation>
     </message>
@@ -10947,7 +10947,7 @@
         <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique touchent {0} avec {1}, regardés tous les {2} deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>not known of this machine</source>
         <translation>inconnu de cette machine</translation>
     </message>
@@ -11022,7 +11022,7 @@
         <translation>de ses {0} solides, seul {1} tourne autour d’un axe, {2} de sa surface ; nommez les faces de celui-ci pour le déposer seul, et déposez les autres comme parois sur une pièce ou solides sur un moyeu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>off</source>
         <translation>écart</translation>
     </message>
@@ -11032,7 +11032,7 @@
         <translation>décalées</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/ways.py"/>
         <source>on the travel from the previous bead the nozzle would hit {0} at every retract distance and direction tried, and no detour was found; move the seam or the part, or use a more slender nozzle</source>
         <translation>en venant du cordon précédent la buse rencontrerait {0} à chaque distance et direction de retrait essayée, et aucun contournement n’a été trouvé ; déplacez la couture ou la pièce, ou prenez une buse plus fine</translation>
     </message>
@@ -11107,7 +11107,7 @@
         <translation>un autre programme de soudage à l&apos;intérieur d&apos;un cordon n&apos;est transmis que par une sortie : les appels arrêtent la machine, et que les instructions d&apos;arc ne le fassent pas n&apos;a pas été confirmé ; prenez output, ou omettez les programmes de start et end</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>only solids in planar layers have sections and volumes of layers</source>
         <translation>seuls les solides en couches planes ont des sections et des volumes de couche</translation>
     </message>
@@ -11137,7 +11137,7 @@
         <translation>il y en a {} ; il en faut au moins {}, car une machine sans elles n&apos;est pas chargée ; saisissez-en d&apos;autres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>open</source>
         <translation>ouvert</translation>
     </message>
@@ -11157,7 +11157,7 @@
         <translation>optimisation des axes externes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>opw gives</source>
         <translation>opw donne</translation>
     </message>
@@ -11182,7 +11182,7 @@
         <translation>hors d&apos;atteinte</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/readout.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>out of reach in this configuration</source>
         <translation>hors d&apos;atteinte avec cette branche</translation>
     </message>
@@ -11217,7 +11217,7 @@
         <translation>parallèles à sa base</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>part</source>
         <translation>pièce</translation>
     </message>
@@ -11237,7 +11237,7 @@
         <translation>au-delà des bords</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>path</source>
         <translation>trajectoire</translation>
     </message>
@@ -11247,7 +11247,7 @@
         <translation>choisir</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>place</source>
         <translation>position</translation>
     </message>
@@ -11262,7 +11262,7 @@
         <translation>plans</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>planned joints of the deposit driven through the joint-frame chain, which planning does not use</source>
         <translation>articulations planifiées du dépôt menées par la chaîne des repères, que la planification n’emploie pas</translation>
     </message>
@@ -11287,17 +11287,17 @@
         <translation>point par point</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>point {0} is {1} mm from its touched position (all points: {2} mm), more than cell.touched_tolerance = {3} mm; touch it again, and check the order of the points, the part, and the tip calibration</source>
         <translation>le point {0} est à {1} mm de sa position touchée (tous les points : {2} mm), plus que cell.touched_tolerance = {3} mm ; touchez-le de nouveau, et vérifiez l&apos;ordre des points, la pièce, et l&apos;étalonnage de la pointe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>point {} (0 to {}) at {:.2f}, {:.2f}, {:.2f} mm</source>
         <translation>point {} (0 à {}) en {:.2f}, {:.2f}, {:.2f} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>point {} (0 to {}) of the layer, of the bead {}</source>
         <translation>point {} (0 à {}) de la couche, du cordon {}</translation>
     </message>
@@ -11332,12 +11332,12 @@
         <translation>positionneur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/found.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>positions have a track and no remark says which axis it is, or the other way round</source>
         <translation>les positions ont un rail et aucune remarque ne dit quel axe c&apos;est, ou l&apos;inverse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/moves.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>positions of more than one frame are mixed</source>
         <translation>des positions de plus d&apos;un repère sont mêlées</translation>
     </message>
@@ -11412,17 +11412,17 @@
         <translation>proportionnelle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/fit.py"/>
+        <location filename="../../freecad_am/plots/chart.py"/>
         <source>r {0} mm, measured</source>
         <translation>r {0} mm, mesuré</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/bars.py"/>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>range</source>
         <translation>plage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>rapid</source>
         <translation>rapide</translation>
     </message>
@@ -11437,7 +11437,7 @@
         <translation>balayage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>rate</source>
         <translation>débit</translation>
     </message>
@@ -11477,12 +11477,12 @@
         <translation>recalculez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/cuts.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>redraw it with a larger radius there, or divide it and deposit its parts in turn</source>
         <translation>redessinez-la avec un plus grand rayon à cet endroit, ou divisez-la et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/cuts.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>redraw the face without self-intersection, or divide it and deposit its parts in turn</source>
         <translation>redessinez la face pour qu&apos;elle ne se coupe pas, ou divisez-la et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
@@ -11547,7 +11547,7 @@
         <translation>rotation</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/readout.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>rotation not allowed</source>
         <translation>rotation non permise</translation>
     </message>
@@ -11567,7 +11567,7 @@
         <translation>RZ</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/fields.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>saved cell: {}</source>
         <translation>cellule enregistrée : {}</translation>
     </message>
@@ -11577,7 +11577,7 @@
         <translation>les coordonnées à l&apos;échelle sont inconnues ; faites-les omettre par le trancheur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/turns/fit.py"/>
+        <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
         <source>seam moved for a limited axis</source>
         <translation>couture déplacée pour un axe limité</translation>
     </message>
@@ -11697,7 +11697,7 @@
         <translation>formes de tous les corps, les uns par rapport aux autres aussi, tous les {0} deg de tout le mouvement : ils touchent {1} avec {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>share</source>
         <translation>part</translation>
     </message>
@@ -11707,17 +11707,17 @@
         <translation>part de la surface</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>share of the length</source>
         <translation>part de la longueur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>share of the limit</source>
         <translation>part de la limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>share of the points</source>
         <translation>part des points</translation>
     </message>
@@ -11807,7 +11807,7 @@
         <translation>sphéricité et circularité</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>spiral</source>
         <translation>spirale</translation>
     </message>
@@ -11817,7 +11817,7 @@
         <translation>les splines ne sont pas connues ; faites écrire des lignes et des arcs au trancheur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/turns/fit.py"/>
+        <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
         <source>split for a limited axis</source>
         <translation>divisé pour un axe limité</translation>
     </message>
@@ -11847,7 +11847,7 @@
         <translation>le début et la fin prennent {0} mm, et un cordon de cette classe dans la couche {1} est long de {2} mm ; raccourcissez-les pour la classe, ou ne déposez pas de cordons aussi courts</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>such as: pendant of R-30iB, 21 November; or a simulator with its version</source>
         <translation>par exemple : pupitre du R-30iB, 21 novembre ; ou un simulateur avec sa version</translation>
     </message>
@@ -12002,17 +12002,17 @@
         <translation>l&apos;axe de {0} n&apos;a pas de direction</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
         <source>the axis of {0} is {1} deg off the normal of the platform</source>
         <translation>l&apos;axe de {0} est à {1} deg de la normale du plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
         <source>the axis of {0} is {1} mm off the middle of the platform and misses it</source>
         <translation>l&apos;axe de {0} est à {1} mm du milieu du plateau et le manque</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/in_language.py"/>
         <source>the base</source>
         <translation>la base</translation>
     </message>
@@ -12052,22 +12052,22 @@
         <translation>le repère de base de {0} est inconnu : les positions du programme se rapportent à son base_link. Comparez la pose d&apos;un point connu sur la commande avant d&apos;exécuter le programme, fixez base dans une copie du fichier machine, ou utilisez program.motion: joint</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
         <source>the base of {0} has a diameter of {1} mm and exceeds the platform; check cell.platform_diameter (0 for none)</source>
         <translation>la base de {0} a un diamètre de {1} mm et dépasse du plateau ; vérifiez cell.platform_diameter (0 pour aucun)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
         <source>the base of {0} has a diameter of {1} mm and exceeds the platform; use cell.mount: feature, move the part, or check cell.platform_diameter (0 for none)</source>
         <translation>la base de {0} a un diamètre de {1} mm et dépasse du plateau ; utilisez cell.mount: feature, déplacez la pièce, ou vérifiez cell.platform_diameter (0 pour aucun)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
         <source>the base of {0} is {1} mm below the platform</source>
         <translation>la base de {0} est à {1} mm au-dessous du plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/in_language.py"/>
         <source>the base touches {what}</source>
         <translation>la base touche {what}</translation>
     </message>
@@ -12087,7 +12087,7 @@
         <translation>les cordons s&apos;élargissent avec la vitesse (m = {0}) ; vérifiez les colonnes du tableau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/wire.py"/>
         <source>the calibration table cannot be read ({0}); use none, csw or the path of a table</source>
         <translation>le tableau d&apos;étalonnage ne peut pas être lu ({0}) ; donnez none, csw ou le chemin d&apos;un tableau</translation>
     </message>
@@ -12112,7 +12112,7 @@
         <translation>le centre de gravité de la pièce, {0} kg à ce moment, est à {1} mm du dernier axe de {2} ({3} mm une fois finie), qui porte {4} mm ; rapprochez-la du milieu (cell.platform peut être une pose) ; {5}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/chord_error.py"/>
+        <location filename="../../freecad_am/objects/shapes/bodies.py"/>
         <source>the chord error is {0} mm, suitable for a part of {1} mm and its beads; set strategy.chord_error to change it</source>
         <translation>les cordons sont droits à {0} mm près, selon la taille de la pièce ({1} mm) et ses cordons ; fixez strategy.chord_error pour une autre valeur</translation>
     </message>
@@ -12122,17 +12122,17 @@
         <translation>le cercle à {0} mm n&apos;a pas été mesuré sur tout le tour : {1} deg entre voisins</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>the closed form is for six joints, but the machine has {0}; remove opw</source>
         <translation>la forme explicite est pour six articulations, il y en a {0} ; omettez opw</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/wire.py"/>
         <source>the column {0} appears twice; remove one</source>
         <translation>la colonne {0} est là deux fois ; gardez-en une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/wire.py"/>
         <source>the column {0} is missing; name in its first line {1}</source>
         <translation>il n&apos;a pas de colonne {0} ; nommez dans sa première ligne {1}</translation>
     </message>
@@ -12177,7 +12177,7 @@
         <translation>le programme de la commande lit les entrées 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/parts.py"/>
+        <location filename="../../freecad_am/posts/nc/numbers.py"/>
         <source>the controller program sets analogue outputs 1 to {0}, not {1}; choose one in this range</source>
         <translation>le programme de la commande règle les sorties analogiques 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
@@ -12192,17 +12192,17 @@
         <translation>le coin avant le point de commutation est arrondi, ce qui laisse {0} s, moins que l&apos;avance de {1} s ; utilisez un program.trigger.lead d&apos;au plus {2} s, un program.blend plus petit, ou un strategy.chord_error plus grand</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/process_data.py"/>
+        <location filename="../../freecad_am/posts/abb/modules.py"/>
         <source>the data taken from the controller is not weld data of the module, or is taken twice</source>
         <translation>ce qui est repris de la commande n&apos;est pas une donnée de soudage du module, ou l&apos;est deux fois</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/plain_text.py"/>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>the deleted object</source>
         <translation>l&apos;objet supprimé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/in_language.py"/>
         <source>the deposit</source>
         <translation>le dépôt</translation>
     </message>
@@ -12212,12 +12212,12 @@
         <translation>le dépôt est ralenti à {0} endroits courts, {1} mm en tout, ici à {2} mm/s, la limite des axes ; le surdépôt atteint {3} mm de cordon{4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/switched.py"/>
+        <location filename="../../freecad_am/read_back/selected.py"/>
         <source>the deposit is still on at the end of the program</source>
         <translation>le dépôt est encore en marche là où le programme se termine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/switched.py"/>
+        <location filename="../../freecad_am/read_back/selected.py"/>
         <source>the deposit is switched on although it is already on</source>
         <translation>le dépôt est mis en marche là où il l’est déjà</translation>
     </message>
@@ -12232,7 +12232,7 @@
         <translation>le dépôt commence par un mouvement linéaire vers le cordon, et le programme commence au cordon même ; donnez une distance de retrait, ou un autre {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/docks/lookout.py"/>
+        <location filename="../../freecad_am/gui/docks/dock_area.py"/>
         <source>the document was closed</source>
         <translation>le document a été fermé</translation>
     </message>
@@ -12277,7 +12277,7 @@
         <translation>les axes externes finiraient au numéro {0}, et la commande en a {1} ; prenez un premier plus petit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/cuts.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>the face folds back and intersects itself at {0}; {1}</source>
         <translation>la face se replie et se coupe en {0} ; {1}</translation>
     </message>
@@ -12307,7 +12307,7 @@
         <translation>l&apos;élément, la trajectoire d&apos;outil, ou l&apos;objet à forme ou maillage qui a été mesuré</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>the field is empty; a machine file is only as reliable as its check poses</source>
         <translation>il est vide ; un fichier de machine ne vaut pas plus que ses poses de contrôle</translation>
     </message>
@@ -12322,7 +12322,7 @@
         <translation>c&apos;est vide ; donnez une grandeur en {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>the field is empty; give manufacturer and model</source>
         <translation>il est vide ; donnez le constructeur et le modèle</translation>
     </message>
@@ -12362,7 +12362,7 @@
         <translation>le fichier a {0} robots, dont les derniers axes sont {1} ; nommez-en un dans `cell.machine`, avec base et bout, et ses axes externes dans `{2}`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>the file has {0}; give at least 3 joint vectors with their flange poses</source>
         <translation>il y en a {0} ; donnez au moins 3 vecteurs articulaires avec leurs poses de bride</translation>
     </message>
@@ -12407,7 +12407,7 @@
         <translation>la première couche ne fait pas une fois le tour de la paroi : choisissez une boucle fermée d&apos;arêtes qui croise une fois chaque ligne montant la paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>the first layer follows the edge of {0} at {1}, on the platform</source>
         <translation>la première couche suit le bord de {0} en {1}, sur le plateau</translation>
     </message>
@@ -12422,17 +12422,17 @@
         <translation>la première couche suit l&apos;intersection de la paroi et de {0} à {1} mm près</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>the first layer follows the lowest open end of {0}, Edge1 at {1}, which is not on the platform</source>
         <translation>la première couche est l&apos;extrémité ouverte la plus basse de {0}, Edge1 en {1}, qui ne repose pas sur le plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>the first layer starts {0} mm above the floor of {1}, which is not deposited</source>
         <translation>la première couche court à {0} mm au-dessus du fond de {1}, qui n&apos;est pas déposé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/times.py"/>
+        <location filename="../../freecad_am/read_back/ways.py"/>
         <source>the first move, from the unknown start position, is too fast</source>
         <translation>le premier mouvement, depuis la position de départ inconnue, est trop rapide</translation>
     </message>
@@ -12482,7 +12482,7 @@
         <translation>le guide est plus courbé en {0} que la pièce n&apos;y est étroite : ses plans normaux se croisent dans la pièce, en {1} ; choisissez un guide plus près de l&apos;intérieur du coude ou de plus grand rayon, ou strategy.layers: geodesic</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
+        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
         <source>the guide has no edge with any length; choose edges, a wire or a sketch</source>
         <translation>le guide n&apos;a aucune arête de longueur non nulle ; choisissez des arêtes, un fil ou une esquisse</translation>
     </message>
@@ -12527,7 +12527,7 @@
         <translation>le travail est infaisable tel quel ; la recherche d&apos;un changement faisable demande jusqu&apos;à {0} min de processeur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>the joint frames give</source>
         <translation>les repères articulaires donnent</translation>
     </message>
@@ -12587,7 +12587,7 @@
         <translation>la cinématique change pendant que le dépôt est en marche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/switched.py"/>
+        <location filename="../../freecad_am/read_back/selected.py"/>
         <source>the last move before the switching point takes {0} s, less than the lead of {1} s; use a program.trigger.lead up to that time, a larger retract distance before switching on, or a larger strategy.chord_error before switching off</source>
         <translation>le dernier mouvement avant la commutation dure {0} s, moins que l&apos;avance de {1} s ; utilisez un program.trigger.lead qui ne dépasse pas cette durée, une distance de retrait plus grande avant la mise en marche, ou un strategy.chord_error plus grand avant l&apos;arrêt</translation>
     </message>
@@ -12627,12 +12627,12 @@
         <translation>les lignes qui le suivent sont stockées sur la machine, pas exécutées ; supprimez-le, avec son M29</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/in_language.py"/>
         <source>the link of {axis}</source>
         <translation>le corps de {axis}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/in_language.py"/>
         <source>the link of {axis} touches {what}</source>
         <translation>le corps de {axis} touche {what}</translation>
     </message>
@@ -12682,7 +12682,7 @@
         <translation>la machine ne les donne pas ; voyez les écarts</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>the machine file gives no largest speeds</source>
         <translation>le fichier machine ne donne pas de vitesses maximales</translation>
     </message>
@@ -12762,7 +12762,7 @@
         <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2} ; les trous jusqu&apos;à strategy.mend = {3} mm sont fermés ; fermez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>the mesh has no consistent inside, as at {0}; model the solid again</source>
         <translation>le maillage n&apos;a pas d&apos;intérieur, comme en {0} ; modélisez le solide de nouveau</translation>
     </message>
@@ -12772,12 +12772,12 @@
         <translation>le maillage n&apos;a pas de triangles, ou des points qui ne sont pas des nombres ; exportez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/substrate.py"/>
+        <location filename="../../freecad_am/brep/walls/sheet.py"/>
         <source>the mesh has no triangles; choose a closed mesh or a solid part</source>
         <translation>le maillage n&apos;a pas de triangles ; choisissez un maillage fermé ou une pièce solide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/substrate.py"/>
+        <location filename="../../freecad_am/brep/walls/sheet.py"/>
         <source>the mesh has points with invalid coordinates; export it again</source>
         <translation>le maillage a des points qui ne sont pas des nombres ; exportez-le de nouveau</translation>
     </message>
@@ -12822,17 +12822,17 @@
         <translation>le nom de sa station, par exemple ST1</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/in_language.py"/>
         <source>the nozzle</source>
         <translation>la buse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/into_platform.py"/>
+        <location filename="../../freecad_am/read_back/selected.py"/>
         <source>the nozzle deposits at 1 point below the platform, by {0} mm; correct its height, or the platform of the cell</source>
         <translation>la buse dépose à 1 point sous le plateau, de {0} mm ; corrigez sa hauteur, ou le plateau de la cellule</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/into_platform.py"/>
+        <location filename="../../freecad_am/read_back/selected.py"/>
         <source>the nozzle deposits at {0} points below the platform, here {1} mm; correct their heights, or the platform of the cell</source>
         <translation>la buse dépose à {0} points sous le plateau, ici de {1} mm ; corrigez leurs hauteurs, ou le plateau de la cellule</translation>
     </message>
@@ -12842,7 +12842,7 @@
         <translation>la buse n&apos;est pas dégagée avec {0} non plus, ce qui a été essayé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/readout.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>the nozzle touches platform or part</source>
         <translation>la buse touche le plateau ou la pièce</translation>
     </message>
@@ -12882,7 +12882,7 @@
         <translation>la buse touche {0} ; déplacez-le dans cell.obstacles, la pièce ou cell.deposition_point</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/in_language.py"/>
         <source>the nozzle touches {what}</source>
         <translation>la buse touche {what}</translation>
     </message>
@@ -12942,12 +12942,12 @@
         <translation>la pièce a trop peu de couches pour ramener au plan : la dernière en est éloignée de {0} mm au plus ; un substrate.scan_band plus grand y ramène en moins de couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>the part touches the platform at a point and has no open end to start from; choose a substrate, or turn the part so that an open end is on the platform</source>
         <translation>la pièce touche le plateau en un point et n&apos;a pas de bout ouvert d&apos;où partir ; choisissez un substrat, ou tournez la pièce pour qu&apos;un bout ouvert soit sur le plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/in_language.py"/>
         <source>the part touches {what}</source>
         <translation>la pièce touche {what}</translation>
     </message>
@@ -12972,7 +12972,7 @@
         <translation>les plans normaux à sa ligne médiane ne la coupent pas en une courbe chacun ; choisissez d&apos;autres couches pour cette paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/in_language.py"/>
         <source>the platform</source>
         <translation>le plateau</translation>
     </message>
@@ -12987,22 +12987,22 @@
         <translation>les points s&apos;étendent sur {0} mm, {1} sur {2} mm ; vérifiez l&apos;unité du fichier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/moves.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>the points of {0} are not all in one frame</source>
         <translation>les points de {0} ne sont pas tous dans un repère</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>the points on the part are collinear or coincide, so the rotation about their line is undetermined; touch a point off that line</source>
         <translation>les points sur la pièce sont alignés ou confondus, si bien que la rotation autour de leur droite est indéterminée ; palpez un point à côté</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>the points touched are collinear or coincide, so the rotation about their line is undetermined; touch a point off that line</source>
         <translation>les points palpés sont alignés ou confondus, si bien que la rotation autour de leur droite est indéterminée ; palpez un point à côté</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>the pose at all zeros is missing; add it</source>
         <translation>la pose à zéro de tous les axes manque ; ajoutez-le</translation>
     </message>
@@ -13047,12 +13047,12 @@
         <translation>le post-processeur yaskawa ne peut pas écrire {0} ; utilisez un autre post-processeur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/parts.py"/>
+        <location filename="../../freecad_am/posts/nc/numbers.py"/>
         <source>the post {0} cannot write {1} ({2} motion); use rotary-table</source>
         <translation>le post-processeur {0} ne peut pas écrire {1} (mouvement {2}) ; utilisez rotary-table</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/parts.py"/>
+        <location filename="../../freecad_am/posts/nc/numbers.py"/>
         <source>the post {0} writes linear axes X Y Z and rotary axes of A B C, one each; the machine has {1}: name its joints mx my mz and a, b or c</source>
         <translation>le post-processeur {0} écrit des axes linéaires X Y Z et des axes rotatifs parmi A B C, un de chaque ; la machine a {1} : nommez ses articulations mx my mz et a, b ou c</translation>
     </message>
@@ -13132,12 +13132,12 @@
         <translation>les points mesurés ne se posent pas sur la pièce ; donnez des paires de points pour commencer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/results/stored.py"/>
+        <location filename="../../freecad_am/objects/results/store.py"/>
         <source>the result is missing; recompute it</source>
         <translation>il n&apos;y a pas encore de résultat ; recalculez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/ways.py"/>
         <source>the retract before or after the bead cannot be reached at any height, direction or rotation tried; lower process.between_layers.lift or move the part in the cell</source>
         <translation>le retrait avant ou après le cordon est hors d&apos;atteinte à chaque hauteur, direction ou rotation essayée ; diminuez process.between_layers.lift ou déplacez la pièce dans la cellule</translation>
     </message>
@@ -13152,7 +13152,7 @@
         <translation>le vecteur de rotation a une longueur de {0} rad, plus d&apos;un tour ; donnez RX RY RZ en rad, comme le pupitre les affiche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/wire.py"/>
         <source>the row has more values than columns; write decimals with a point</source>
         <translation>il a plus de valeurs que de colonnes ; écrivez les décimales avec un point</translation>
     </message>
@@ -13282,7 +13282,7 @@
         <translation>les rôles du trancheur nomment les triangles {0} à {1} de l&apos;objet {2}, qui en a {3}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/substrate.py"/>
+        <location filename="../../freecad_am/brep/walls/sheet.py"/>
         <source>the solid around {0} is inside out (volume {1} mm3); repair it (Part, Check geometry), or reverse it (Part, Reverse shapes)</source>
         <translation>le solide autour de {0} est retourné (volume {1} mm3) ; réparez-le (Part, Vérifier la géométrie), ou inversez-le (Part, Inverser les formes)</translation>
     </message>
@@ -13322,7 +13322,7 @@
         <translation>les solides ou maillages fermés à déposer ; ou une pièce et les faces de son moyeu, si les deux sont un seul solide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/times.py"/>
+        <location filename="../../freecad_am/read_back/ways.py"/>
         <source>the speed in the text is not the planned one</source>
         <translation>la vitesse dans le texte n&apos;est pas celle planifiée</translation>
     </message>
@@ -13422,12 +13422,12 @@
         <translation>le texte mène {0} jusqu&apos;à {1} {2} au-delà de sa limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/times.py"/>
+        <location filename="../../freecad_am/read_back/ways.py"/>
         <source>the time in the text does not give the planned speed</source>
         <translation>le temps dans le texte ne donne pas la vitesse planifiée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/times.py"/>
+        <location filename="../../freecad_am/read_back/ways.py"/>
         <source>the times of a bead do not add up to the planned one</source>
         <translation>les temps d&apos;un cordon ne font pas la somme planifiée</translation>
     </message>
@@ -13452,7 +13452,7 @@
         <translation>l&apos;outil est tourné autrement que planifié</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur/numbers.py"/>
+        <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>the tool passes a point by {0} mm without a stop, too little for a blend radius, so the robot would stop there with the deposit on; use a larger strategy.chord_error, or `program.blend: 0` to stop at every point</source>
         <translation>l&apos;outil parcourt {0} mm près d&apos;un point sans arrêt, trop peu pour un rayon de lissage, et le robot s&apos;y arrêterait en déposant ; utilisez un strategy.chord_error plus grand, ou `program.blend: 0` pour s&apos;arrêter à chaque point</translation>
     </message>
@@ -13467,12 +13467,12 @@
         <translation>la trajectoire d&apos;outil à exécuter</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/moves.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>the tools of {0} are not all on one tool</source>
         <translation>les outils de {0} ne sont pas tous sur un outil</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/in_language.py"/>
         <source>the torch</source>
         <translation>la torche</translation>
     </message>
@@ -13497,7 +13497,7 @@
         <translation>la torche s&apos;approche à moins de {0} mm de {1}, ou touche cet objet ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/in_language.py"/>
         <source>the torch touches {what}</source>
         <translation>la torche touche {what}</translation>
     </message>
@@ -13507,12 +13507,12 @@
         <translation>la torche oscille déjà, ou pas encore</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>the touched points are {0} times as far apart as planned; one set is in {1}; give both in mm</source>
         <translation>les points touchés sont {0} fois plus écartés que prévu ; l&apos;un des deux est en {1} ; donnez les deux en mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>the touched points are {0} times as far apart as planned; the points belong to another part, or are in another order</source>
         <translation>les points touchés sont {0} fois plus écartés que prévu ; ce sont des points d&apos;une autre pièce, ou dans un autre ordre</translation>
     </message>
@@ -13637,7 +13637,7 @@
         <translation>la paroi n&apos;a pas de départ : aucune de ses arêtes n&apos;est sur le plateau, le plan Z = {0} mm par son point le plus bas {1} ; choisissez un substrat ou des arêtes de départ</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/cuts.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>the wall intersects itself at {0} ({1}); {2}</source>
         <translation>la paroi se coupe en {0} ({1}) ; {2}</translation>
     </message>
@@ -13787,7 +13787,7 @@
         <translation>il n&apos;y a pas de couche au-dessus de {0} : la dernière des {1} est {2} ; donnez-en une plus basse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/wire.py"/>
         <source>there is no {0}; correct or remove the row</source>
         <translation>il n&apos;y a pas de {0} ; corrigez la ligne, ou retirez-la</translation>
     </message>
@@ -13797,12 +13797,12 @@
         <translation>il n’y a qu’une couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>these layers have nothing to show</source>
         <translation>il n&apos;y a rien à voir dans ces couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance/helpful.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/tilt_search.py"/>
         <source>these points would be clear with {0}, which was not tested for the others</source>
         <translation>ces points auraient de la place avec {0}, ce qui n&apos;a pas été essayé pour les autres</translation>
     </message>
@@ -13877,7 +13877,7 @@
         <translation>cette clé manque ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>this machine has no condition</source>
         <translation>cette machine n&apos;a pas de condition</translation>
     </message>
@@ -13902,7 +13902,7 @@
         <translation>inclinaison</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>time</source>
         <translation>temps</translation>
     </message>
@@ -13917,12 +13917,12 @@
         <translation>outil</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/walls/directions.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
         <source>tool axes are spread along the bead, by up to {0} deg, to turn no faster than build_direction.max_turn</source>
         <translation>les axes de l&apos;outil sont étalés le long du cordon, jusqu&apos;à {0} deg, pour ne pas tourner plus vite que build_direction.max_turn</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/walls/directions.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
         <source>tool axes are turned back by up to {0} deg to stay within build_direction.max_tilt</source>
         <translation>les axes de l&apos;outil sont ramenés jusqu&apos;à {0} deg pour rester dans build_direction.max_tilt</translation>
     </message>
@@ -13982,12 +13982,12 @@
         <translation>tore, cône (cylindres aussi) ou table ; patches pour une paroi de faces quelconques qui se tiennent ; mesh.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>touched points calibrate a part that the robot moves, but here the part is fixed and the robot holds the tool; remove them, and measure cell.platform or the pose of the positioner</source>
         <translation>on palpe les points d&apos;une pièce immobile sous un outil porté par le robot ; retirez-les, et mesurez cell.platform ou la pose de ce qui porte la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>travel speed</source>
         <translation>vitesse d&apos;avance</translation>
     </message>
@@ -14002,7 +14002,7 @@
         <translation>coupée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/cuts.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>trim the faces at their intersection, or deposit the intersecting faces as separate features</source>
         <translation>coupez les faces à leur intersection, ou déposez les faces qui se coupent comme des éléments séparés</translation>
     </message>
@@ -14052,7 +14052,7 @@
         <translation>&lt;{0}&gt; dans l&apos;articulation {1} est inconnu et peut déplacer les corps ; supprimez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/wire.py"/>
         <source>unknown column {0}; remove it, or rename it to one of {1}</source>
         <translation>la colonne {0} est inconnue ; supprimez-la ou nommez-la l&apos;un de {1}</translation>
     </message>
@@ -14067,7 +14067,7 @@
         <translation>{0} n&apos;est pas connu ; sont intégrés {1} ; ou donnez le chemin d&apos;un fichier de machine ou d&apos;un URDF</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/near_names.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>unknown name {0}; {1}</source>
         <translation>{0} n&apos;est pas connu ; {1}</translation>
     </message>
@@ -14112,37 +14112,37 @@
         <translation>utilisez 0 ou 1</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>use 1 or -1</source>
         <translation>utilisez 1 ou -1</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/cuts.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>use a bend radius larger than the tube radius</source>
         <translation>donnez au coude un rayon plus grand que celui du tube</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/cuts.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>use bend radii larger than the tube radius</source>
         <translation>donnez aux coudes un rayon plus grand que celui du tube</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
         <source>use mount: feature</source>
         <translation>utilisez mount: feature</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
         <source>use mount: feature, or move the part</source>
         <translation>utilisez mount: feature, ou déplacez la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
         <source>use mount: feature, which puts its lowest end on the platform, move the part up in its file, or set cell.platform_diameter to what there is (0 for none)</source>
         <translation>utilisez mount: feature, qui pose son extrémité la plus basse sur le plateau, remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur ce qui existe (0 pour aucun)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance/helpful.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/tilt_search.py"/>
         <source>use other layers or another direction, or exclude the region of these points</source>
         <translation>prenez d&apos;autres couches ou une autre direction, ou laissez de côté ce à quoi ces points appartiennent</translation>
     </message>
@@ -14157,7 +14157,7 @@
         <translation>violet à orange</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>volume</source>
         <translation>volume</translation>
     </message>
@@ -14232,7 +14232,7 @@
         <translation>le balancement par le mouvement de la pièce sous une torche fixe n&apos;a pas été confirmé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/process_data.py"/>
+        <location filename="../../freecad_am/posts/abb/modules.py"/>
         <source>weld data is not taken of the controller yet, has two speeds or another than declared</source>
         <translation>des données de soudage ne sont pas encore reprises de la commande, ont deux vitesses ou une autre que déclarée</translation>
     </message>
@@ -14272,7 +14272,7 @@
         <translation>largeur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/wire.py"/>
         <source>wire feed {0} m/min is not a positive number; correct or remove the row</source>
         <translation>le dévidage {0} m/min n&apos;est pas un nombre positif ; corrigez la ligne, ou retirez-la</translation>
     </message>
@@ -14307,17 +14307,17 @@
         <translation>avec la pièce sur le robot, les mouvements linéaires de KRL ont un outil fixe ($IPO_MODE #TCP), et que les points soient alors la buse vue de la pièce ou la pièce vue de la buse n&apos;a pas été confirmé ; prenez `setup: tool-on-robot`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/names.py"/>
+        <location filename="../../freecad_am/posts/catalogue.py"/>
         <source>with the {0} digits of its parts it has more than {1} characters</source>
         <translation>avec les {0} chiffres de ses parties il a plus de {1} caractères</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/size.py"/>
-        <source>with tilts for clearance the tool turns faster than build_direction.max_turn on beads of {0} points; the search for slower tilts takes up to {1} min of the processor; a larger build_direction.max_turn, a slimmer nozzle, or clearance: none avoids it</source>
+        <source>with tilts for clearance the tool turns faster than build_direction.max_turn on beads of {0} points; the search for slower tilts takes up to {1} min of processor time; a larger build_direction.max_turn, a slimmer nozzle, or clearance: none avoids it</source>
         <translation>avec des inclinaisons qui dégagent la buse, l&apos;outil tourne plus vite que build_direction.max_turn sur des cordons de {0} points ; en chercher de plus lentes prend jusqu&apos;à {1} min de processeur ; un build_direction.max_turn plus grand, une buse plus fine, ou clearance: none, l&apos;évitent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance/helpful.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/tilt_search.py"/>
         <source>with {0} the nozzle is clear (tested)</source>
         <translation>avec {0} la buse est dégagée, ce qui a été essayé</translation>
     </message>
@@ -14352,7 +14352,7 @@
         <translation>le décalage d&apos;origine {0} n&apos;est pas disponible pour la pièce ; utilisez 1 à {1} (G54 à G59.2 ; le neuvième, {2}, est mis à zéro pour les mouvements des axes)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/cam_path.py"/>
+        <location filename="../../freecad_am/interop/export.py"/>
         <source>write STEP or DXF</source>
         <translation>écrivez STEP ou DXF</translation>
     </message>
@@ -14382,7 +14382,7 @@
         <translation>écrivez par exemple : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>zigzag</source>
         <translation>zigzag</translation>
     </message>
@@ -14422,7 +14422,7 @@
         <translation>{0} (ligne {1}, {2} en tout)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} a flange {1} mm and {2} (largest entry of the rotation) from it; correct the geometry or the pose</source>
         <translation>{0} une bride à {1} mm et {2} (plus grand terme de la rotation) de celle-ci ; corrigez la géométrie ou la pose</translation>
     </message>
@@ -14517,7 +14517,7 @@
         <translation>il y a {0} applications, une seule attendue avec ses parties</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/macro/steps.py"/>
+        <location filename="../../freecad_am/macro/arguments.py"/>
         <source>{0} are names without an object; pass the object too</source>
         <translation>{0} sont des noms sans l’objet auquel ils appartiennent ; donnez-le aussi</translation>
     </message>
@@ -14607,12 +14607,12 @@
         <translation>{0} ne peut pas être le nom d&apos;une machine ; utilisez a à z, chiffres et -</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/names.py"/>
+        <location filename="../../freecad_am/posts/catalogue.py"/>
         <source>{0} cannot be {1} on the controller: {2}; use {3}</source>
         <translation>{0} ne peut pas être {1} sur la commande : {2} ; utilisez {3}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/parts.py"/>
+        <location filename="../../freecad_am/posts/nc/numbers.py"/>
         <source>{0} cannot switch both on and off; give two different words</source>
         <translation>{0} ne peut pas à la fois mettre en marche et arrêter ; donnez deux mots différents</translation>
     </message>
@@ -14662,7 +14662,7 @@
         <translation>{0} compare avec {1} ; choisissez un contrôle de la pièce sur laquelle on dépose</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} contains a 0; give the pulses per degree of each axis, negative where they count down</source>
         <translation>{0} contient un 0 ; donnez les impulsions d&apos;un degré de chaque axe, négatives là où elles décroissent</translation>
     </message>
@@ -14672,7 +14672,7 @@
         <translation>{0} y dit que le trancheur perce des trous que le maillage n&apos;a pas ; supprimez-les ou exportez la pièce percée en maillage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution/turn.py"/>
+        <location filename="../../freecad_am/brep/revolution/patch.py"/>
         <source>{0} covers {1} and {2} {3}; choose faces with the same angular range</source>
         <translation>{0} tourne {1} et {2} {3} ; choisissez des faces qui tournent pareillement</translation>
     </message>
@@ -14742,7 +14742,7 @@
         <translation>{0} arêtes de plus de deux triangles ont été dédoublées, par exemple en {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} exceeds the rounding of a display; give 0 to {1}</source>
         <translation>{0} est plus que ce que laisse l&apos;arrondi d&apos;un affichage ; donnez de 0 à {1}</translation>
     </message>
@@ -14757,7 +14757,7 @@
         <translation>{0} entre dans le plateau, une plaque de {1} mm sous l&apos;origine du repère posé dessus ; fixez cell.platform là où la pièce est tenue et cell.platform_diameter selon ce qui existe (0 pour aucun)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
         <source>{0} extends {1} mm below the platform, at {2}</source>
         <translation>{0} descend à {1} mm au-dessous du plateau, en {2}</translation>
     </message>
@@ -14792,7 +14792,7 @@
         <translation>{0} suit un déplacement dans sa ligne ; donnez-lui sa propre ligne</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/expressions.py"/>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>{0} follows the expression {1}, which no longer gives a value; give {2} a value or another expression</source>
         <translation>{0} suit l&apos;expression {1}, qui ne donne plus rien ; donnez à {2} une valeur ou une autre expression</translation>
     </message>
@@ -14827,7 +14827,7 @@
         <translation>{0} donne à un volume le rôle inconnu {1} ; exportez seulement la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/expressions.py"/>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>{0} gives {1}, which is not a number; write one that gives a number</source>
         <translation>{0} donne {1}, qui n&apos;est pas un nombre ; écrivez-en une qui donne un nombre</translation>
     </message>
@@ -14847,7 +14847,7 @@
         <translation>{0} a déjà été exécuté, ou est appelé pendant le dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/parts.py"/>
+        <location filename="../../freecad_am/posts/nc/numbers.py"/>
         <source>{0} has another meaning on the controller; use another word</source>
         <translation>{0} veut dire autre chose pour la commande ; utilisez un autre mot</translation>
     </message>
@@ -14952,12 +14952,12 @@
         <translation>{0} dans une boucle qui attend une entrée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/document_file.py"/>
+        <location filename="../../freecad_am/objects/shapes/linked_files.py"/>
         <source>{0} in it does not begin as XML; save it again</source>
         <translation>{0} n&apos;y commence pas comme du XML ; enregistrez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/document_file.py"/>
+        <location filename="../../freecad_am/objects/shapes/linked_files.py"/>
         <source>{0} in it has a document type, which FreeCAD documents never have, and is not read; save it again</source>
         <translation>{0} y a un type de document, qu&apos;aucun document de FreeCAD n&apos;a, et n&apos;est pas lu ; enregistrez-le de nouveau</translation>
     </message>
@@ -14977,7 +14977,7 @@
         <translation>{0} qu&apos;il contient n&apos;a pas de forme ; choisissez un objet qui en a une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>{0} inside-out solids were reversed</source>
         <translation>{0} solides étaient retournés et ont été remis à l&apos;endroit</translation>
     </message>
@@ -15197,7 +15197,7 @@
         <translation>{0} est chargé pendant le dépôt ou manque, ou {1} n&apos;est pas une bibliothèque</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/macro/links.py"/>
+        <location filename="../../freecad_am/macro/arguments.py"/>
         <source>{0} is made from {1} itself; choose another object</source>
         <translation>{0} est lui-même fait à partir de {1} ; choisissez un autre objet</translation>
     </message>
@@ -15207,7 +15207,7 @@
         <translation>il y manque {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
         <source>{0} is missing in this document. Create it first: button {0} in the toolbar.</source>
         <translation>{0} manque dans ce document. Faites-le d&apos;abord : bouton {0} de la barre d&apos;outils.</translation>
     </message>
@@ -15247,7 +15247,7 @@
         <translation>{0} n&apos;est pas un URDF, qui seul a des segments ; écrivez machine: {{file: robot.urdf, base: base_link, tip: tool0}}, ou le chemin d&apos;un fichier machine sans accolades</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/walls/directions.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
         <source>{0} is not a bend of a torus, so it has no plane of symmetry; give the normal as build_direction.plane, or use local, layer or fixed</source>
         <translation>{0} n&apos;est pas le coude d&apos;un tore, son plan de symétrie n&apos;est donc pas connu ; donnez sa normale comme build_direction.plane, ou utilisez local, layer ou fixed</translation>
     </message>
@@ -15267,7 +15267,7 @@
         <translation>{0} n&apos;est pas une classe de cordons ; {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/links/shape.py"/>
+        <location filename="../../freecad_am/core/kinematics/links/bodies.py"/>
         <source>{0} is not a colour; use red, green and blue from 0 to 1</source>
         <translation>{0} n&apos;est pas une couleur ; donnez rouge, vert et bleu de 0 à 1</translation>
     </message>
@@ -15322,7 +15322,7 @@
         <translation>{0} n&apos;est pas une hauteur ; donnez des nombres en mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not a joint type; use revolute or prismatic</source>
         <translation>{0} n&apos;est pas un type d&apos;articulation ; utilisez revolute ou prismatic</translation>
     </message>
@@ -15502,7 +15502,7 @@
         <translation>{0} n&apos;est pas une plage ; donnez deux pourcentages, le plus petit d&apos;abord</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/links/shape.py"/>
+        <location filename="../../freecad_am/core/kinematics/links/bodies.py"/>
         <source>{0} is not a scale; give 1 for mm, 1000 for m</source>
         <translation>{0} n&apos;est pas une échelle ; donnez 1 pour mm, 1000 pour m</translation>
     </message>
@@ -15532,7 +15532,7 @@
         <translation>{0} n&apos;est pas lu comme des points ; utilisez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/links/shape.py"/>
+        <location filename="../../freecad_am/core/kinematics/links/bodies.py"/>
         <source>{0} is not a supported shape format; use {1}</source>
         <translation>{0} n&apos;est pas une forme qui puisse être dessinée ; utilisez {1}</translation>
     </message>
@@ -15567,12 +15567,12 @@
         <translation>{0} n&apos;est pas un point palpé ; {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not a unit of path speed; use {1}</source>
         <translation>{0} n&apos;est pas une unité de vitesse ; utilisez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not a unit vector; give a vector of length 1</source>
         <translation>{0} n&apos;est pas un vecteur unitaire ; donnez-en un de longueur 1</translation>
     </message>
@@ -15592,12 +15592,12 @@
         <translation>{0} n&apos;est pas un positionneur de cette commande ; indiquez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not a valid target of a warning; use {1}</source>
         <translation>{0} n&apos;est pas un objet possible d&apos;un avertissement ; utilisez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/macro/parts.py"/>
+        <location filename="../../freecad_am/macro/scan.py"/>
         <source>{0} is not a whole number; give one such as 1</source>
         <translation>{0} n&apos;est pas un nombre entier ; donnez par exemple 1</translation>
     </message>
@@ -15607,7 +15607,7 @@
         <translation>{0} n&apos;est pas un nombre entier ; donnez-en un comme 3</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/parts.py"/>
+        <location filename="../../freecad_am/posts/nc/numbers.py"/>
         <source>{0} is not a word such as M7 or H2=1; give one for on and one for off</source>
         <translation>{0} n&apos;est pas un mot comme M7 ou H2=1 ; donnez-en un pour la marche et un pour l&apos;arrêt</translation>
     </message>
@@ -15697,7 +15697,7 @@
         <translation>{0} n&apos;est pas supérieur à 0 ; donnez plus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not the length of an arm; give more than 0 mm</source>
         <translation>{0} n&apos;est pas la longueur d&apos;un bras ; donnez plus de 0 mm</translation>
     </message>
@@ -15712,7 +15712,7 @@
         <translation>{0} n&apos;est pas compris</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/expressions.py"/>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>{0} is not understood ({1}); write it as in {2}Spreadsheet.height / 2</source>
         <translation>{0} n&apos;est pas compris ({1}) ; écrivez-le comme {2}Spreadsheet.height / 2</translation>
     </message>
@@ -15762,7 +15762,7 @@
         <translation>{0} n&apos;est pas une donnée {1} du projet, ou n&apos;a pas autant de valeurs</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not {1}; give more than 0, or null where not known</source>
         <translation>{0} n&apos;est pas {1} ; donnez plus de 0, ou null si elle n&apos;est pas connue</translation>
     </message>
@@ -15837,12 +15837,12 @@
         <translation>{0} n&apos;a pas de mot {1} ; donnez {2} ou corrigez la ligne</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/without_bead.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
         <source>{0} layer(s) of {1} get no bead, as all regions are too narrow: {2}; the largest, {3} mm^2 and {4} mm wide, is at {5}; the total is {6} mm^2; use narrower beads, lower strategy.narrowest, or make the part thicker there</source>
         <translation>{0} couche(s) de {1} ne reçoivent pas de cordon, car toutes leurs régions sont trop étroites : {2} ; la plus grande, de {3} mm^2 et {4} mm de large, est en {5} ; le total est de {6} mm^2 ; utilisez des cordons plus étroits, baissez strategy.narrowest, ou épaississez la pièce là</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution/turn.py"/>
+        <location filename="../../freecad_am/brep/revolution/patch.py"/>
         <source>{0} leave more than one opening around the axis; choose one face</source>
         <translation>{0} laissent plus d&apos;une ouverture autour de l&apos;axe ; choisissez une face</translation>
     </message>
@@ -16017,7 +16017,7 @@
         <translation>{0} mm : {1} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/over_and_under.py"/>
+        <location filename="../../freecad_am/core/layers/surface.py"/>
         <source>{0} mm^2 overhang the layer below by more than {1} deg, the largest piece at {2}; deposit a support first, choose another strategy.direction, or raise strategy.max_overhang</source>
         <translation>{0} mm^2 surplombent la couche du dessous de plus de {1} deg, le plus grand morceau en {2} ; déposez d&apos;abord ce qui le porte, choisissez une autre strategy.direction, ou augmentez strategy.max_overhang</translation>
     </message>
@@ -16042,7 +16042,7 @@
         <translation>{0} mouvements prennent {1} s en tout et ne peuvent pas durer moins de 1 ms chacun ; prenez une plus grande erreur de corde ou une vitesse plus basse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} must be 1 or -1 each; give one for each joint</source>
         <translation>{0} doivent être 1 ou -1 chacun ; donnez-en un par articulation</translation>
     </message>
@@ -16052,7 +16052,7 @@
         <translation>{0} doit être soit un fichier soit une boîte ; donnez exactement l&apos;un des deux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} must be within +-180; give equivalent angles in that range</source>
         <translation>{0} doit être dans +-180 ; donnez des angles équivalents dans cette plage</translation>
     </message>
@@ -16092,7 +16092,7 @@
         <translation>{0} est pour une machine qui est l&apos;URDF de toute la cellule, comme machine: bay.urdf ; ou donnez une liste de mécanismes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/external/rule.py"/>
+        <location filename="../../freecad_am/core/planning/external/optimised.py"/>
         <source>{0} needs polynomials per bead, which the method {1} lacks; use method: {2}, or external_axes: {3}</source>
         <translation>{0} : ce sont des polynômes par cordon, la méthode {1} n&apos;en a pas ; utiliser method : {2}, ou external_axes : {3}</translation>
     </message>
@@ -16252,7 +16252,7 @@
         <translation>{0} ou {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance/helpful.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/tilt_search.py"/>
         <source>{0} out of the way</source>
         <translation>{0} hors du chemin</translation>
     </message>
@@ -16267,7 +16267,7 @@
         <translation>{0} paires de triangles se coupent, comme en {1} ; la réunion des volumes enclos compte comme l&apos;intérieur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>{0} pieces that enclose no volume were removed</source>
         <translation>{0} morceaux qui n&apos;enferment rien ont été écartés</translation>
     </message>
@@ -16277,17 +16277,17 @@
         <translation>{0} endroit(s) trop étroits pour un cordon n&apos;en reçoivent pas, {1} mm^2 en tout ; le plus grand, {2} mm^2 et {3} mm de large, est en {4} ; utilisez des cordons plus étroits, baissez strategy.narrowest ou épaississez la pièce à cet endroit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/moves.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>{0} placed in the world</source>
         <translation>{0} qui est dans le monde</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/moves.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>{0} placed on the flange</source>
         <translation>{0} qui est sur la bride</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>{0} point(s) cannot locate a part; touch at least {1}, spread out and not collinear</source>
         <translation>{0} point(s) ne peuvent pas localiser une pièce ; touchez-en au moins {1}, écartés et non alignés</translation>
     </message>
@@ -16427,7 +16427,7 @@
         <translation>d&apos;après {0} points palpés, le repère de la pièce est en [{1}] mm et deg dans la base du robot ; écarts aux points : {2} mm, {3} mm en moyenne quadratique</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>{0} triangles were flipped to match their neighbours</source>
         <translation>{0} triangles ont été retournés pour s&apos;accorder avec leurs voisins</translation>
     </message>
@@ -16472,7 +16472,7 @@
         <translation>{0} avec {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/ways.py"/>
         <source>{0} would be at {1} {2} on the retract before or after the bead, beyond its limit of {3} {4}, and no other height, direction or rotation is within limits; lower process.between_layers.lift or move the part in the cell</source>
         <translation>{0} serait à {1} {2} au retrait avant ou après le cordon, sa limite est {3} {4}, et aucune autre hauteur, direction ou rotation ne reste dans les limites ; diminuez process.between_layers.lift ou déplacez la pièce dans la cellule</translation>
     </message>
@@ -16487,7 +16487,7 @@
         <translation>{0} serait à {1} {2}, sa limite est {3} {4} ; déplacez la pièce sur la table</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/wire.py"/>
         <source>{0} {1} is not a number; correct or remove the row</source>
         <translation>{0} {1} n&apos;est pas un nombre ; corrigez la ligne, ou retirez-la</translation>
     </message>
@@ -16647,7 +16647,7 @@
         <translation>{0} : controller.matrix</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/process.py"/>
+        <location filename="../../freecad_am/plots/joints.py"/>
         <source>{0}: distance to the layer before (asked: {1} mm)</source>
         <translation>{0} : distance à la couche précédente (demandée : {1} mm)</translation>
     </message>
@@ -16702,7 +16702,7 @@
         <translation>{0} : ses objets se trouvent sur {1} plateaux, et tous sont déposés, aussi loin les uns des autres que les plateaux ; pour déposer un plateau, exportez-le seul</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/whole_mesh.py"/>
+        <location filename="../../freecad_am/brep/hub.py"/>
         <source>{0}: its triangles enclose {1} cm3 but its faces {2} cm3; check the part and export it again, or deposit it from a mesh</source>
         <translation>{0} : ses triangles enferment {1} cm3 et ses faces {2} cm3 ; contrôlez la pièce et exportez-la de nouveau, ou déposez-la à partir d&apos;un maillage</translation>
     </message>
@@ -16852,7 +16852,7 @@
         <translation>{0} ; choisissez un fichier que vous pouvez écrire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/macro/export.py"/>
+        <location filename="../../freecad_am/macro/scan.py"/>
         <source>{0}; choose a writable folder</source>
         <translation>{0} ; choisissez un dossier où vous pouvez écrire</translation>
     </message>
@@ -16892,7 +16892,7 @@
         <translation>{0} ; mettez program.motion à cartesian avec l&apos;outil sur le robot (fanuc, yaskawa ; abb aussi avec program.schedule.by: arc), ou process.weave, aussi dans process.classes, à 0</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/nodes/machine_links.py"/>
+        <location filename="../../freecad_am/gui/nodes/cell.py"/>
         <source>{0}; the link is shown as a plain solid for now</source>
         <translation>{0} ; le corps garde pour l&apos;instant son solide simple</translation>
     </message>
@@ -16922,7 +16922,7 @@
         <translation>{0} ; {1} événements sur {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/planned.py"/>
+        <location filename="../../freecad_am/read_back/text_path.py"/>
         <source>{0}; {1} of {2} moves</source>
         <translation>{0} ; {1} de {2} mouvements</translation>
     </message>
@@ -16937,7 +16937,7 @@
         <translation>{0}={1} de &lt;{2}&gt; demande {3} nombres ; séparez-les par des espaces</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>{:.1f} mm long in {:.1f} s</source>
         <translation>long de {:.1f} mm en {:.1f} s</translation>
     </message>
@@ -16952,7 +16952,7 @@
         <translation>{:.4g} cm² par couche, en {} couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>{:.4g} mm wide</source>
         <translation>large de {:.4g} mm</translation>
     </message>
@@ -16997,12 +16997,12 @@
         <translation>{label} a été recalculé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/docks/lookout.py"/>
+        <location filename="../../freecad_am/gui/docks/dock_area.py"/>
         <source>{label} was deleted</source>
         <translation>{label} a été supprimé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/in_language.py"/>
         <source>{link} touches {what}</source>
         <translation>{link} touche {what}</translation>
     </message>
@@ -17027,12 +17027,12 @@
         <translation>{volume:.2f} cm³</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/figure_table.py"/>
         <source>{} (deg)</source>
         <translation>{} (deg)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/figure_table.py"/>
         <source>{} (mm)</source>
         <translation>{} (mm)</translation>
     </message>
@@ -17042,12 +17042,12 @@
         <translation>{} ({})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/after.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>{} Double-click a stage in the tree to change it.</source>
         <translation>{} Double-cliquez sur une étape dans l&apos;arbre pour la modifier.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/after.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>{} Read the warnings first: double-click {}.</source>
         <translation>{} Lisez d&apos;abord les avertissements : double-cliquez sur {}.</translation>
     </message>
@@ -17057,7 +17057,7 @@
         <translation>{} contre {} à la couche {} cordon {} point {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/pick.py"/>
+        <location filename="../../freecad_am/gui/panels/preview.py"/>
         <source>{} are missing: click them in the tree or the 3D view.</source>
         <translation>{} manquent : cliquez dessus dans l&apos;arbre ou la vue 3D.</translation>
     </message>
@@ -17107,7 +17107,7 @@
         <translation>{} n&apos;atteint pas la pièce avec la buse droite : tous ses axes sont dessinés à 0</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>{} exceed a limit only because an axis runs out of turns along its bead</source>
         <translation>{0} dépassent une limite seulement parce qu&apos;un axe n&apos;a plus de tours le long de son cordon</translation>
     </message>
@@ -17122,12 +17122,12 @@
         <translation>{} faces en {} nappes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/after.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>{} failed.</source>
         <translation>{} a échoué.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/standing.py"/>
+        <location filename="../../freecad_am/gui/panels/stage.py"/>
         <source>{} failed: {}</source>
         <translation>{} a échoué : {}</translation>
     </message>
@@ -17147,7 +17147,7 @@
         <translation>{} n&apos;a pas de trajectoire articulaire à simuler ; faites-en d&apos;abord une, ou sélectionnez un autre travail.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/needs.py"/>
+        <location filename="../../freecad_am/gui/tools/whats_this.py"/>
         <source>{} has no result: {}</source>
         <translation>{} n&apos;a pas de résultat : {}</translation>
     </message>
@@ -17187,17 +17187,17 @@
         <translation>{} est caché, ou n&apos;a pas de résultat.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/after.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>{} is infeasible.</source>
         <translation>{} est infaisable.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/standing.py"/>
+        <location filename="../../freecad_am/gui/panels/stage.py"/>
         <source>{} is infeasible: {}</source>
         <translation>{} est infaisable : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/pick.py"/>
+        <location filename="../../freecad_am/gui/panels/preview.py"/>
         <source>{} is missing: click it in the tree or the 3D view.</source>
         <translation>{} manque : cliquez dessus dans l&apos;arbre ou la vue 3D.</translation>
     </message>
@@ -17212,7 +17212,7 @@
         <translation>{} n&apos;est pas un nombre ; saisissez-en un comme 12.5</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>{} is not below {}; enter the smaller end first</source>
         <translation>{} n&apos;est pas inférieur à {} ; saisissez d&apos;abord la plus petite extrémité</translation>
     </message>
@@ -17232,7 +17232,7 @@
         <translation>{0} est périmé ; l&apos;aperçu montre son état précédent.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/after.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>{} is stale.</source>
         <translation>{} est périmé.</translation>
     </message>
@@ -17277,7 +17277,7 @@
         <translation>{} ou vide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/located.py"/>
+        <location filename="../../freecad_am/gui/program/window.py"/>
         <source>{} point {}</source>
         <translation>{} point {}</translation>
     </message>
@@ -17337,12 +17337,12 @@
         <translation>{} : annulé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/located.py"/>
+        <location filename="../../freecad_am/gui/program/window.py"/>
         <source>{}: on the approach</source>
         <translation>{} : en chemin vers lui</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/after.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>{}: proposed for this job: {}; enter the values of your cell.</source>
         <translation>{} : proposé pour ce travail : {} ; saisissez ce que la vôtre a réellement.</translation>
     </message>
@@ -17357,7 +17357,7 @@
         <translation>{} : {} est maintenant {}. {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>{}: {} points beyond the limit</source>
         <translation>{} : {} points au-delà de la limite</translation>
     </message>
@@ -17377,7 +17377,7 @@
         <translation>σmin / σmax</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/translation.py"/>
+        <location filename="../../freecad_am/gui/texts/in_language.py"/>
         <source>“{}”</source>
         <translation>« {} »</translation>
     </message>

@@ -90,7 +90,7 @@ def test_every_picture_is_seen(person, planned, panel):
                 and not person.field(panel, "save").isEnabled()
             )
         elif name in ("volumes", "section"):
-            assert dock.picture is None and "plane layers" in dock.canvas.text
+            assert dock.picture is None and "planar layers" in dock.canvas.text
         else:
             assert dock.picture.title == entry.title and colours(person, dock.canvas) > 200, name
             assert len(dock.canvas.drawn.places) == len(dock.picture.charts)

@@ -56,7 +56,7 @@ def test_another_number_of_the_chosen_face_is_told(doc, seed):
             break
     put(obj, numbered(shape, order))
     (said,) = warnings(feature)
-    wanted = f"Face{chosen + 1} of Block is not the face that was chosen: that face is Face{order.index(chosen) + 1} now"
+    wanted = f"Face{chosen + 1} of Block is not the selected face: that face is Face{order.index(chosen) + 1} now"
     assert wanted in said
     obj.Placement = App.Placement()
     api.recompute(doc)
@@ -91,9 +91,7 @@ def test_a_feature_that_fails_for_another_face_tells_both(doc):
         put(obj, numbered(shape, order))
     error, there = caught.value, walls[0] + 1
     assert error.code not in ("FACES_CHANGED", "BAD_FACES") and feature.Status == "failed"
-    wanted = (
-        f"Face{side + 1} of Block is not the face that was chosen: that face is Face{there} now"
-    )
+    wanted = f"Face{side + 1} of Block is not the selected face: that face is Face{there} now"
     assert (
         wanted in error.message
         and not error.message.startswith(wanted)
@@ -113,7 +111,7 @@ def test_another_kind_of_surface_is_told_until_the_face_is_confirmed(doc, tmp_pa
     faces = [face for k, face in enumerate(Part.makeBox(90, 80, 70).Faces) if k != top]
     put(obj, Part.makeCompound([*faces[:top], round_, *faces[top:]]))
     (said,) = warnings(feature)
-    assert f"Face{top + 1} of Block was a plane when it was chosen and is a cone now" in said
+    assert f"Face{top + 1} of Block was a plane when selected and is a cone now" in said
     doc.saveAs(str(tmp_path / "block.FCStd"))
     App.closeDocument(doc.Name)
     again = App.openDocument(str(tmp_path / "block.FCStd"))

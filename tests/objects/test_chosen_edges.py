@@ -70,7 +70,7 @@ def test_another_number_of_an_edge_that_is_laid_is_told(doc, seed):
     ((code, said),) = warnings(feature)
     assert (
         code == "EDGES_CHANGED"
-        and f"{name} of Block is not the edge that was chosen: that edge is {new} now" in said
+        and f"{name} of Block is not the selected edge: that edge is {new} now" in said
     )
     part.Placement = App.Placement()
     api.recompute(doc)

@@ -73,7 +73,7 @@ def test_by_hand(text, z):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("kuka 1 2 3 4 5", "write such as: kuka X Y Z A B C"),
+        ("kuka 1 2 3 4 5", "use the form: kuka X Y Z A B C"),
         ("abb 1 2 3 0.7 0 0.7 0.7", "instead of 1"),
         ("abb 1 2 3 90 0 0", "q1 q2 q3 q4"),
         ("ur 0 0 0 90 0 0", "more than a turn"),

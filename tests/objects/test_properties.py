@@ -246,7 +246,7 @@ def test_times_may_be_in_milliseconds(text, seconds):
 
 @pytest.mark.parametrize(
     ("text", "says"),
-    [("0,05", "such as 0.05"), ("0,05 s", "such as 0.05 s"), (",5s", "such as .5s")],
+    [("0,05", "as in 0.05"), ("0,05 s", "as in 0.05 s"), (",5s", "as in .5s")],
 )
 def test_a_decimal_comma_is_told_how_to_be_written(text, says):
     lead = next(row for row in rows.rows(ProgramParameters) if row.key == "trigger_lead")

@@ -208,7 +208,9 @@ def test_a_named_substrate_far_below_is_reported(doc, up, apart):
     ):
         found = [issue for issue in api.issues(made) if issue.code == "ABOVE_SUBSTRATE"]
         assert bool(found) == apart
-        assert all(one.level == "warning" and "30 mm away" in one.message for one in found)
+        assert all(
+            one.level == "warning" and "the smallest gap is 30 mm" in one.message for one in found
+        )
     toolpath = api.make_toolpath(doc, api.make_solid_feature(doc, block, substrate=slab))
     assert ("ABOVE_SUBSTRATE" in codes(toolpath)) == apart
 

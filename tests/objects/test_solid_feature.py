@@ -349,7 +349,7 @@ def test_plane_layers_are_tried_where_curved_ones_have_no_room(doc, monkeypatch,
         str(issue.message) for issue in api.issues(made) if issue.code in ("REMEDY", "NO_REMEDY")
     ]
     assert told == [
-        "the nozzle is not clear with `strategy.layers: planes` either, which was tried"
+        "the nozzle is not clear with `strategy.layers: planes` either (tested)"
         if lid is not None
         else "with `strategy.layers: planes` the nozzle is clear; the toolpath was planned with it, the joint path was not"
     ]

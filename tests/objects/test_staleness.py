@@ -209,13 +209,13 @@ def test_what_could_not_be_carried_out_is_up_to_date_once_its_inputs_are_as_they
     path = api.make_joint_path(doc, toolpath, doc.Cell)
     keys, spacing = [obj.Key for obj in (toolpath, path)], feature.BeadSpacing
     message = toolpath.Message
-    assert "less than a bead" not in message
+    assert "narrower than a bead" not in message
     for _ in range(2):
         feature.BeadSpacing = 30
         doc.recompute()
         assert (
             toolpath.Status == path.Status == "infeasible"
-            and "less than a bead" in toolpath.Message
+            and "narrower than a bead" in toolpath.Message
         )
         feature.BeadSpacing = spacing
         doc.recompute()

@@ -65,7 +65,7 @@ def test_a_tube_is_planned_by_fronts_where_that_is_chosen(doc, tube):
         assert np.abs(apart - 6.0).max() < 0.011  # chords of both are up to 0.01 mm off
     api.change(feature, method="auto")
     assert feature.WallKind == "cone"
-    with pytest.raises(InputError, match=r"leave strategy\.method out"):
+    with pytest.raises(InputError, match=r"remove strategy\.method"):
         made(doc, tube, method="fronts", spacing="iso-parameter")
 
 
@@ -86,7 +86,7 @@ def test_a_wall_that_reaches_below_the_platform_is_refused_with_its_depth(doc, t
     for obj in tube:
         obj.Placement.Base = obj.Placement.Base - App.Vector(0, 0, 40)
     feature = made(doc, tube)
-    with pytest.raises(InputError, match=r"reaches 10\.34 mm below the platform") as found:
+    with pytest.raises(InputError, match=r"extends 10\.34 mm below the platform") as found:
         api.make_toolpath(doc, feature, api.make_cell(doc))
     assert found.value.code == "OFF_PLATFORM"
     assert api.make_toolpath(doc, feature, api.make_cell(doc, platform_diameter=0))
@@ -102,7 +102,7 @@ def test_a_wall_that_begins_below_the_platform_is_refused_before_its_layers_are_
     monkeypatch.setattr(
         fronts, "plan", lambda *args, **more: pytest.fail("its layers are looked for")
     )
-    with pytest.raises(InputError, match=r"reaches 10\.34 mm below the platform"):
+    with pytest.raises(InputError, match=r"extends 10\.34 mm below the platform"):
         api.make_toolpath(doc, feature, api.make_cell(doc, mount="part"))
 
 
@@ -205,7 +205,7 @@ def test_needs_a_solid_substrate(doc, tube):
 def test_a_wall_that_is_its_own_substrate_is_refused_where_that_is_said(doc, tube):
     """It was told to lie wholly in it, 0 mm deep and nowhere less; as a mesh it ended with an internal error."""
     branch, _ = tube
-    with pytest.raises(InputError, match="are the same, Branch") as caught:
+    with pytest.raises(InputError, match="are the same object, Branch") as caught:
         api.make_surface_feature(doc, branch, ["Face1"], branch, layer_height=5)
     assert caught.value.code == "OWN_SUBSTRATE" and caught.value.where.endswith(".Substrate")
     other = doc.addObject("Part::Feature", "Other")

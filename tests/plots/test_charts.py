@@ -239,4 +239,4 @@ def test_volumes_and_sections_of_plane_layers(modelled):
     line = next(one for one in figure.axes[0].get_lines() if one.get_linewidth() > 5)
     assert line.get_linewidth() / 72.0 * draw.DPI * across == pytest.approx(beads[0].width)
     for name in ("volumes", "section"):
-        assert "plane layers" in catalogue.picture(name, modelled).lacking
+        assert "planar layers" in catalogue.picture(name, modelled).lacking

@@ -69,7 +69,7 @@ def test_remote_tcp_is_refused_with_its_reason():
         code="REMOTE_TCP",
         where="program.motion",
     )
-    assert "remote TCP" in message and "not understood" in message and "`motion: joint`" in message
+    assert "remote TCP" in message and "not documented" in message and "`motion: joint`" in message
 
 
 def test_other_setups_and_axes_are_refused():
@@ -97,7 +97,7 @@ def test_turns_of_other_axes_than_the_last_are_refused_in_cartesian_positions(ax
         dataclasses.replace(run, joints=joints),
         *GOLDEN_TABLE.blocks[3:],
     )
-    assert f"axis {axis + 1} stands" in refusal(
+    assert f"axis {axis + 1} is at" in refusal(
         dataclasses.replace(GOLDEN_TABLE, blocks=blocks), code="TURN_NUMBER"
     )
 

@@ -477,7 +477,7 @@ def test_names_the_controller_refuses(name, why, proposal):
 
 def test_no_module_has_the_name_of_what_it_declares_or_uses():
     for name in ("WDAT3", "wdatoff4", "WSEAM", "ArcMainNG"):
-        assert "data" in refusal(
+        assert "variable" in refusal(
             dataclasses.replace(lit(JOB), name=name), code="PROGRAM_NAME", where="name"
         )
         kuka.write(dataclasses.replace(JOB, name=name))  # which uses none of it

@@ -163,7 +163,7 @@ def test_a_linuxcnc_program_by_hand():
     ("FGROUP(X,Y,Z)", "FGROUP(X,C)", "PART_1.SPF line 3", "FGROUP"),
     ("G1 x10", "x10", "PART_1.SPF line 4", "before G1"),
     ("G1 x10", "G91 G1 x10", "PART_1.SPF line 4", "'G91'"),
-    ("G1 x10", "G1 x10 X11", "PART_1.SPF line 4", "twice"),
+    ("G1 x10", "G1 x10 X11", "PART_1.SPF line 4", "duplicated"),
     ("x10", "x1E1", "PART_1.SPF line 4", "'X1E1'"),
     ("x10", "x=AC(10)", "PART_1.SPF line 4", "'X=AC(10)'"),
     ("F6 ;", "F0 ;", "PART_1.SPF line 4", "without a feed"),

@@ -345,5 +345,5 @@ def test_a_program_that_is_not_among_the_files_is_reported_once():
     _, motion, _, files = written(way)
     found = selection_findings(motion, catalogue.load(way[0]).read(files), None)
     assert [(one.issue.level, one.issue.code) for one in found] == [(WARNING, "OTHER_PROGRAM")]
-    assert "CLEAN is called" in found[0].issue.message
+    assert "calls CLEAN" in found[0].issue.message
     assert np.isfinite(motion.position[found[0].row]).all()

@@ -508,13 +508,13 @@ def test_pulses_are_those_of_a_machine_file(tmp_path):
 
 
 @pytest.mark.parametrize(("pattern", "replacement", "why"), [
-    ("MOVL C00003", "MOVL C00099", "not there"), ("MOVL C00003 V=6.0", "MOVL C00003 V=0.0", "the speed 0.0 is none"),
+    ("MOVL C00003", "MOVL C00099", "is missing"), ("MOVL C00003 V=6.0", "MOVL C00003 V=0.0", "the speed 0.0 is not valid"),
     ("MOVL C00003", "SMOVL C00003", "is not understood"), ("C00003=", "C00004=", "is not position 3"),
-    ("VJ=10.00", "VJ=110.00", "is none"), ("NOP", "NOP\r\nJUMP *A", "is not understood"),
+    ("VJ=10.00", "VJ=110.00", "is not valid"), ("NOP", "NOP\r\nJUMP *A", "is not understood"),
     ("NOP", "NOP\r\nSPEED V=1.0", "is not understood"), ("DOUT OT#(7) OFF", "DOUT OT#(8) OFF", "a second output"),
     ("//NAME LINEAR", "//NAME OTHER", "its job is called OTHER"), ("CALL JOB:CLEAN", "CALL JOB:LINEAR", "0 jobs are called"),
     ("///NPOS 6", "///NPOS 7", "is not position 6"), ("SC,RW", "SC,RO", "do not begin"), ("/JOB\r", "JOB\r", "not a job"),
-    ("NOP", "NOP\r\n'pulses/deg S 1.0", "the pulses per degree"), ("'V in mm/s", "'V in m/s", "what unit V has"),
+    ("NOP", "NOP\r\n'pulses/deg S 1.0", "how many pulses"), ("'V in mm/s", "'V in m/s", "what unit V has"),
     ("'V in mm/s", "'V in mm/s\r\n'V in cm/min", "two units"), ("S 1435.3", "S 0.0", "or are missing"),
 ])  # fmt: skip
 def test_what_is_not_understood_is_refused(pattern, replacement, why):

@@ -343,7 +343,7 @@ def tilting_issues(points: int, times: int = 1) -> tuple[Issue, ...]:
     seconds = points * times * SECONDS_A_TILT
     if seconds < LARGE_SECONDS:
         return ()
-    minutes = Text("{:g} min of the processor", at_least(seconds / 60.0))
+    minutes = Text("{:g} min of processor time", at_least(seconds / 60.0))
     if times > 1:
         return (
             Issue(

@@ -88,5 +88,5 @@ def test_a_locked_axis_leaves_the_residual_it_says(name, axis):
 
 
 def test_a_robot_is_none():
-    with pytest.raises(ValueError, match="three prismatic and two revolute axes"):
+    with pytest.raises(ValueError, match="three axes that slide"):
         FiveAxis(machine.load("fanuc-arcmate120ic").chain)

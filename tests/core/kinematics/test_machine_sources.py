@@ -397,7 +397,7 @@ def test_a_urdf_is_a_machine_and_says_what_it_does_not_tell(tmp_path):
             found.limits("maker").lower, given.limits("maker").lower[:6], rtol=1e-14
         )
         assert found.axes == given.axes and found.posts == () and found.free
-        assert "does not define the display of the controller" in found.controller_remark
+        assert "does not say what the controller shows" in found.controller_remark
     for name, words in (
         (f"{path} tip=hand", "arm.urdf has no link 'hand'; name one of base_link"),
         (f"{path} base=tool0", "moves relative to"),

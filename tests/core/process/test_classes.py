@@ -45,7 +45,7 @@ def test_texts_read_back(seed):
     [
         ("contour", "is not a class of beads"),
         ("contour: travel_speed 0", "more than 0"),
-        ("outer: lead 5", "'outer' is not known"),
+        ("outer: lead 5", "'outer' is not a valid choice"),
         ("contour: lead 5; contour: tilt 5", "contour is defined twice"),
         ("fill: speed 5", "no 'speed'"),
         ("fill: lead", "has no number"),

@@ -91,7 +91,7 @@ def test_classes_at_speeds_of_their_own_are_held_against_the_wire():
     made = set_wire_feed(path_of(), of, None)
     (issue,) = made.issues
     assert (issue.level, issue.code, issue.layer, issue.bead) == ("warning", "FEED_BALANCE", 1, 0)
-    assert "feeds 48 mm3/s" in issue.message and "take contour 72 mm3/s" in issue.message
+    assert "feeds 48 mm3/s" in issue.message and "need contour 72 mm3/s" in issue.message
     promise = deposit.wire_feed(made, of)
     assert (
         promise.ok is False
@@ -206,5 +206,5 @@ def test_starts_and_ends_count_among_the_speeds_of_a_material():
         (issue,) = check_speeds(path_of(ends), of).issues
         assert (
             issue.code == "MATERIAL_SPEED"
-            and f"at {low} to {high.replace('6', '9')} mm/s" in issue.message
+            and f"is {low} to {high.replace('6', '9')} mm/s" in issue.message
         )

@@ -74,7 +74,7 @@ def test_what_planes_do_not_cut_in_one_curve_is_refused():
     assert len(normal_layers.layers(tube, low, 2.0, 8.5)) == 5
     assert len(normal_layers.layers(turned, first, 2.0, 1.5)) > 5  # tight, yet still cut once
     disc = Cone(20.0, 0.5 * np.pi)  # its sections all have one middle: there is no centreline
-    with pytest.raises(InputError, match="centreline"):
+    with pytest.raises(InputError, match="centre line"):
         normal_layers.layers(
             disc, WallLayer.of(disc, even_grid(disc, 90), still, still, still), 2.0, 9.0
         )

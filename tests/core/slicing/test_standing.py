@@ -105,15 +105,18 @@ def test_solids_in_another_unit_are_told_so(factor, unit):
     small = Body("small", body.vertices / factor, body.triangles)
     with pytest.raises(InputError) as caught:  # a STEP file tells its unit
         group_by_base([small], SEATS, 0.01, "part")
-    assert "Times" not in caught.value.message and "file" not in caught.value.message
+    assert "Multiplied" not in caught.value.message and "file" not in caught.value.message
     with pytest.raises(InputError) as caught:
         group_by_base([small], SEATS, 0.01, "part", unitless=[small])
-    assert f"Times {factor:g} it would reach Face1: is its file in {unit}?" in caught.value.message
+    assert (
+        f"Multiplied by {factor:g} it would reach Face1: is its file in {unit}?"
+        in caught.value.message
+    )
     with pytest.raises(InputError) as caught:
         group_by_base(
             [body := sector(60.0, 70.0, 20.0, 60.0)], SEATS, 0.01, "part", unitless=[body]
         )
-    assert "Times" not in caught.value.message
+    assert "Multiplied" not in caught.value.message
 
 
 def test_the_hub_is_what_others_stand_on():
@@ -238,7 +241,7 @@ def test_overlapping_boxes_along_the_axes_are_refused():
         return Body(name, corners, np.array(faces, dtype=np.int64))
 
     seats = [Seat(Base("hub", Developable(60.0), np.eye(4)), (Stretch(-math.inf, math.inf),))]
-    with pytest.raises(InputError, match="it overlaps") as caught:
+    with pytest.raises(InputError, match="overlap, as at") as caught:
         group_by_base(
             [box("one", [50.0, -10.0, -10.0]), box("two", [55.0, -5.0, -5.0])], seats, 0.02, "part"
         )

@@ -119,7 +119,7 @@ def test_of_a_part_far_larger_than_the_platform_only_what_is_over_it_is_looked_a
     )
     tracemalloc.start()
     if depth:
-        with pytest.raises(InputError, match=r"plate reaches 7\.5 mm below the platform"):
+        with pytest.raises(InputError, match=r"plate extends 7\.5 mm below the platform"):
             clearance.refuse_solids_below(solids, np.eye(4), 40.0)
     else:
         clearance.refuse_solids_below(solids, np.eye(4), 40.0)
@@ -164,7 +164,7 @@ def test_solids_that_reach_below_the_platform_are_refused_with_their_depth(drop,
     if not refused:
         clearance.refuse_solids_below(solids, np.eye(4), diameter)
         return
-    with pytest.raises(InputError, match=r"bar reaches 7\.5 mm below the platform, at \(") as found:
+    with pytest.raises(InputError, match=r"bar extends 7\.5 mm below the platform, at \(") as found:
         clearance.refuse_solids_below(solids, np.eye(4), diameter)
     assert "use mount: feature" in found.value.message
     assert found.value.code == "OFF_PLATFORM" and found.value.where == "cell.platform_diameter"

@@ -276,7 +276,7 @@ def test_tilts_that_take_long_to_find_are_told():
         "note",
         "LARGE",
     ) and "on beads of 1,100 points" in issue.message
-    assert "takes up to 0.96 min of the processor" in issue.message
+    assert "takes up to 0.96 min of processor time" in issue.message
 
 
 def test_layers_of_a_wide_margin_are_told_by_what_filling_them_takes():
@@ -288,7 +288,7 @@ def test_layers_of_a_wide_margin_are_told_by_what_filling_them_takes():
     strategy = DevelopableParameters(layer_height=6.0, bead_spacing=8.0, margin=300.0)
     assert size.solids_size(solids(CYLINDER, box()), strategy).squares > 200_000
     (issue,) = size.size_issues(size.Size(40.0, 95_000.0, 330_000.0), strategy)
-    assert issue.code == "LARGE" and "takes about 0.83 min of the processor" in issue.message
+    assert issue.code == "LARGE" and "takes about 0.83 min of processor time" in issue.message
 
 
 def test_remedies_that_take_long_to_find_are_told():
@@ -297,7 +297,7 @@ def test_remedies_that_take_long_to_find_are_told():
     assert (issue.level, issue.code) == (
         "note",
         "LARGE",
-    ) and "takes up to 2.1 min of the processor" in issue.message
+    ) and "takes up to 2.1 min of processor time" in issue.message
 
 
 @pytest.mark.parametrize(

@@ -620,7 +620,7 @@ def test_a_part_lower_than_any_cut_is_refused():
     with pytest.raises(InputError) as caught:
         planned(box((0, 0, 5), (30, 30, 5.9)), layer_height=2.0)
     assert caught.value.code == "TOO_LOW" and "0.9 mm high" in caught.value.message
-    assert "give at most 1.78 mm" in caught.value.message
+    assert "use at most 1.78 mm" in caught.value.message
     assert len(planned(box((0, 0, 5), (30, 30, 5.9)), layer_height=1.79).layers) == 1
 
 
@@ -853,7 +853,7 @@ def test_an_overlap_that_a_bead_model_overfills_is_told(overlap, told):
     if told:
         section = math.pi * 0.6**2 * model.wire_feed / model.straight_speed(9.5)
         room = 0.4 * 9.5 * 2.5
-        assert f"{section / room:.3g} times the {room:.4g} mm3" in issues[0].message
+        assert f"{section / room:.3g} times the available {room:.4g} mm3" in issues[0].message
         balanced = 100.0 * (1.0 - section / 2.5 / 9.5)
         assert f"strategy.bead_overlap to {balanced:.3g} %" in issues[0].message
         assert not spacing_issues(balanced / 100.0, model, bead_width=9.5, bead_model="csw")

@@ -41,8 +41,8 @@ def refuse_overlaps(groups: Sequence[Group], chord_error: float) -> None:
                     raise InputError(
                         "OVERLAP",
                         body.name,
-                        "it overlaps {}, as at {}, so the overlap would be deposited twice; fuse "
-                        "them into one solid, or move one",
+                        "it and {} overlap, as at {}, and the overlap would be deposited twice; "
+                        "fuse them into one solid, or move one",
                         second_body.name,
                         place(overlap),
                     )
