@@ -160,7 +160,9 @@ def _is_worst(points: Points, values: Array) -> Mask:
 
 
 def path_figures(path: JointPath, cell: Cell, parameters: JointParameters) -> dict[str, object]:
-    """The figures of a planned joint path; of a machine with rotary axes those of its axes alone, which had no choice."""
+    """Return the figures of a planned joint path; for a machine with rotary axes only the axis
+    figures.
+    """
     if not path.branch:
         return _figures(
             cell, path.beads, {"condition_min": None, "objective_value": None, "criteria": {}}
@@ -169,11 +171,11 @@ def path_figures(path: JointPath, cell: Cell, parameters: JointParameters) -> di
 
 
 def figures(task: Task, paths: Sequence[BeadPath]) -> dict[str, object]:
-    """The figures of the joint paths of a robot, angles in degrees, lists in axis order; None where there is no value.
+    """Return the figures of the joint paths of a robot, angles in degrees, lists in axis order.
 
-    limit_margin_deg is the smallest distance to a limit of each axis (None: endless). Speeds, accelerations and jerks
-    are the largest within the beads at their travel speed, by differences over the points. Axes that slide have mm in the
-    place of degrees.
+    None replaces a missing value. limit_margin_deg is the smallest distance to a limit of each axis
+    (None: continuous). Speeds, accelerations and jerks are the largest within the beads at their
+    travel speed, by differences over the points. Prismatic axes have mm instead of degrees.
     """
     complete = all(path.reachable for path in paths)
     return _figures(

@@ -14,7 +14,7 @@ from ..kinematics.cell import Cell
 from .joint_path import BeadPath
 from .task import Task
 
-# a limit met exactly is kept: closed form and turns leave a rounding error of this size, rad
+# rad; rounding error of the closed form and of whole turns at a limit that is kept exactly
 ROUNDING = 1e-9
 
 
@@ -65,7 +65,9 @@ def findings(task: Task, path: BeadPath) -> list[Issue]:
 
 
 def out_of_reach(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
-    """That the positioner stands too far from the robot, where no bead gets nearer than the arm with its tool reaches."""
+    """Report a positioner out of the robot's reach: no bead gets within the reach of the arm with
+    its tool.
+    """
     external, arm = cell.external, cell.robot.arm
     if (
         external is None

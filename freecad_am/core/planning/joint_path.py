@@ -18,10 +18,11 @@ from ..types import Array
 class BeadPath:
     """The joints of one bead of n points.
 
-    bead: the bead, its seam moved or its course split where an axis asked for it. phi: (n,) rotation about the tool
-    axis, rad. joints: (n, axes) serial, rad, counted on within the bead, NaN where unreachable. condition and
-    threshold: (n,) sigma_min / sigma_max and the smallest allowed. coefficients: of the layer's polynomial, the
-    constant first, None where there is none. reason, iterations: why and when the optimiser stopped.
+    bead: the bead, perhaps with a moved seam, or a piece of a split bead, if an axis requires it.
+    phi: (n,) rotation about the tool axis, rad. joints: (n, axes) serial, rad, unwrapped within the
+    bead, NaN where unreachable. condition and threshold: (n,) sigma_min / sigma_max and the
+    smallest allowed. coefficients: of the layer's polynomial, the constant first, None without one.
+    reason, iterations: why and when the optimiser stopped.
     """
 
     layer: int
@@ -44,7 +45,9 @@ class BeadPath:
 
 
 def numbered(paths: Sequence[BeadPath]) -> list[BeadPath]:
-    """The paths with their beads numbered anew within each layer, some of them in pieces."""
+    """Return the paths with their beads renumbered within each layer; some paths are pieces of
+    beads.
+    """
     count: dict[int, int] = {}
     result = []
     for path in paths:
@@ -56,7 +59,7 @@ def numbered(paths: Sequence[BeadPath]) -> list[BeadPath]:
 
 @dataclass(frozen=True)
 class JointPath:
-    """The joint path of a toolpath: beads in the order of deposit and what was found on the way."""
+    """The joint path of a toolpath: beads in print order, and their issues."""
 
     method: str
     objective: str

@@ -40,8 +40,11 @@ STOPPED = "the path to a better solution comes too near"
 def refined_clear(
     task: Task, arm_clearance: ArmKept, points: Points, bead_ids: Sequence[Place], start: Array
 ) -> Refined:
-    """Polynomials that are better than those of the beads at these places which it starts with (B, degree + 1), and keep the
-    links as clear; those it starts with where none was found. points: all of the beads."""
+    """Return polynomials of the beads with a lower objective that keep the links clear as well.
+
+    start: (B, degree + 1) coefficients at the start; a bead without a better polynomial keeps them.
+    points: all points of the beads.
+    """
     thresholds, directions = (
         task.thresholds(points),
         refine_state.changes(task, points, start.shape[1] - 1),
@@ -98,8 +101,11 @@ def refined_clear(
 def _looked(
     task: Task, gaps: Gaps, points: Points, coefficients: Array, moment: Index, selected: Mask
 ) -> tuple[Array, Array, Array]:
-    """Of beads asked about (B,): the values (T,) of their polynomials, and by how much all pairs are clear at all points,
-    mm, and how that changes with these values, both (pairs, T)."""
+    """Return the polynomial values and the link gaps of the selected beads (B,).
+
+    The values (T,), the gaps (pairs, T) of all link pairs at all points, mm, and the derivatives
+    (pairs, T) of the gaps with respect to the values.
+    """
     value = points.polynomial(coefficients)
     phi, phi_rate = task.rotation(points, value)
     joints = task.joints(points, phi)
@@ -123,9 +129,10 @@ FIRST_LOOK, TURNS = (
     4,
     72,
 )  # candidates of a bead checked before a map is made, and the rotations of the map
-ENDS = 3  # points of a bead checked before the others: where no rotation serves one of these, none serves the bead
+# points of a bead that are checked first: a bead fails if one of them has no clear rotation
+ENDS = 3
 POINTS_PER_BEAD = 24  # and turn, at which the links are checked
-SHARES = (0.75, 0.5, 0.25, 0.0)  # of the way from where the local search began to what it found
+SHARES = (0.75, 0.5, 0.25, 0.0)  # of the step from the start of the local search to its result
 TOUCHING = (
     -1e-3
 )  # margin of the candidate that is planned where none is clear, so that the obstacle can be named
@@ -192,8 +199,12 @@ def _mapped(
 def _map(
     arm_clearance: ArmKept, points: Points, bead_ids: Sequence[Place], joints: Array, selected: Mask
 ) -> tuple[Mask, Mask]:
-    """(TURNS, T) at which rotations, whose joints are (TURNS, T, axes), a link comes too near at points of the beads asked
-    about; and which beads (B,) have a point that no rotation serves. Of these no more than ENDS points are known."""
+    """Return the rotations at which a link comes too near, and the beads without a clear rotation.
+
+    The first is a mask (TURNS, T) for the joints (TURNS, T, axes) at all rotations of the selected
+    beads. The second is a mask (B,): beads with a point at which no rotation is clear. At most ENDS
+    points of these beads are checked.
+    """
     contact_map, hopeless = (
         np.zeros(joints.shape[:2], dtype=bool),
         np.zeros(points.beads, dtype=bool),
@@ -221,8 +232,11 @@ def brought_clear(
     start: Array,
     reached: Refined,
 ) -> tuple[Refined, Mask]:
-    """Polynomials that keep the links clear in place of those `reached` that do not, where there are any, and which (B,)
-    these are. start: (B, degree + 1) coefficients with which the local search began."""
+    """Replace the polynomials in `reached` that do not keep the links clear, if clear ones exist.
+
+    Returns the result and the mask (B,) of the beads whose links still come too near. start: (B,
+    degree + 1) coefficients at the start of the local search.
+    """
     points = gather(beads, task.cell, POINTS_PER_BEAD)
     touching = _find_touching(
         task,

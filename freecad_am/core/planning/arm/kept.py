@@ -55,7 +55,10 @@ class ArmKept:
 
 
 def build_arm_clearance(toolpath: Toolpath, cell: Cell, cylinders: Cylinders) -> ArmKept | None:
-    """What keeps the links, `cylinders` of each, clear in a job; None where that is not asked for, or no link known."""
+    """Return the link clearance check of a job, with `cylinders` for each link.
+
+    None if the job does not ask for a clearance or the link geometry is unknown.
+    """
     beads = [bead for _, _, bead in toolpath]
     contact = contact_of(
         beads,
@@ -93,8 +96,11 @@ def contact_of(
 def check_moves(
     contact: ArmContact, start: Array, end: Array, deposited: Index
 ) -> tuple[Index, Touches]:
-    """What links come too near on moves straight in the joints (k, axes), where so many points (k,) are laid: the move (l,)
-    of each look, and what it found. Of moves whose joints are NaN nothing."""
+    """Find links that come too near on moves that are straight in the joints (k, axes).
+
+    deposited: (k,) number of printed points at each move. Returns the move (l,) of each check and
+    its contacts. Moves with NaN joints have no contacts.
+    """
     steps = np.where(contact.cell.machine.chain.sliding, SLIDE, STEP)
     step_count = np.nan_to_num(np.abs(end - start) / steps).max(axis=1, initial=0.0)
     move, share = evenly(1 + np.ceil(step_count).astype(np.intp))

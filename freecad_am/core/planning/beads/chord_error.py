@@ -33,7 +33,7 @@ INTERPOLATION = np.array(
 )
 ROUNDS = 8
 POINTS_PER_BATCH = 4096  # approximate number of points of beads that are checked together
-# rounding room: beads of revolution use their chord error up by themselves, mm
+# margin for rounding, mm: beads of revolution use up their whole chord error
 ROUNDING = 1e-6
 
 
@@ -101,7 +101,9 @@ def deviation(task: Task, bead: Bead, joints: Array, chord_error: float) -> Arra
 def _deviation(
     task: Task, points: Array, joints: Array, segments: Index, chord_error: float
 ) -> Array:
-    """(k,) the same of the segments (k,) that begin at those of the points (n, 3) with their joints (n, axes)."""
+    """Return the deviations (k,) of the segments (k,) that begin at these of the points (n, 3) with
+    joints (n, axes).
+    """
     distances = _looked_at(task, points, joints, segments, INNER_SHARES)
     deviation: Array = np.maximum.reduce(distances)
     # nearly all leave it evenly, most in the middle, so samples do not miss the maximum

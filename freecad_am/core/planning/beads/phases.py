@@ -21,7 +21,7 @@ from ...toolpath import Bead
 from ...types import Array, Index
 from ..joint_path import BeadPath
 
-STEPS = 4  # of which each leaves a small share of what was off before
+STEPS = 4  # iterations; each leaves a small share of the previous error
 END_MM = 1e-3  # mm; a point so near to where a phase ends is where it ends
 STEP_MM = 0.2 * SHORTEST  # a point so near to where a step of a ramp ends is where it ends
 CODE = "PHASE_LENGTH"
@@ -30,7 +30,11 @@ Condition = Callable[[Array, Array], Array]
 
 
 class Stretch(NamedTuple):
-    """Where a stretch of a bead begins and ends, mm along it, of which of PHASES it is, and mm/s there, 0: as elsewhere."""
+    """A stretch of a bead: its begin and end along the bead, mm, its phase (of PHASES) and its
+    speed, mm/s.
+
+    Speed 0 means the speed of the rest of the bead.
+    """
 
     begin: float
     end: float
@@ -39,9 +43,11 @@ class Stretch(NamedTuple):
 
 
 def phased(cell: Cell, path: BeadPath, condition_at: Condition) -> tuple[BeadPath, list[Issue]]:
-    """The path with points where the phases of its bead, and the steps of their ramps, begin and end, and their speeds; an
-    error where they are longer than the bead, as that of a piece of one that was divided. condition_at: (n,) of flange poses
-    (n, 4, 4) and joints (n, axes)."""
+    """Return the path with points at the ends of its bead's phases and ramp steps, at their speeds.
+
+    Reports an error if the phases are longer than the bead, such as a piece of a divided bead.
+    condition_at: returns the condition (n,) for flange poses (n, 4, 4) and joints (n, axes).
+    """
     if not path.bead.ends or not path.reachable:
         return path, []
     start_length, _, end_length, _ = path.bead.ends[:4]
@@ -71,8 +77,11 @@ def phased(cell: Cell, path: BeadPath, condition_at: Condition) -> tuple[BeadPat
 
 
 def _borders(stretches: Sequence[Stretch], along: Array) -> Array:
-    """(k,) where points are put in, mm along a bead whose points are `along` (n,) mm of it: at the ends of phases, and at
-    those of the steps of ramps where none is near."""
+    """Return the positions (k,), mm along the bead, at which points are inserted.
+
+    These are the ends of phases, and the ends of ramp steps without a point nearby. along: (n,)
+    positions of the bead's points, mm.
+    """
     existing = along
     for of_phase, min_distance in ((True, END_MM), (False, STEP_MM)):
         positions = np.unique(
@@ -121,7 +130,10 @@ def _stretches(bead: Bead, length: float) -> list[Stretch]:
 
 
 def _timed(bead: Bead, along: Array, stretches: Sequence[Stretch]) -> Bead:
-    """The bead, points `along` (n,) mm of it, at the speeds of its phases, and which of its segments are in these."""
+    """Return the bead with the speeds of its phases and the phase of each segment.
+
+    along: (n,) positions of the points, mm along the bead.
+    """
     phase, speed = np.full(len(along), float(MIDDLE)), np.array(bead.speed)
     middle = 0.5 * (along + np.r_[0.0, along[:-1]])  # of the segment that ends at each point
     for stretch in stretches:
@@ -132,7 +144,11 @@ def _timed(bead: Bead, along: Array, stretches: Sequence[Stretch]) -> Bead:
 
 
 def _shares(cell: Cell, path: BeadPath, segment: Index, lengths_in: Array) -> Array:
-    """(k,) shares of the turn of the joints at which the tip is so far (k,) mm into segments (k,): it runs unevenly."""
+    """Return the shares (k,) of the joint motion at which the tip is `lengths_in` (k,) mm into
+    segments (k,).
+
+    The tip does not move evenly over a segment.
+    """
     start, offset = (
         path.bead.points[segment],
         path.bead.points[segment + 1] - path.bead.points[segment],
@@ -151,7 +167,9 @@ def _shares(cell: Cell, path: BeadPath, segment: Index, lengths_in: Array) -> Ar
 def _insert_points(
     cell: Cell, path: BeadPath, along: Array, borders: Array, condition_at: Condition
 ) -> BeadPath:
-    """Return the path with points at `borders` (k,) mm along it, rising, none of which exists yet."""
+    """Return the path with new points at `borders` (k,), mm along it in rising order; none may
+    exist yet.
+    """
     segment = np.searchsorted(along, borders) - 1
     share = _shares(cell, path, segment, borders - along[segment])
     insert_rows = segment + 1

@@ -22,7 +22,9 @@ BACK = -0.999  # cosine between the way to a point and the way on from it
 
 
 class _Way(NamedTuple):
-    """Back from the end of a bead of n points: past so many of them, and by a share of the segment to the last."""
+    """The way back from the end of a bead: past `past` points and by a share of the segment to the
+    last one.
+    """
 
     past: int
     share: float
@@ -56,7 +58,7 @@ def gone_back(bead: Bead, length: float) -> Bead:
     def both(column: Array | None) -> Array | None:
         return None if column is None else extended(retreat.of)(column)
 
-    # told from here on: a row of points that turns back would be straight next to its end
+    # compute the tangents before: at the reversal, the point row looks straight next to its end
     tangents = _tangents(bead)
     back = -tangents[::-1, ::-1]
     turning = np.stack([tangents[-1, 0], back[0, 1]])[None]
@@ -67,7 +69,7 @@ def gone_back(bead: Bead, length: float) -> Bead:
         tangents=np.concatenate([tangents[:-1], turning, back[1 : retreat.past], ends]),
         build=extended(directions)(bead.build),
         tool=extended(directions)(bead.tool),
-        # it goes on in the same sense: how far along a bead is told by it
+        # the parameter keeps rising: it gives the position along the bead
         parameter=extended(lambda column: 2.0 * column[-1] - retreat.of(column))(bead.parameter),
         speed=np.concatenate([bead.speed, bead.speed[::-1][: retreat.past]]),
         width=both(bead.width),

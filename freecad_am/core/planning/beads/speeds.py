@@ -19,7 +19,7 @@ from ..joint_path import BeadPath
 
 SLOWED = "SLOWED"
 JUST = 1.0 - 1e-9  # share of the maximum speed of an axis
-PILE = 1.0  # of the bead's width: so much too much may lie where the deposit is slowed
+PILE = 1.0  # of the bead's width: allowed excess of deposit where the bead is slowed
 DEFAULT_WIDTH_RATIO = 2.0  # a bead's width in layer heights without a model
 
 
@@ -61,8 +61,11 @@ def rings_slowed(
 
 
 class _Place(NamedTuple):
-    """Where a bead is slowed: how far (mm), to what speed (mm/s), how much (mm of the bead) lies there too much, and by how
-    much the bead gets wider and higher (mm; nan without a bead model)."""
+    """A place where a bead is slowed: its length, mm, and speed, mm/s, and the excess deposit, mm
+    of bead.
+
+    Also the predicted increase of bead width and height, mm; nan without a bead model.
+    """
 
     path: BeadPath
     point: int
@@ -155,8 +158,11 @@ def _slowed(
 
 
 def _approached(middle: Array, speed: Array, share: Array, law: SpeedLaw | None) -> Array:
-    """Speeds (n - 1,) mm/s of segments with their middles at (n - 1,) mm, at a share of theirs at most, which lie on ramps
-    down to slowed ones and up again."""
+    """Return the segment speeds (n - 1,), mm/s, with ramps down to slowed segments and up again.
+
+    middle: (n - 1,) positions of the segment middles, mm. speed: at the middles. share: the largest
+    share of it that each segment may keep.
+    """
     if law is None or (share == 1.0).all():
         return np.asarray(speed * share)
     square = np.where(share < 1.0, speed * share, np.inf) ** 2
@@ -175,7 +181,7 @@ def _runs(mask: Mask) -> list[list[int]]:
 
 
 def _gains(planned: Bead, slowed: Bead) -> tuple[Array, Array]:
-    """By how much (n,) mm a bead is predicted wider and higher, nan where no model tells."""
+    """Return the predicted increase of bead width and height (n,), mm; nan without a bead model."""
     none = np.full(len(planned), np.nan)
     if (
         planned.width is None

@@ -142,8 +142,8 @@ def _joints(motion: Motion, cell: Cell, flange: Array, reference: Array) -> Arra
 
 
 MIN_STEP_SHARE = 0.96  # of the least way, below which a post rejects two points
-OMITTED_DEVIATION_SHARE = 0.4  # of the chord error, that points left out may lie off
-REACH = 2000.0  # mm; so far off an axis, at most, is what it turns
+OMITTED_DEVIATION_SHARE = 0.4  # share of the chord error for the deviation of omitted points
+REACH = 2000.0  # mm; maximum distance of a point from the axis that turns it
 
 
 def programmed(
@@ -207,10 +207,11 @@ def _select_rows(motion: Motion, seconds: float, min_distance: float, chord_erro
 
 
 def _remove_returns(motion: Motion, keep: Mask, min_distance: float, off: float) -> Mask:
-    """Return the rows that stay, without those that come back to within `min_distance` mm of the previous
-    one, as where a bead turns round in less than a blend: there the distance between two points
-    counts, not the length along the bead. Removed rows are within `off` mm of the straight path
-    between the remaining ones; otherwise the row stays.
+    """Return the rows that stay, without those closer than `min_distance` mm to the previous row.
+
+    Such rows occur where a bead turns round in less than a blend: there the distance between two
+    points counts, not the length along the bead. Removed rows are within `off` mm of the straight
+    path between the remaining ones; otherwise the row stays.
     """
     keep, checked = keep.copy(), np.zeros(len(keep), dtype=bool)
     inside = motion.deposit & (motion.point > 0) & motion.reachable
@@ -251,8 +252,10 @@ def _sparse(clock: Array) -> Mask:
 
 
 def _add_needed(motion: Motion, keep: Mask, off: float) -> Mask:
-    """Return the rows that stay and as few of the others as needed so that removed rows are within `off`
-    mm of the path between these, and axes do not turn so far that they would leave it in between.
+    """Return the rows that stay and as few additional rows as needed.
+
+    Removed rows then lie within `off` mm of the path between the remaining ones, and axes do not
+    turn far enough to leave the path in between.
     """
     keep = keep.copy()
     while True:

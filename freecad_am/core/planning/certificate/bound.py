@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How far a joint path is from the best there could be: its objective beside a lower bound over all rotations.
+"""Distance of a joint path from the optimum: its objective against a lower bound over all
+rotations.
 
-The rotation about the tool axis is free at every point, not only along a polynomial. Eq. 17 of Chalvin 2020 is a chain: each
-step depends on the rotations at two points. So the least objective comes from Bellman's recursion over a lattice of
-rotations at every point (lattice.py), whose steps may end between its rotations and are bounded from below there
-(least_ahead.py). The lattice is made finer until the bound is near the best course of the rotation that is known.
+The rotation about the tool axis is free at every point, not only along a polynomial. Eq. 17 of
+Chalvin 2020 is a chain: each step depends on the rotations at two points. So Bellman's recursion
+over a lattice of rotations at every point gives the least objective (lattice.py). Its steps may end
+between the rotations of the lattice and are bounded from below there (least_ahead.py). The lattice
+is refined until the bound is near the best known course of the rotation.
 
-Of m steps in a row only the first and the last joints are looked at where little is lost by it: a sum of m squares is at
-least the square of the sum over m (Cauchy and Schwarz).
+In a group of m consecutive steps only the first and the last joints count if this loses little: a
+sum of m squares is at least the square of the sum divided by m (Cauchy-Schwarz).
 """
 
 from __future__ import annotations
@@ -34,10 +36,10 @@ ROTATIONS = (
     720,
     1440,
 )  # of a turn at every point, the finer where the coarser are not near enough
-BETWEEN_BEADS = 180  # of a turn where whole jobs are looked at
+BETWEEN_BEADS = 180  # rotations of a turn for the bound of a whole job
 PIECE = 100_000  # rotations at points that are held together
 MIN_GROUPS = 4  # groups of steps of a bead
-GROUPED = 0.002  # of the objective, what may be lost by looking at groups of steps
+GROUPED = 0.002  # of the objective: maximum loss by grouping steps
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +51,9 @@ class Optimality:
 
     @property
     def gaps(self) -> Array:
-        """(B,) share of each bead's objective that is not proved to be needed; 0 of what costs nothing."""
+        """(B,) share of each bead's objective that is not proved necessary; 0 for beads without
+        cost.
+        """
         costs = np.where(self.objective > 0.0, self.objective, 1.0)
         return np.where(self.objective > 0.0, 1.0 - self.bound / costs, 0.0)
 
@@ -57,9 +61,12 @@ class Optimality:
 def summed(
     task: Task, paths: Sequence[BeadPath], report: Callable[[float], None] = lambda share: None
 ) -> tuple[dict[str, object] | None, list[Issue]]:
-    """Objective, bound and gap of a joint path as its report has them: of all beads, of the bead whose own gap is the
-    largest, of each bead, and of the whole job with the ways between beads; none of arms that cannot be bounded, and a note
-    that says so. report(share) may raise to cancel."""
+    """Return objective, bound and gap of a joint path for its report.
+
+    Covers all beads, the bead with the largest gap, each bead, and the whole job with the moves
+    between beads. Returns None and a note for arms that cannot be bounded. report(share) may raise
+    to cancel.
+    """
     if task.arm.followed:
         return None, [
             Issue(
@@ -124,8 +131,9 @@ def certified(
 def whole_job(
     task: Task, paths: Sequence[BeadPath], report: Callable[[float], None] = lambda share: None
 ) -> tuple[float, float]:
-    """Eq. 17 of all beads and of the steps from each bead's end to the next one's beginning together, and what it cannot go
-    below."""
+    """Return eq. 17 of all beads and of the steps from each bead's end to the next start, and its
+    lower bound.
+    """
     bead_points = [gather([path.bead], task.cell) for path in paths]
     costs = [_displacement_cost(task, points, path) for points, path in zip(bead_points, paths)]
     step_costs = np.array(
@@ -136,7 +144,8 @@ def whole_job(
     value, following = np.zeros(BETWEEN_BEADS), None
     for number in range(len(paths) - 1, -1, -1):
         report(1.0 - (number + 1) / len(paths))
-        # what a step may take before it is no longer looked at by itself: more than it takes to reach any better course
+        # above this cost a step is not checked individually: it exceeds the cost of reaching any
+        # better course
         max_cost = max([costs[number], *step_costs[max(0, number - 1) : number + 1]])
         value, first_lattice = _through(
             task, bead_points[number], paths[number], BETWEEN_BEADS, max_cost, value, following
@@ -171,7 +180,7 @@ def _displacement_bound(task: Task, points: Points, path: BeadPath, objective: f
 
 
 def _best_known(task: Task, points: Points, path: BeadPath) -> float:
-    """What the best course of the rotation takes that is found from that of the path."""
+    """Return the cost of the best course of the rotation found from the course of the path."""
     groups = _grouped(steps(path.joints, points), task.weights)
     group_points, scale, threshold = (
         points.select_points(groups),
@@ -196,8 +205,12 @@ def _through(
     value: Array,
     following: Lattice | None,
 ) -> tuple[Array, Lattice]:
-    """(count,) the least sum from every rotation at the first point of a bead on, and the lattice of that point; value
-    (count,): from the first point of the bead after it on, whose lattice is `following`, or from this one's end on."""
+    """Return the least sums (count,) from every rotation at the first point of a bead, and that
+    point's lattice.
+
+    value: (count,) least sums from the first point of the next bead, whose lattice is `following`;
+    without one, from the end of this bead.
+    """
     groups = _grouped(steps(path.joints, points), task.weights)
     chunk_size = max(2, PIECE // count)
     next_lattice, step_count = following, 1.0  # the step to the point after
@@ -218,7 +231,9 @@ def _through(
 
 
 def _grouped(step: Array, weights: Array) -> Index:
-    """The points between which steps are looked at together, so that little of the objective is lost by it."""
+    """Return the points at which groups of steps end; grouping loses at most GROUPED of the
+    objective.
+    """
     count = len(step) - 1
     total, travel = float(((step * step) @ weights).sum()), np.cumsum(step, axis=0)
     groups = MIN_GROUPS

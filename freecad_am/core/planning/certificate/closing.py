@@ -23,8 +23,10 @@ MIN_GAIN = 1e-3  # share of the objective that has to be won, else the polynomia
 def close_gaps(
     task: Task, paths: list[tuple[BeadPath, list[Issue]]]
 ) -> list[tuple[BeadPath, list[Issue]]]:
-    """The paths and what was found about each, with their gaps closed where the task asks for it, and on their new courses
-    the points that straight motion asks for."""
+    """Return the paths and their issues, with gaps closed if the task asks for it.
+
+    New courses get the points that straight motion needs.
+    """
     if not task.parameters.close_gap or not task.cell.machine.free or task.arm.followed:
         return paths
     return [

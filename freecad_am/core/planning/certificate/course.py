@@ -17,11 +17,11 @@ STARTS, VALUE_TOLERANCE = (
     24,
     1e-6,
 )  # courses about a turn, and the share by which one has to be better than those before it
-DIFFERENCE_STEP_RAD = 1e-5  # rad, between the rotations of which a slope is taken
+DIFFERENCE_STEP_RAD = 1e-5  # rad; step of the finite difference for slopes
 MAX_ACTIVE_SETS, HOLD_STIFFNESS = (
     6,
     1e9,
-)  # groups of points that are held, and times the largest curvature of those that are not
+)  # rounds that fix more points, and their stiffness in multiples of the largest curvature
 MIN_STEP_SHARE = 0.02  # of a Newton step that is still tried
 MIN_DECREASE = 1e-7  # share of the value by which a step has to lower it
 
@@ -74,8 +74,11 @@ def _take_step(
     joined: bool,
     broken: Broken,
 ) -> tuple[Array, Array] | None:
-    """Rotations that take less and may be, and their steps; None where no step of Newton's leads to any. Points that are at
-    what they may not be beyond are held, one group after the other, and the others go on."""
+    """Take a Newton step to allowed rotations with a lower sum.
+
+    Returns the rotations and their joint steps, or None if no step succeeds. Points that would
+    break a constraint are fixed, one group after the other, and the others move on.
+    """
     value, blocked = float((current[0] ** 2 * scale).sum()), np.zeros(len(phi), dtype=bool)
     for _ in range(MAX_ACTIVE_SETS):
         change = _newton(*current, scale, joined, blocked)
@@ -100,8 +103,10 @@ def best(
     joined: bool,
     broken: Broken = none_broken,
 ) -> tuple[Array, float]:
-    """The best of what is `descend` from phi (n,) on and from the same turned by parts of a turn, of those that may be: the
-    rotations and the sum, infinite where none may."""
+    """Return the best result of `descend` from phi (n,) and from phi turned by fractions of a turn.
+
+    Returns the rotations and their sum, which is infinite if no allowed course exists.
+    """
     best_phi, best_value = phi, np.inf
     for turned in TURN / STARTS * np.arange(STARTS):
         course, value = descend(joints_at, scale, phi + turned, joined, broken)

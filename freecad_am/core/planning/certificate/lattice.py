@@ -24,7 +24,9 @@ def whole_turn() -> tuple[Array, float]:
 
 
 def divided(phi: Array, half: float) -> Array:
-    """(PARTS n,) the middles of the parts of cells phi (n,) +- half, those of one cell side by side."""
+    """Return the middles (PARTS n,) of the parts of the cells phi (n,) +- half, in sequence for
+    each cell.
+    """
     offsets = (2.0 * np.arange(PARTS) - (PARTS - 1)) * half / PARTS
     return np.asarray((phi[:, None] + offsets).ravel())
 
@@ -36,9 +38,7 @@ def possible(
     which threshold (n,) is the smallest allowed, from their middle and ends. Joints are taken to bend at most twice as much
     between these as their second differences say."""
     count = len(phi)
-    begins = ~_goes_on(
-        index, phi, half
-    )  # where the end of the cell before is not the beginning of this one
+    begins = ~_goes_on(index, phi, half)  # the previous cell ends elsewhere than this one begins
     sampled = np.concatenate([phi[begins] - half[begins], phi, phi + half])
     sampled_points = points.select_points(np.concatenate([index[begins], index, index]))
     joints, begin_count = task.raw_joints(sampled_points, sampled), int(begins.sum())
@@ -89,7 +89,10 @@ def _within_limits(task: Task, joints: Array, reach: Array) -> Mask:
 def _condition(
     task: Task, points: Points, phi: Array, joints: Array, rows: Index, threshold: Array
 ) -> Array:
-    """The condition at chosen rows, 0 out of reach; where a bound tells that it is far above the threshold, that bound."""
+    """Return the condition at the chosen rows, 0 out of reach.
+
+    A lower bound replaces it where this bound is far above the threshold.
+    """
     ratio = np.zeros(len(rows))
     good = np.flatnonzero(np.isfinite(joints[rows]).all(axis=1))
     matrix = task.jacobian_at(points.frames.of(rows[good]), phi[rows[good]], joints[rows[good]])
@@ -112,17 +115,20 @@ RATE_SAMPLES, HARMONICS = (
     36,
 )  # rotations at which the rate of joints is seen, and how finely it is followed
 SMOOTH = 0.06  # rad
-KNOWN = 1000  # rotations between which those of the lattice are looked for
+KNOWN = 1000  # samples at which the rotations of the lattice are interpolated
 EVENLY = 0.25  # share of rotations that are not where joints move much
 LARGEST_SHARE = 12.0  # times the mean
-COARSE = 60  # cells of a turn that are looked at first: those beside an impossible one are divided
+COARSE = 60  # cells of a turn in the first pass; cells next to an impossible one are divided
 
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """m points with N rotations from -pi on, N a multiple of COARSE. joints: (m, N, axes) rad or mm, NaN out of reach.
-    possible: (m, N) whether a rotation between one and the next may keep limits and condition. weights: (axes,) of eq. 17.
-    turning: (axes,) axes of which whole turns count for nothing."""
+    """A lattice of m points with N rotations from -pi on, N a multiple of COARSE.
+
+    joints: (m, N, axes) rad or mm, NaN out of reach. possible: (m, N) whether a rotation between
+    this one and the next may keep limits and condition. weights: (axes,) of eq. 17. turning:
+    (axes,) axes for which whole turns cost nothing.
+    """
 
     joints: Array
     possible: Mask
@@ -144,7 +150,7 @@ class Lattice:
 
     @cached_property
     def ragged(self) -> Mask:
-        """(m, N) rotations beside which a possible cell has its other end out of reach."""
+        """(m, N) rotations at a possible cell whose other end is out of reach."""
         torn = self.possible & ~self.closed_cells
         return np.asarray(self.passable & (torn | np.roll(torn, 1, axis=1)))
 
@@ -195,8 +201,11 @@ class Lattice:
 
     @cached_property
     def flat(self) -> Array:
-        """(m, COARSE, 2 axes) coordinates that lie as far apart as the joints at each of COARSE rotations, or less: eq. 17
-        of a step is not below the square of their distance."""
+        """(m, COARSE, 2 axes) coordinates of the joints at each of COARSE rotations.
+
+        Their distance is at most the distance of the joints, so eq. 17 of a step is at least its
+        square.
+        """
         samples, scale = self.joints[:, :: self.count // COARSE], np.sqrt(self.weights)
         return np.concatenate(
             [
@@ -234,7 +243,8 @@ def _rotations(task: Task, points: Points, rows: Index, count: int) -> Array:
         return np.linspace(-np.pi, np.pi, count + 1)
     rate = np.minimum(rate / rate.mean(), LARGEST_SHARE)
     order = np.arange(1, HARMONICS + 1)
-    # of a smooth density its harmonics; what is counted up is exact, and no joint bends more than it does by itself
+    # use the harmonics of a smooth density: its integral is exact, and no joint path gets a sharper
+    # bend
     smooth = np.exp(-0.5 * (np.arange(HARMONICS + 1) * SMOOTH) ** 2)
     waves = np.fft.rfft(EVENLY + (1.0 - EVENLY) * rate)[: HARMONICS + 1] * smooth
     factor = (

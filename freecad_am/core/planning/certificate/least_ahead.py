@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Of every rotation at a point: what is ahead of it takes at least.
+"""Lower bound of the cost ahead of every rotation at a point.
 
-Bellman's recursion, from the last point of a bead to the first. A step may end between the rotations of the lattice: there
-joints and what is ahead are taken from polynomials of the fourth degree through five neighbours, and to be off by twice what
-their fourth differences make of them, which bounds the step from below.
+Bellman's recursion runs from the last point of a bead to the first. A step may end between the
+rotations of the lattice. There, polynomials of the fourth degree through five neighbours give the
+joints and the cost ahead. Their error is taken as twice the error that their fourth differences
+predict, which bounds the step from below.
 """
 
 from __future__ import annotations
@@ -20,18 +21,21 @@ from .lattice import COARSE, NO_FIVE, Lattice
 INNER_ERROR, OUTER_ERROR = 2.0 / 96.0, 2.0 / 24.0
 MOST_STEPS = 9.0  # steps of the lattice, more than there are about one
 NEWTON = 3  # steps to the least of polynomials, and as often again about the rotation that is the nearest then
-MIN_SEPARATION = 3  # rotations, from which two least sums are looked at both
-FAR_ABOVE = 2.0  # times what is known to be possible
+MIN_SEPARATION = 3  # rotations between two minima that are both refined
+FAR_ABOVE = 2.0  # times the best known sum
 # the powers of 1, x, .. x^4 (rows) in the polynomial that is 1 at one of -2 .. 2 (columns) and 0 at the others
 POWERS = np.linalg.inv(np.vander(np.arange(-2.0, 3.0), 5, increasing=True))
 FOURTH = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
-TORN = 1e-4  # of a sum: where what is ahead may be off by more, it is looked at by lines too
+TORN = 1e-4  # share of a sum: above this uncertainty of the cost ahead, bound it by lines too
 
 
 def ahead(lattice: Lattice, end_values: Array, counts: Array, max_cost: float) -> Array:
-    """(N,) the least sum from every rotation at the first point on, infinite where none can be; last (N,): from the last
-    point on. counts (m - 1,): of how many steps each of the lattice's stands; steps that take more than `max_cost` are not
-    looked at one by one."""
+    """Return the least sums (N,) from every rotation at the first point, infinite where none is
+    possible.
+
+    end_values: (N,) sums from the last point. counts: (m - 1,) original steps in each lattice step.
+    Steps that cost more than `max_cost` are not checked individually.
+    """
     value = np.where(lattice.passable[-1], end_values, np.inf)
     for j in range(len(lattice.joints) - 2, -1, -1):
         value = before(lattice, j, lattice, j + 1, value, float(counts[j]), max_cost)
@@ -47,8 +51,11 @@ def before(
     count: float,
     max_cost: float,
 ) -> Array:
-    """(N,) the least sum from every rotation at point i of a lattice on, of a step, which stands for `count` of them, to
-    point j of another with `value` (N,) there."""
+    """Return the least sums (N,) from every rotation at point i of a lattice.
+
+    The next step ends at point j of another lattice, whose sums are `value` (N,), and stands for
+    `count` original steps.
+    """
     offsets = _neighbours(lattice, i, next_lattice, j, count * max_cost)
     columns: Index = (np.arange(lattice.count)[:, None] + offsets) % lattice.count
     total, weights = value[columns], lattice.weights / count
@@ -59,7 +66,7 @@ def before(
         total += weight * difference * difference
     total[np.isnan(total)] = np.inf
     minimum = _least(total, columns, lattice.joints[i], next_lattice, j, value, weights)
-    if len(offsets) < lattice.count:  # whatever step is not looked at takes `far` at least
+    if len(offsets) < lattice.count:  # every step that is not checked costs at least max_cost
         minimum = np.minimum(
             minimum, max_cost + value[next_lattice.passable[j]].min(initial=np.inf)
         )
@@ -91,8 +98,11 @@ def _least(
     value: Array,
     weights: Array,
 ) -> Array:
-    """(n,) what sums (n, k) at rotations `columns` (n, k) of a point of a lattice, the outer two only beside others, are at
-    least, between them too; of steps from joints start (n, axes)."""
+    """Return a lower bound (n,) of sums (n, k) at rotations `columns` (n, k) and between them.
+
+    The sums belong to steps from joints start (n, axes) to a point of a lattice. The outer two
+    columns are only neighbours of the others.
+    """
     inner = columns[:, 1:-1]
     low, high = (side[j][inner] for side in next_lattice.about)
     guess, to = _parabolas(total, low, high, next_lattice.passable[j][inner])
@@ -130,7 +140,7 @@ def _neighbours(lattice: Lattice, i: int, next_lattice: Lattice, j: int, max_cos
     )
     start, end = np.nonzero(close)
     met = np.unique((end - start) % COARSE) if len(start) else np.zeros(1, dtype=np.int64)
-    # what is left out is the widest part of the turn in which no step ends
+    # omit the widest part of the turn in which no step ends
     gaps = np.diff(np.append(met, met[0] + COARSE))
     widest = int(gaps.argmax())
     first_cell, last_cell = met[(widest + 1) % len(met)] - 1, met[widest] + 1
@@ -147,8 +157,11 @@ def _any(possible: Mask, cell: int) -> Mask:
 
 
 def _parabolas(total: Array, low: Array, high: Array, available: Mask) -> tuple[Array, Array]:
-    """(n, k) about what sums (n, k + 2) take at least from `low` to `high` steps of the lattice (n, k) beside each rotation
-    but the outer two, infinite where it is not `available` (n, k); and how far beside it."""
+    """Estimate the least sums (n, k) near each rotation but the outer two, and their offsets.
+
+    total: (n, k + 2) sums at the rotations. low, high: (n, k) range of the offsets, in steps of the
+    lattice. The sum is infinite where not `available` (n, k).
+    """
     centre, next_total, previous_total = total[:, 1:-1], total[:, 2:], total[:, :-2]
     with np.errstate(invalid="ignore", over="ignore"):
         slope, bend = (
@@ -175,13 +188,17 @@ def _at_best(
     value: Array,
     weights: Array,
 ) -> Array:
-    """(n,) the least near the best of guesses (n, k), which are about rotations `columns` (n, k) and lie `to` from them, and
-    near all others that are better than those beside them; no more than what is `sampled_min` (n,) of a rotation itself."""
+    """Return the least sums (n,) near the best of the guesses (n, k) and near every other local
+    minimum.
+
+    The guesses are at offsets `to` from rotations `columns` (n, k). The result does not exceed
+    `sampled_min` (n,), the least sum at a rotation of the lattice.
+    """
     rows, number = np.arange(len(guess)), np.arange(guess.shape[1])
     best_column = guess.argmin(axis=1)
     edge = np.full((len(guess), 1), np.inf)
     neighbours = np.minimum(np.c_[edge, guess[:, :-1]], np.c_[guess[:, 1:], edge])
-    # one that is far above what is known, by more than guesses are off, cannot be the least
+    # a guess far above the best known sum, by more than its error, cannot be the least
     worth, minima = np.nonzero(
         (guess <= neighbours)
         & (guess < FAR_ABOVE * sampled_min[:, None])
@@ -207,10 +224,13 @@ def _at_best(
 
 @dataclass(frozen=True, eq=False)
 class _Near:
-    """Steps to rotations near n of a lattice, in steps x of it from the middle of five, which is `shift` (n,) beside each:
-    moved (5, n, axes) and later (5, n) the coefficients of what joints move by and of the sum ahead, off (n, axes) and
-    doubt (n,) their fourth differences; low and high (n,) how far whole cells go, and around (n, 5) the sums from two
-    before to two after."""
+    """Polynomial models of the steps to rotations near n columns of a lattice.
+
+    Their variable x counts lattice steps from the middle of five rotations, which is `shift` (n,)
+    steps from the column. moved: (5, n, axes) coefficients of the joint motion. later: (5, n)
+    coefficients of the sum ahead. off: (n, axes) and doubt: (n,) fourth differences of both. low,
+    high: (n,) range of whole cells. around: (n, 5) sums at the five rotations.
+    """
 
     moved: Array
     later: Array
@@ -222,7 +242,7 @@ class _Near:
     around: Array
 
     def of(self, rows: Index) -> _Near:
-        """Some of them."""
+        """Return the models of these rows."""
         return _Near(
             self.moved[:, rows],
             self.later[:, rows],
@@ -235,8 +255,11 @@ class _Near:
         )
 
     def least(self, to: Array, weights: Array) -> tuple[Array, Array, Array]:
-        """(n,) the least sum from `to` beside each rotation on, NaN where not known, where it is and by how much what is
-        ahead may be off in it."""
+        """Return the least sum (n,), searched from offset `to`, its offset and the error of the sum
+        ahead.
+
+        The sum is NaN where unknown.
+        """
         x = self._minimised(to - self.shift, self.later, self.low, self.high, weights)
         doubt = np.where(np.abs(x) <= 1.0, INNER_ERROR, OUTER_ERROR) * self.doubt
         with np.errstate(invalid="ignore", over="ignore"):
@@ -247,8 +270,11 @@ class _Near:
             )
 
     def least_by_lines(self, weights: Array) -> Array:
-        """(n,) the least sum where polynomials say little of what is ahead, as beside rotations from which nothing leads
-        on: in a cell it is not below its ends, but for a dip, which is not below the lines that lead down into it."""
+        """Return the least sum (n,) where polynomials are poor models of the sum ahead.
+
+        This is the case near rotations from which no step continues. Within a cell the sum is at
+        least that at its ends, except in a dip, which is bounded by the lines that descend into it.
+        """
         minimum = np.full(len(self.low), np.inf)
         for offset, (before_, centre, next_value, far_value) in (
             (-1.0, self.around.T[:4]),
@@ -309,7 +335,10 @@ class _Near:
 
 
 def _near(column: Index, start: Array, next_lattice: Lattice, j: int, value: Array) -> _Near:
-    """Of steps from joints start (n, axes) to rotations near `column` (n,) at a point of a lattice, with sums value (N,)."""
+    """Build the models of steps from joints start (n, axes) to rotations near `column` (n,).
+
+    The rotations belong to point j of a lattice with sums value (N,).
+    """
     joints, shift, count = next_lattice.joints[j], next_lattice.shift[j][column], len(value)
     five = (column + np.where(shift == NO_FIVE, 0, shift))[:, None] + np.arange(-2, 3)
     five %= count

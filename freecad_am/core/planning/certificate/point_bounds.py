@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What an objective that judges every point by itself cannot go below: the least of each point over all rotations."""
+"""Lower bound of an objective that rates every point separately: its minimum over all rotations at
+each point.
+"""
 
 from __future__ import annotations
 

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One bead with all that is free at its points: the rotation about the tool and every external axis, each a polynomial.
+"""Optimise all free coordinates of one bead: the tool rotation and every external axis, each a
+polynomial.
 
-r(s) in R^(1 + k): the rotation is the polynomial it had, plus a change; external axis j stands where a rule put it, plus a
-change. All changes are polynomials of one degree over the bead's parameter. The robot follows through its inverse, so that
-the derivatives of its joints are those of a closed chain: robot and external axes together leave the tool on the part.
+r(s) in R^(1 + k): the rotation is the given polynomial plus a change; external axis j has the
+position from a rule plus a change. All changes are polynomials of one degree over the bead's
+parameter. The robot follows through its inverse kinematics, so that the derivatives of its joints
+come from a closed chain: robot and external axes together keep the tool on the part.
 """
 
 from __future__ import annotations
@@ -25,9 +27,7 @@ from .. import criteria
 from ..points import Points
 from ..task import Task
 
-IRRELEVANT_MARGIN = (
-    0.75  # a margin to the condition that nobody asks for: its derivatives are not told
-)
+IRRELEVANT_MARGIN = 0.75  # a condition margin larger than any request: its derivatives are omitted
 MAX_SPEED_SHARE = 0.9  # of its largest speed, what an external axis may be asked for
 
 
@@ -46,9 +46,13 @@ class Bound:
 
 @dataclass(frozen=True, eq=False)
 class Freedom:
-    """points: of one bead, T of them. thresholds: (T,) the condition asked for. start: (degree + 1,) coefficients of the
-    rotation. changes: (degree + 1, c) coefficients of what may be added. allowed: rad from the vertical. directions: (T, 3)
-    tool axes seen from the face of the positioner. times: (T,) s since the point before, 0 at the first."""
+    """The free coordinates of one bead of T points.
+
+    thresholds: (T,) smallest condition allowed. start: (degree + 1,) coefficients of the rotation.
+    changes: (degree + 1, c) coefficients of the possible changes. allowed: rad from the vertical.
+    directions: (T, 3) tool axes in the frame of the positioner's face. times: (T,) s since the
+    previous point, 0 at the first.
+    """
 
     task: Task
     points: Points
@@ -87,7 +91,7 @@ class Freedom:
         ].T * self.unit
 
     def look(self, x: Array) -> Bound | None:
-        """What holds with changes x (v,); None where a point is out of reach."""
+        """Evaluate objective and constraints for changes x (v,); None if a point is out of reach."""
         task = self.task
         coefficients, values = self.values(x)
         points = set_external_values(self.points, task.cell, values)
@@ -250,7 +254,8 @@ ITERATIONS, TOLERANCE = 80, 1e-7
 # step across a singularity, from which it does not return; whether it does depends on the last bits of the processor.
 CLOSER = (0.5, 0.1)
 VIOLATION = 1e-5  # of a constraint, no more than the start's own violation, that still counts as an end within
-UNREACHABLE_OBJECTIVE = 1e3  # the objective out of reach, in those of the start
+# objective of an unreachable state, in multiples of the start's objective
+UNREACHABLE_OBJECTIVE = 1e3
 
 
 class Seen:
@@ -268,7 +273,9 @@ class Seen:
 
 
 def least_objective(freedom: Freedom, start: Array, margin: float) -> tuple[Array, int]:
-    """The changes (v,) with the least objective of all with a margin, and after how many iterations."""
+    """Return the changes (v,) with the least objective among all with this margin, and the
+    iterations.
+    """
     cache = Seen(freedom)
     initial = cache.bound_at(start)
     scale = 1.0 if initial is None else max(initial.objective, 1e-12)
@@ -292,8 +299,10 @@ def least_objective(freedom: Freedom, start: Array, margin: float) -> tuple[Arra
 def largest_margin(
     freedom: Freedom, start: Array, objective: float, enough: float
 ) -> tuple[Array, int]:
-    """The changes (v,) with the largest margin, `enough` at most, of all with no more than an objective, and after how many
-    iterations."""
+    """Return the changes (v,) with the largest margin up to `enough`, and the iterations.
+
+    Their objective is at most `objective`.
+    """
     cache, v = Seen(freedom), len(start)
     initial = cache.bound_at(start)
     if initial is None or initial.margins.min() >= enough:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Turns the part by the axes of a positioner so that the tool stands upright where it deposits.
+"""Tilts the part by the axes of a positioner so that the tool is upright where it deposits.
 
-Where one position of the positioner keeps all tool axes of the job, or of a bead, near enough to the vertical, it stands
-still there: no axis moves that need not. Where none does, the positioner follows the bead and keeps the tool axis vertical
-at every point, through the pole by going straight on.
+If one position of the positioner keeps all tool axes of the job, or of a bead, close enough to the
+vertical, it stays there: no axis moves without need. Otherwise the positioner follows the bead and
+keeps the tool axis vertical at every point. It passes through the pole by continuing straight on.
 """
 
 from __future__ import annotations
@@ -111,8 +111,10 @@ def standing(cell: Cell, toolpath: Toolpath) -> list[Issue]:
 
 
 def _not_level(turning: bool, tilt: Array, max_lean: float, bead_id: Place) -> list[Issue]:
-    """That tool axes, tilt (n,) rad from the vertical, lean more than they may at a bead, where they lean most; none where
-    they do not. turning: whether an axis turns the part."""
+    """Report a bead whose tool axes lean too far, at its worst point.
+
+    tilt: (n,) rad from the vertical. turning: whether an axis turns the part.
+    """
     worst = int(tilt.argmax())
     if not tilt[worst] > max_lean + ROUNDING:
         return []
@@ -151,8 +153,11 @@ def _not_level(turning: bool, tilt: Array, max_lean: float, bead_id: Place) -> l
 
 
 def figures(cell: Cell, path: JointPath) -> dict[str, object]:
-    """What the external axes do along the deposit: how far the tool axis is from the vertical at most, in degrees, and how
-    far each of them turns in all, and slides in all, in mm."""
+    """Return the figures of the external axes along the deposit.
+
+    These are the largest angle of the tool axis from the vertical, deg, and the total travel of
+    each axis, deg or mm.
+    """
     farthest = math.degrees(farthest_from_vertical(cell, path.beads))
     return {"from_vertical_max_deg": farthest, **axes_figures(cell, path.beads)}
 

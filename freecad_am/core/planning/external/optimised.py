@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""External axes `optimised`: polynomials of all free coordinates per bead, the rotation about the tool and every external
-axis together.
+"""External axes `optimised`: polynomials per bead for the tool rotation and every external axis
+together.
 
-It starts from the joint path whose external axes `level` put in place. For each bead other standing places of the external
-axes are looked at, the rotation searched anew at each; from the best and from the path itself two local optima follow: the
-least objective with no less margin, then the largest margin that keeps most of what was gained. A bead that is not better
-than it was, or that meets something, stays as it was.
+It starts from the joint path with the external axes placed by `level`. For each bead it tries other
+positions of the external axes, with a new search of the rotation at each. From the best position
+and from the path itself, two local optimisations follow: the least objective with at least the same
+margin, then the largest margin that keeps most of the gain. A bead that does not improve, or that
+collides, keeps its path.
 """
 
 from __future__ import annotations
@@ -33,11 +34,11 @@ from .stroke import directions_on_face
 
 OPTIMISED = "rotation and external axes together"
 POINTS_PER_BEAD = 40
-GIVEN_BACK = 0.25  # of what the objective gained, for a larger margin
+GIVEN_BACK = 0.25  # share of the gained objective to spend on a larger margin
 SUFFICIENT_MARGIN = 0.5  # a margin that need not be larger: half way from the limit to the middle
-TRIES = 2  # of a bead that leans too far between the points looked at
-SPARE = 1e-4  # of margin and angle, so that what lies between the points keeps them too
-STANDING = 12  # places of an axis that is free to stand anywhere
+TRIES = 2  # attempts for a bead that leans too far between the optimised points
+SPARE = 1e-4  # of margin and angle, a reserve for the curve between the points
+STANDING = 12  # positions of an axis without a preferred position
 LEANING = np.array(
     [-1.0, -0.5, 0.5, 1.0]
 )  # shares of the largest angle from the vertical, tried of every axis
@@ -51,10 +52,11 @@ def optimised(
     allowed: Mapping[int, float],
     report: Callable[[float], None] = lambda share: None,
 ) -> list[BeadPath]:
-    """The paths with better ones in the place of those there are: less objective, and no less margin.
+    """Replace paths by better ones: less objective and at least the same margin.
 
-    directions: tool axes (n, 3) of the part as seen from the face that carries it. allowed: rad from the vertical, by layer.
-    report: called with the share of the beads that is done; it may raise to cancel.
+    directions: returns the tool axes (n, 3) in the frame of the face that carries the part.
+    allowed: rad from the vertical, by layer. report: receives the share of finished beads and may
+    raise to cancel.
     """
     usable = [
         k
@@ -91,7 +93,10 @@ def _elsewhere(
     directions: Callable[[Array], Array],
     allowed: Mapping[int, float],
 ) -> list[Start | None]:
-    """For each path the shift of its external axes, and the rotation there, that serve best; None where its own are."""
+    """Return the best shift of the external axes, and its rotation, for each path.
+
+    None where the unshifted axes are best.
+    """
     external = task.cell.external
     assert external is not None
     beads = [path.bead for path in paths]
@@ -135,7 +140,9 @@ def _evaluate_shifts(
     directions: Callable[[Array], Array],
     shifts: Array,
 ) -> tuple[Array, Array, Array, Array]:
-    """Of each bead with its external axes shifted by (B, k): these, the best coefficients, objective and margin there."""
+    """Return the shifts (B, k) of the external axes and the best coefficients, objective and margin
+    of each bead.
+    """
     assert points.external is not None
     values = points.external + shifts[points.bead]
     candidates = search.everywhere(
@@ -161,7 +168,7 @@ def _evaluate_shifts(
 
 
 def _steps(task: Task, axis: int, max_lean: float) -> Array:
-    """By how much an external axis is shifted to see whether it should stand elsewhere."""
+    """Return the trial shifts of an external axis."""
     external, arm = task.cell.external, task.cell.robot.arm
     assert external is not None and arm is not None
     if axis == external.slides:
@@ -179,7 +186,7 @@ def _bead(
     directions: Callable[[Array], Array],
     allowed: float,
 ) -> BeadPath:
-    """The best of what the path, and another start, lead to."""
+    """Return the best path of the local optimisations from this path and from another start."""
     best = path
     for shift, coefficients in ([] if start is None else [start]) + [(None, path.coefficients)]:
         assert coefficients is not None and path.bead.external is not None
@@ -203,7 +210,7 @@ def _upright_enough(
     directions: Callable[[Array], Array],
     allowed: float,
 ) -> BeadPath | None:
-    """What a start leads to, kept so much more upright where it is looked at that no point in between leans too far."""
+    """Optimise from a start, and tighten the limit until no point in between leans too far."""
     external, spare = task.cell.external, SPARE
     assert external is not None
     for _ in range(TRIES):
@@ -292,8 +299,10 @@ METHOD = "layer-by-layer"
 
 
 def asked(parameters: JointParameters, cell: Cell) -> tuple[bool, list[Issue]]:
-    """Whether external axes are to be optimised, and a note where there are none. Raises InputError NOT_FOR_SETUP for
-    methods without polynomials per bead."""
+    """Return whether to optimise external axes, with a note if there are none to optimise.
+
+    Raises InputError NOT_FOR_SETUP for methods without polynomials per bead.
+    """
     if parameters.external_axes == LEVEL:
         return False, []
     if cell.external is None:
@@ -328,9 +337,11 @@ def choose_better(
     finish: Callable[[list[BeadPath]], Found],
     report: Callable[[float], None],
 ) -> tuple[Found, dict[str, object]]:
-    """What is planned with all external axes optimised, and the figures of `level`, which stays where it is no worse.
+    """Return the better of `level` and the plan with all external axes optimised, and the figures
+    of `level`.
 
-    level: what was found with it; planned: its beads before points were added and turns counted on, which `finish` does.
+    level: the finished paths and issues. planned: its beads before `finish` adds points and unwraps
+    turns.
     """
     # few jobs have external axes
 
@@ -368,8 +379,11 @@ def _worse(task: Task, result: Found, level: Found) -> set[tuple[int | None, int
 
 
 def figures(task: Task, paths: Sequence[BeadPath]) -> dict[str, object]:
-    """What paths are compared by: objective, least margin to a limit or the condition asked for, as shares, least condition,
-    and how far external axes go."""
+    """Return the figures that compare paths.
+
+    These are the objective, the least margin to a limit or to the allowed condition, as shares, the
+    least condition, and the travel of the external axes.
+    """
     complete = all(path.reachable for path in paths)
     return {
         "objective_value": float(sum(path.objective for path in paths)) if complete else None,
@@ -380,8 +394,9 @@ def figures(task: Task, paths: Sequence[BeadPath]) -> dict[str, object]:
 
 
 def least_margin(task: Task, paths: Sequence[BeadPath]) -> float:
-    """The least share of any axis that is left to its limit, the reserve beside it taken off (1: in the middle), or of the
-    condition to the one asked for."""
+    """Return the least margin of any axis to its limit less the reserve (1: in the middle), or of
+    the condition.
+    """
     margins = [
         np.minimum(
             task.rows.margin(path.joints), condition_margin(path.condition, path.threshold)

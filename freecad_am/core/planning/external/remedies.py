@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cells that may make an infeasible job feasible: a positioner that stands elsewhere, or external axes where there
-are none."""
+"""Cells that may make an infeasible job feasible: another position of the positioner, or external
+axes.
+"""
 
 from __future__ import annotations
 
@@ -64,8 +65,12 @@ def added(
     codes: set[str],
     mass: float = 0.0,
 ) -> Cells:
-    """A positioner that carries so many kg under a part whose tool axes may not lean, a track along one that is long, of the
-    robot's maker where there is one; nothing of a cell with external axes, or a robot that holds the part."""
+    """Yield cells with a positioner or a track added.
+
+    A positioner, for a load of `mass` kg, helps a part whose tool axes may not lean; a track helps
+    a long part. Mechanisms of the robot's manufacturer are preferred. Yields none if the cell has
+    external axes or the robot holds the part.
+    """
     robot = machines.load(settings.machine, tuple(folders))
     if (
         externals(settings.external)
@@ -108,7 +113,7 @@ def added(
 
 
 def weight(toolpath: Toolpath, process: ProcessParameters) -> float:
-    """kg of the beads and of what they grow on, as far as that is closed."""
+    """Return the mass, kg, of the beads and of the closed bodies they grow on."""
     volume, usual = (
         enclosed_volume(toolpath.surroundings)[0],
         toolpath.bead_width or process.bead_width,
@@ -134,7 +139,9 @@ def _face(mechanism: Machine, pose: Pose) -> Array:
 
 
 def _before(robot: Machine, towards: Array, height: float) -> list[Array]:
-    """Places (3,) before a robot, in the direction of a place (2,) and about as high as it is told, in the world."""
+    """Return positions (3,) in front of a robot, towards a point (2,) and near the given height,
+    world frame.
+    """
     assert robot.arm is not None  # who asks has looked
     shoulder, _ = robot.arm.shoulder
     turn = math.atan2(towards[1], towards[0]) if math.hypot(*towards) > 1.0 else 0.0

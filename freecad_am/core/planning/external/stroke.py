@@ -35,13 +35,17 @@ def directions_on_face(cell: Cell, tool: Array) -> Array:
 
 
 def middle(directions: Array) -> Array | None:
-    """The direction (3,) whose largest angle to the directions (n, 3) is least, None where they point all ways."""
+    """Return the direction (3,) with the least maximum angle to the directions (n, 3).
+
+    None where they point all ways.
+    """
     mean = directions.mean(axis=0)
     if np.linalg.norm(mean) < 1e-6:
         return None
     mean = mean / np.linalg.norm(mean)
     middle = mean
-    for step in range(1, STEPS):  # Badoiu and Clarkson 2003: towards what is farthest, ever less
+    # Badoiu and Clarkson 2003: step towards the farthest direction, by less each time
+    for step in range(1, STEPS):
         farthest = directions[int((directions @ middle).argmin())]
         middle = middle + (farthest - middle) / (step + 1)
         middle /= np.linalg.norm(middle)
@@ -69,8 +73,10 @@ def upright(external: ExternalAxes, directions: Array) -> list[Array]:
 
 
 def chosen(cell: Cell, courses: Sequence[Array], previous: Array) -> Array:
-    """Of all courses and whole turns the one within the limits that moves least, then the one that starts nearest to the
-    values before (k,)."""
+    """Choose the course with least motion within the limits among all courses and whole turns.
+
+    A tie goes to the one that starts nearest to the previous values (k,).
+    """
     rows, lower, upper = limits_of(cell)
     speed, all_axes = (
         cell.machine.max_speed[cell.robot.chain.axes + rows],
@@ -93,7 +99,7 @@ def limits_of(cell: Cell) -> tuple[Index, Array, Array]:
 
 
 ROUNDING = 1e-9
-ROUNDS = 6  # of points between those of a bead
+ROUNDS = 6  # rounds that add points between the points of a bead
 # rad from where planning ends to where an axis waits at a limit, so that waiting there is within limits to the last digit
 WAITS = RESERVE
 
@@ -128,7 +134,7 @@ def find_room(
 def _begun_elsewhere(
     cell: Cell, bead: Bead, max_lean: float, previous: Array, overlap: float
 ) -> Bead | None:
-    """A closed bead from a seam that leaves room for all of it."""
+    """Return a closed bead from a seam at which the axes have stroke for the whole bead, else None."""
     for _ in range(ROUNDS):
         solutions, count = _Ways.of_bead(cell, bead, max_lean), len(bead) - 1
         for start, values in solutions.seams(count, previous):
@@ -176,7 +182,9 @@ def _share(bead: Bead, last_point: int, section: Bead) -> float:
 
 
 def runs_on(cell: Cell, bead: Bead, max_lean: float, overlap: float) -> bool:
-    """Whether a bead with external axes, where it is closed, leans no more than it may where it runs on so many mm."""
+    """Return whether a closed bead with external axes keeps the tilt limit over its seam overlap,
+    mm.
+    """
     external = cell.external
     if overlap <= 0.0 or not bead.closed:
         return True
@@ -191,8 +199,11 @@ def runs_on(cell: Cell, bead: Bead, max_lean: float, overlap: float) -> bool:
 
 
 def waiting(cell: Cell, values: Array, beginning: Array) -> Array:
-    """Values (m, k) with which a bead runs on over its beginning (m, k): the same, or where that leaves the limits of an
-    axis, whole turns aside, those of its end: there the axes wait. values: (n, k) of the bead."""
+    """Return the external values (m, k) of the seam overlap of a bead.
+
+    They equal its beginning (m, k). If that leaves the limits of an axis, apart from whole turns,
+    the axes wait at the values of its end. values: (n, k) of the bead.
+    """
     rows, lower, upper = limits_of(cell)
     turned = beginning[:, rows] + TURN * np.round((values[-1, rows] - values[0, rows]) / TURN)
     all_values = np.concatenate([values[:, rows], turned])
@@ -207,9 +218,12 @@ def waiting(cell: Cell, values: Array, beginning: Array) -> Array:
 
 @dataclasses.dataclass(frozen=True)
 class _Ways:
-    """Ways to turn directions (n, 3) of a bead upright, three times round a closed one, whole turns told apart, held within
-    the limits. values: (ways, n, k) of the turning axes, `rows` of all. clamped: (ways, n) rad by which they are kept from
-    where they would go. fits: (ways, n) whether the tool then leans no more than it may, `max_lean`."""
+    """Ways to turn the directions (n, 3) of a bead upright, each within the limits.
+
+    They cover a closed bead three times; copies by whole turns are separate ways. values: (ways, n,
+    k) of the turning axes, which are `rows` of the external axes. clamped: (ways, n) rad by which
+    limits hold the axes back. fits: (ways, n) whether the tool keeps `max_lean`.
+    """
 
     cell: Cell
     bead: Bead
@@ -292,8 +306,13 @@ class _Ways:
         )
 
     def seams(self, count: int, previous: Array) -> Iterator[tuple[int, Array]]:
-        """Points of a closed bead of so many segments from which a way has room all round, with its values (count + 1, k):
-        those first that hold an axis back least, then the nearest to the seam, then to where the axes are."""
+        """Yield the possible seams of a closed bead of `count` segments, with their values (count +
+        1, k).
+
+        At a seam, one way has stroke for the whole bead. The order is by the amount that limits
+        hold an axis back, then by the distance from the present seam, then by the travel time of
+        the axes.
+        """
         course, start = np.nonzero(self.furthest[:, :count] >= np.arange(count) + count)
         so_far = np.cumsum(np.pad(self.clamped, ((0, 0), (1, 0))), axis=1)
         clamped = np.round(so_far[course, start + count + 1] - so_far[course, start], 6)
@@ -322,7 +341,7 @@ class _Ways:
         )
 
     def _travel_time(self, values: Array, previous: Array) -> Array:
-        """(m,) s from where the axes are to values (m, k), told to the microsecond."""
+        """Return the travel times (m,) of the axes to values (m, k), s, rounded to the microsecond."""
         speed = self.cell.machine.max_speed[self.cell.robot.chain.axes + self.rows]
         return np.asarray(np.round((np.abs(values - previous[self.rows]) / speed).max(axis=1), 6))
 
@@ -356,7 +375,10 @@ def _set_external(bead: Bead, values: Array, previous: Array, rows: Index) -> Be
 
 
 def _cuts(reach: Index, low: int, high: int) -> list[int]:
-    """Where the fewest pieces from one point to another end, each going as far as it can; empty where there is no way."""
+    """Return the ends of the fewest pieces between two points, each as long as possible.
+
+    Empty if no way exists.
+    """
     cuts = [low]
     while cuts[-1] < high:
         furthest = min(int(reach[cuts[-1]]), high)
@@ -367,8 +389,10 @@ def _cuts(reach: Index, low: int, high: int) -> list[int]:
 
 
 def _balanced(reach: Index, cuts: Sequence[int]) -> list[int]:
-    """The same number of pieces, as equal as may be: where each must end at the latest follows from where it begins, at the
-    earliest from the end of all."""
+    """Return as many pieces with lengths as equal as possible.
+
+    The start of a piece gives its latest end; the end of the bead gives its earliest end.
+    """
     low, high, count = cuts[0], cuts[-1], len(cuts) - 1
     earliest = [high]
     for _ in range(count - 1):

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where the track stands that carries the robot.
+"""Position of the track that carries the robot.
 
-One law for the whole job: the track goes along with a share of the way that the deposit makes along it, so that the robot is
-never farther than half a window from where it stands best. So a place of the part has one place of the track, whatever was
-deposited before; its motion is as smooth as the beads are; and where all of the part is within the window, the track stands
-still. Windows and places are tried, the least motion first.
+One law covers the whole job: the track follows a share of the deposit's motion along it, so that
+the robot is never farther than half a window from its best position. So a position on the part has
+one position of the track, whatever was printed before. The track moves as smoothly as the beads
+run; if the whole part is within the window, it does not move. Windows and offsets are tried in the
+order of increasing motion.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ from ...toolpath import Bead
 from ...types import Array
 from ..reserve import RESERVE
 
-# shares of the arm's reach: the window, and how far the robot stands before or behind the deposit along the track
+# shares of the arm's reach: the window, and the offset of the robot from the deposit along the
+# track
 WINDOWS = (0.6, 0.3, 0.0)
 OFFSETS = (0.0, 0.4, -0.4)
 MAX_TRIALS = 3  # that are worth planning
@@ -29,8 +31,12 @@ MAX_TRIALS = 3  # that are worth planning
 def place_track(
     beads: Sequence[Bead], cell: Cell, served: Callable[[Sequence[Bead]], float]
 ) -> Iterator[list[Bead]]:
-    """The beads with the values of the track at their points, in the ways worth planning, MOST of them, those with less
-    motion first; beads as they are where the robot stands. `served`: the share of beads looked at that the robot can do."""
+    """Yield the beads with track values at their points, at most MAX_TRIALS times, in the order of
+    motion.
+
+    Without a track, yields the unchanged beads. served: returns the share of the sampled beads that
+    the robot can print.
+    """
     external = cell.external
     if external is None or external.slides is None:
         yield list(beads)

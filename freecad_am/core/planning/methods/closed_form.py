@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Nothing free, k = 0: point and tool axis leave a machine two branches and whole turns, chosen bead by bead (Dai 2020, 3).
+"""No free coordinate, k = 0: point and tool axis allow two branches and whole turns (Dai 2020,
+section 3).
 
-Within a bead the branch changes only where a direction lies along an axis and the way straight on leads there; elsewhere a
-change would be a jump. Where a turning axis has no room for a bead, its seam is moved or, as the last resort, it is split.
+They are chosen bead by bead. Within a bead the branch changes only if a direction coincides with an
+axis and the straight continuation leads to the other branch; elsewhere a change would be a jump. If
+a rotary axis lacks the stroke for a bead, the seam of the bead moves; as the last resort it is
+split.
 
-Its rule for that is not the robots' (`turns.fit`): theirs looks for the rotation about the tool as if one axis, the last,
-had no end, and moves or cuts what was found, all else the same. Here there is no such rotation, either of two axes may lack
-room, and a bead begun elsewhere may cross a pole in the other branch: each way to lay it is run anew.
+The rule for this differs from that of robots (`turns.fit`). The robot's rule searches the tool
+rotation as if the last axis were continuous, and moves or cuts the resulting path without other
+changes. Here no such rotation exists, either of two axes may lack stroke, and a bead with another
+start may cross a pole in the other branch. So each variant of a bead is computed again.
 """
 
 from __future__ import annotations
@@ -41,7 +45,8 @@ STRAY = math.radians(
     0.5
 )  # between two points the tool may lean this far from the direction asked for
 LIMIT_TOLERANCE = 1e-9  # a limit met exactly is kept, rad and mm
-# rad; how near to a pole directions count as on it, tried in turn where an axis would race round beside it; less than STRAY
+# rad; distance from a pole within which a direction counts as on it; larger values are tried if an
+# axis would race near the pole; less than STRAY
 POLES = (AT_POLE, math.radians(0.2), math.radians(0.4))
 RACES = 2.0  # times its largest speed at which an axis does; below that the bead is slowed
 
@@ -59,9 +64,11 @@ class _Run(NamedTuple):
 def plan(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[Place], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """The paths of all beads as they are run, with points added where axes running straight would leave them, and findings.
+    """Return the paths of all beads and their issues.
 
-    Where a limited turning axis has no room for a bead, its seam is moved or it is split; beads are then numbered anew.
+    Points are added where straight motion of the axes would leave the bead. If a limited rotary
+    axis lacks the stroke for a bead, its seam is moved or it is split; then the beads are
+    renumbered.
     """
     paths: list[BeadPath] = []
     issues: list[Issue] = []
@@ -113,7 +120,9 @@ def _run(task: Task, bead: Bead, previous: Array) -> _Run:
 
 
 def _race(task: Task, run: _Run) -> float:
-    """How many times as fast as it can an axis would have to be along a run, at most; 0 of what cannot be run."""
+    """Return the largest ratio of required axis speed to maximum speed along a run; 0 if it is
+    infeasible.
+    """
     if not np.isfinite(run.axes).all():
         return 0.0
     time = np.linalg.norm(np.diff(run.bead.points, axis=0), axis=1) / run.bead.speed[1:]
@@ -126,12 +135,13 @@ def _finer(task: Task, bead: Bead, previous: Array, pole: float) -> _Run:
     cell, checked, axes = task.cell, bead, previous
     bead = gone_back(bead, task.retreat).run_on(task.overlap)
     for _ in range(ROUNDS):
-        # all of it anew: near a pole the shorter way on shows only with more points
+        # compute the whole bead again: near a pole the shorter continuation only shows with more
+        # points
         axes = directed.chosen(cell, directed.courses(cell, task.lock, bead, pole), previous)
         if not np.isfinite(axes).all():
             return _Run(bead, axes, False)
         deviations, leans = deviation(task, bead, axes, task.chord_error), leaning(cell, bead, axes)
-        # with an axis locked the tool leans anyhow; that is told once for all
+        # with an axis locked the tool leans anyway; one message reports that for the whole job
         off = (deviations > task.chord_error + ROUNDING) | ((leans > STRAY) & (task.lock is None))
         if not off.any():
             return _Run(bead, axes, not cell.limits.exceeded(axes, LIMIT_TOLERANCE).any())
@@ -158,7 +168,10 @@ def _not_straight(point: int, distance: float, leans: float, layer: int, bead: i
 
 
 def _path(task: Task, run: _Run, bead_id: Place) -> BeadPath:
-    """The run as a path. There is no condition to keep: poles are told apart by the courses."""
+    """Convert the run to a path.
+
+    There is no condition to keep: the courses keep poles apart.
+    """
     none, limits = np.full(len(run.bead), np.nan), task.cell.limits
     half = 0.5 * (limits.upper - limits.lower)
     moved = np.abs(np.diff(run.axes, axis=0)).sum(axis=0) / np.where(np.isfinite(half), half, TURN)
@@ -189,8 +202,11 @@ def _short_of_turns(task: Task, joints: Array) -> bool:
 
 
 def _ways(task: Task, bead: Bead) -> Iterator[list[Bead]]:
-    """Other ways to lay a bead, the best first: a closed one begun where a turning axis has room for all of it, then any in
-    two or more pieces."""
+    """Yield other variants of a bead, the best first.
+
+    These are a closed bead with a seam at which a rotary axis has enough stroke, then any bead in
+    two or more pieces.
+    """
     limits = task.cell.limits
     if bead.closed:
         for course in directed.courses(task.cell, task.lock, bead):
@@ -210,7 +226,10 @@ def _ways(task: Task, bead: Bead) -> Iterator[list[Bead]]:
 
 
 def _start(angles: Array, low: float, high: float) -> int:
-    """The point of a closed bead from which its course (n,) lies best in the middle between two limits, but for turns."""
+    """Return the start point that best centres the course (n,) of a closed bead between two limits.
+
+    Whole turns do not matter.
+    """
     n = len(angles) - 1
     turn = angles[-1] - angles[0]
     twice = np.concatenate([angles[:-1], angles + turn])
@@ -218,7 +237,7 @@ def _start(angles: Array, low: float, high: float) -> int:
     lowest, highest = windows.min(axis=1), windows.max(axis=1)
     off = shortest(0.5 * (lowest + highest) - 0.5 * (low + high))
     over = np.maximum(np.abs(off) + 0.5 * (highest - lowest) - 0.5 * (high - low), 0.0)
-    # rounded, so that the same point is taken everywhere; of those that fit, the nearest to the seam
+    # rounded, so that every machine gets the same point; among fitting ones the nearest to the seam
     fits = np.flatnonzero(over <= 0.0)
     if len(fits):
         return int(fits[np.argmin(np.minimum(fits, n - fits))])

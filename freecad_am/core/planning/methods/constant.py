@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One RZ for the whole job: what is done without optimisation, kept for comparison and for simple parts."""
+"""One RZ for the whole job, without optimisation: a reference for comparison and enough for simple
+parts.
+"""
 
 from __future__ import annotations
 
@@ -22,8 +24,8 @@ from ..task import Task, condition_margin
 Progress = Callable[[float, str], None]
 
 RZ_CANDIDATES, RZ_FINE_CANDIDATES = 360, 21
-LOOKED = 72  # of these, at which links are looked at, where they are kept clear
-POINT_STRIDE = 8  # a point in so many is looked at before the others
+LOOKED = 72  # how many of these the link check tries
+POINT_STRIDE = 8  # stride of the points that are checked before the others
 
 Clear = Callable[[float], bool]  # whether no link comes too near with an RZ, rad
 
@@ -31,7 +33,9 @@ Clear = Callable[[float], bool]  # whether no link comes too near with an RZ, ra
 def plan(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int, int]], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """The paths of all beads with the RZ of the job, or the one with the largest smallest margin when it is 'auto'."""
+    """Return the paths of all beads with the job's RZ, or with the RZ of the largest worst-case
+    margin if 'auto'.
+    """
     requested = task.parameters.rz
     full = gather(beads, task.cell)
     threshold = task.thresholds(full)
@@ -75,8 +79,12 @@ def plan(
 def best_rz(
     task: Task, points: Points, thresholds: Array, clear: Clear | None = None
 ) -> tuple[float, float, bool]:
-    """The RZ (rad) with the largest smallest margin over all points, of those with which links are clear, and that margin
-    (negative: none is feasible); and whether there are such that links are clear with."""
+    """Return the RZ (rad) with the largest worst-case margin over all points, this margin, and a
+    flag.
+
+    A negative margin means that no RZ is feasible. RZ values with clear links are preferred; the
+    flag is false if none has clear links.
+    """
     rough = np.linspace(-np.pi, np.pi, RZ_CANDIDATES, endpoint=False)
     rough_margins = margins(task, points, thresholds, rough)
     best, served = int(first_most(rough_margins)), True
@@ -102,7 +110,9 @@ def best_rz(
 
 
 def _keeps_clear(task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int, int]]) -> Clear:
-    """Whether no link comes too near with an RZ at points of the beads, a few of them first."""
+    """Return a check that no link comes too near with an RZ at the beads' points; it checks a few
+    points first.
+    """
     assert task.kept is not None
     arm_clearance, points = task.kept, gather(beads, task.cell, arm_clear.POINTS_PER_BEAD)
     few_points = np.zeros(len(points), dtype=bool)
@@ -168,7 +178,9 @@ def bead_paths(
     joints: Array,
     reason: str,
 ) -> list[BeadPath]:
-    """Paths without a polynomial, from the rotation phi (T,) and joints (T, axes) of all points."""
+    """Return paths without a polynomial, from the rotation phi (T,) and joints (T, axes) of all
+    points.
+    """
     condition = task.condition(points, phi, joints)
     margin = points.worst(
         np.minimum(task.rows.margin(joints), condition_margin(condition, threshold))

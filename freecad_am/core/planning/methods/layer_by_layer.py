@@ -34,9 +34,9 @@ NOT_MUCH_WORSE = 2.0
 def plan(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[Place], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """The paths of all beads with their layer and index, and what was done to make them fit.
+    """Return the paths of all beads and notes on moved seams and split beads.
 
-    Beads with a polynomial that is given have that one, and are judged like the others.
+    Beads with a given polynomial use it and are checked like the others.
     """
     fixed = given.coefficients(task.parameters, bead_ids)
     free = [k for k in range(len(beads)) if k not in fixed]
@@ -57,7 +57,7 @@ def plan(
 def _searched(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[Place], progress: Progress
 ) -> tuple[list[BeadPath], dict[int, list[BeadPath]]]:
-    """The path of every bead, and of those that another seam or a cut helps what to put in its place."""
+    """Return the path of every bead, and the replacements of beads that need another seam or a cut."""
     coarse, full = gather(beads, task.cell, search.POINTS_PER_BEAD), gather(beads, task.cell)
     coarse_threshold, threshold = task.thresholds(coarse), task.thresholds(full)
     progress(0.1, "searching rotations")
@@ -150,14 +150,17 @@ def _resolved(
     full: tuple[Points, Array],
     refined: refine.Refined,
 ) -> list[BeadPath]:
-    """The paths of all beads with the ties of their optima resolved. coarse, full: few and all of their points, with the
-    conditions asked for there."""
+    """Return the paths of all beads with ties between optima resolved.
+
+    coarse, full: a few and all of their points, each with its smallest allowed conditions.
+    """
     resolved = search.resolve(task, *coarse, refined.coefficients)
     paths = evaluate_paths(task, beads, bead_ids, *full, resolved, refined)
     equal = search.as_good(task, [path.objective for path in paths], refined.objective)
     if equal.all() and all(path.margin >= MIN_MARGIN for path in paths):
         return paths
-    # ties are resolved at few points of a bead: where all of them say otherwise, the optimum stays as it was found
+    # ties are resolved at a few points of a bead; if all points contradict, the original optimum
+    # stays
     as_found = evaluate_paths(task, beads, bead_ids, *full, refined.coefficients, refined)
     return [
         path if good and path.margin >= min(MIN_MARGIN, unresolved.margin) else unresolved
@@ -166,9 +169,10 @@ def _resolved(
 
 
 def _add_other_turns(start: Array, candidates: search.Found) -> Array:
-    """(S, B, degree + 1) the starts with the best of each other number of whole turns, NaN where that is not promising.
+    """Return the starts (S, B, degree + 1): the given ones and the best for each other number of
+    whole turns.
 
-    Which number of turns is best can change with what a higher degree makes of it.
+    NaN marks an unpromising start. A higher degree can change which number of turns is best.
     """
     if start.shape[1] < 2:
         return start[None]

@@ -31,7 +31,7 @@ STEPS = 2
 def plan(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int, int]], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """The paths of all beads, each point judged against the point before."""
+    """Return the paths of all beads, each point optimised from the point before."""
     points = gather(beads, task.cell)
     threshold = task.thresholds(points)
     counts = np.diff(np.append(points.first, len(points)))
@@ -110,8 +110,12 @@ def _margin(task: Task, points: Points, phi: Array, joints: Array, threshold: Ar
 def _searched(
     task: Task, points: Points, threshold: Array, deposited: Index, previous: Array | None
 ) -> tuple[Array, Array]:
-    """The best of a whole turn of candidates: the least motion among the feasible, of these among those with which links are
-    clear, where there are any; else the largest margin. laid: (k,) how many points of the deposit are there."""
+    """Return the best of the candidates over a whole turn: the least motion among the feasible
+    ones.
+
+    Candidates with clear links are preferred. Without a feasible candidate, the one with the
+    largest margin is taken. deposited: (k,) number of printed points at each point.
+    """
     turn = np.arange(CANDIDATES) * (TURN / CANDIDATES) - np.pi
     phi = np.repeat(turn[:, None], len(points), axis=1)
     joints = task.raw_joints(points, phi, previous)
