@@ -20,7 +20,6 @@ OURS = {
     "core/orientation": {"core/geometry"},
     "core/read_moves": set(),
     "core/motion": set(),
-    "core/digits": set(),
     "core/one_thread": set(),
     "core/copies": set(),
     "core/parameters": {"core/issues", "core/geometry"},
@@ -75,7 +74,6 @@ OURS = {
         "core/toolpath",
         "core/kinematics",
         "core/motion",
-        "core/digits",
     },
     "core/placement": {
         "core/issues",
@@ -100,7 +98,6 @@ OURS = {
     },
     "posts": {
         "core/issues",
-        "core/digits",
         "core/controller",
         "core/orientation",
         "core/program",

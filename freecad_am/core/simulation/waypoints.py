@@ -3,25 +3,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
-from .. import digits
 from ..motion import Motion
 from ..parameters.bead_classes import CLASSES
-from ..types import Array, Index
+from ..types import NDArray
 
 HEADER = "layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm"
 WIRE = "wire_feed_mm_s"
-_LENGTHS, _DIRECTIONS, _ANGLES = 6, 9, 7  # decimals
+_LENGTH, _DIRECTION, _ANGLE = "%.6f", "%.9f", "%.7f"
 _ROWS_AT_ONCE = 4000
 CLASS = "class"
-_KINDS = np.frombuffer(b"rapid\0\0deposit", dtype=np.uint8).reshape(2, -1)
-_MAX_WIDTH = max(map(len, CLASSES))
-_CLASSES = np.array(
-    [list(name.encode().ljust(_MAX_WIDTH, b"\0")) for name in (*CLASSES, "")], dtype=np.uint8
-)
+_CLASS_NAMES = np.array([*CLASSES, ""])  # the last one for -1, an unknown class
 
 
 def text(motion: Motion, axes: tuple[str, ...] = (), units: tuple[str, ...] = ()) -> Iterator[str]:
@@ -57,40 +53,28 @@ def _rows(motion: Motion, units: tuple[str, ...], wire: bool, rows: slice) -> st
     """Rows as text, with the wire's own speed or without."""
     slides = np.array([unit == "mm" for unit in units])
     angles = np.where(slides, motion.joints[rows], np.degrees(motion.joints[rows]))
-    numbers = _cells((motion.layer[rows], motion.bead[rows], motion.point[rows]), 0)
-    x, y, z, speed, width = _cells(
-        (*motion.position[rows].T, motion.speed[rows], motion.width[rows]), _LENGTHS
-    )
-    vectors = _cells((*motion.build[rows].T, *motion.tool[rows].T), _DIRECTIONS)
-    texts = [
-        *numbers,
-        _KINDS[motion.deposit[rows].astype(np.intp)].T,
-        x,
-        y,
-        z,
-        *vectors,
-        speed,
-        width,
+    columns = [
+        (motion.layer[rows], "%d"),
+        (motion.bead[rows], "%d"),
+        (motion.point[rows], "%d"),
+        (np.where(motion.deposit[rows], "deposit", "rapid"), "%s"),
+        *((column, _LENGTH) for column in motion.position[rows].T),
+        *((column, _DIRECTION) for column in motion.build[rows].T),
+        *((column, _DIRECTION) for column in motion.tool[rows].T),
+        (motion.speed[rows], _LENGTH),
+        (motion.width[rows], _LENGTH),
+        *((column, _ANGLE) for column in angles.T),
+        *([(motion.wire[rows], _LENGTH)] if wire else []),
+        (_CLASS_NAMES[motion.bead_class[rows]], "%s"),
     ]
-    texts += _cells((*angles.T,), _ANGLES)
-    if wire:
-        texts += _cells((motion.wire[rows],), _LENGTHS)
-    texts.append(_CLASSES[motion.bead_class[rows]].T)  # of none the last one
-    ends = [*[b","] * (len(texts) - 1), b"\n"]
-    return digits.joined(
-        [column for pair in zip(texts, ends, strict=True) for column in pair],
-        len(motion.deposit[rows]),
-    )
+    template = ",".join(form for _, form in columns) + "\n"
+    texts = [template % row for row in zip(*(_values(*column) for column in columns), strict=True)]
+    return "".join(texts).replace("nan", "")  # cells of unknown values are empty
 
 
-def _cells(columns: Sequence[Array | Index], decimals: int) -> list[digits.Characters]:
-    """Characters (w, n) of columns (n,) of numbers with `decimals` decimals, none for NaN. No
-    -0.000000.
-    """
-    if not columns:
-        return []
-    values = np.concatenate(columns)
-    is_known = np.isfinite(values)
-    text = digits.plain(digits.whole(np.where(is_known, values, 0.0), decimals), decimals)
-    text[:, ~is_known] = 0
-    return [*text.reshape(len(text), len(columns), -1).transpose(1, 0, 2)]
+def _values(column: NDArray[Any], form: str) -> list[Any]:
+    """Values to print, rounded as they are printed so that none is -0.000000; NaN where unknown."""
+    if form not in ("%d", "%s"):
+        column = np.round(np.where(np.isfinite(column), column, np.nan), int(form[2:-1])) + 0.0
+    values: list[Any] = column.tolist()
+    return values

@@ -14,7 +14,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...core import digits
 from ...core.types import Array
 
 END_OF_LINE = "\r\n"
@@ -58,7 +57,6 @@ _JOINT_RECORD = (
     "\tJ1=%10.3f deg,\tJ2=%10.3f deg,\tJ3=%10.3f deg,\r\n"
     "\tJ4=%10.3f deg,\tJ5=%10.3f deg,\tJ6=%10.3f deg\r\n};\r\n"
 )
-_FIELD = re.compile(r"%d|%s|%10\.3f")
 _POSE_RECORD = (
     "P[%d]{\r\n   GP1:\r\n\t<frame>\t\tCONFIG : '%s',\r\n"
     "\tX =%10.3f  mm,\tY =%10.3f  mm,\tZ =%10.3f  mm,\r\n"
@@ -100,8 +98,7 @@ def wait(seconds: float) -> list[str]:
     hundredths = max(round(seconds * 100.0), int(seconds > 0.0))
     while hundredths > 0:
         step = min(hundredths, round(_LONGEST_WAIT * 100.0))
-        digits_text = digits.joined([digits.right_aligned(np.array([step / 100.0]), 2, 7)], 1)
-        lines.append(f"  WAIT{digits_text}(sec) ;")
+        lines.append(f"  WAIT{right_aligned(step / 100.0, 2, 7)}(sec) ;")
         hundredths -= step
     return lines
 
@@ -147,13 +144,21 @@ def _records(
     template: str, user_frame: int, tool_frame: int, words: Sequence[Sequence[str]], values: Array
 ) -> str:
     """Positions 1.. by their template: its fields are the number, columns (n,) of words, and values (n, k)."""
-    n, count = values.shape
     record = template.replace("<frame>", f"UF : {user_frame}, UT : {tool_frame},")
-    # .250 without its zero in the same width, but exact zero as 0.000
-    value_digits = digits.right_aligned(values.T.ravel(), 3, 10).reshape(-1, count, n)
-    columns = [np.array(column, dtype="S").view(np.uint8).reshape(n, -1).T for column in words]
-    texts = [digits.plain(np.arange(1, n + 1), 0), *columns, *value_digits.transpose(1, 0, 2)]
-    fixed = [text.encode("ascii") for text in _FIELD.split(record)]
-    return digits.joined(
-        [text for pair in zip(fixed, texts, strict=False) for text in pair] + fixed[-1:], n
+    record = record.replace("%10.3f", "%s")
+    texts = [[right_aligned(value, 3, 10) for value in row] for row in values.tolist()]
+    return "".join(
+        record % (number, *row_words, *row)
+        for number, (row, *row_words) in enumerate(zip(texts, *words, strict=True), 1)
     )
+
+
+def right_aligned(value: float, decimals: int, width: int) -> str:
+    """A number as the controller lists it, in a field of `width` or more characters.
+
+    No 0 before the point, except for 0 itself: .250, -.250, 0.000. -0.0 keeps its sign: -.000.
+    """
+    text = f"{value:.{decimals}f}"
+    if float(text) != 0.0 or text.startswith("-"):
+        text = re.sub(r"^(-?)0\.", r"\1.", text)
+    return text.rjust(width)

@@ -15,7 +15,6 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from ...core import digits
 from ...core.controller import Controller
 from ...core.issues import InputError, Text, Word
 from ...core.orientation import FIXED_XYZ, Pendant
@@ -84,7 +83,7 @@ def as_written(program: Program) -> list[Ahead]:
 
 def _ahead(seconds: float) -> str:
     """How long before, to 0.01 s, as wide as controllers write it: TB    .05sec."""
-    return f"TB{digits.joined([digits.right_aligned(np.array([round(seconds, DECIMALS)]), DECIMALS, 7)], 1)}sec"
+    return f"TB{text.right_aligned(round(seconds, DECIMALS), DECIMALS, 7)}sec"
 
 
 __all__ = ["read", "write"]
