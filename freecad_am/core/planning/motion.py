@@ -25,7 +25,7 @@ from .rapids.retracts import Leg
 from .rapids.ways import RapidWays, Way, findings
 
 RAPID_SHARE = 0.8  # of an axis's largest speed that a rapid move may ask for
-OF_ALL = ("layer", "bead", "bead_class")  # what is the same for all rows of a part
+OF_ALL = ("layer", "bead", "bead_class")  # columns that are constant for all rows of a part
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,17 +57,18 @@ def assemble(
     layer_height: float = 0.0,
     cylinders: Cylinders = (),
 ) -> tuple[Motion, tuple[Issue, ...]]:
-    """The motion of a joint path with its rapids, and what is wrong with the rapids.
+    """Return the motion of a joint path with its rapids, and the issues of the rapids.
 
-    Between two beads the tool is retracted along its axis by `between_layers.lift`, goes to the same height above the next
-    start and down onto it; an endless axis that turns far on the way does so in several moves. Where the machine cannot go
-    that way, by limits, reach or condition, another one is taken (`retracts`). Where the nozzle would meet the deposit, the
-    platform or one of the bodies (in part coordinates) on its way it is retracted further, as far as it takes, up to beyond
-    the sphere about all of these, then in other directions. Where nothing helps, that is an issue.
+    Between two beads the tool retracts along its axis by `between_layers.lift`, moves to the same
+    height above the next start and approaches along the axis. A continuous axis that turns far on
+    the way does so in several moves. If limits, reach or condition prevent this path, another one
+    is taken (`retracts`). If the nozzle would hit the deposit, the platform or one of the bodies
+    (in part coordinates) on its way, it retracts further, up to beyond the sphere about all
+    obstacles, then in other directions. If nothing helps, an issue says so.
 
-    parameters: those the joint path was planned with, for the least condition; the usual ones where left out. layer_height:
-    mm, how high beads are that do not tell it. cylinders: of each link of the robot, kept clear as the nozzle is where
-    `cell.arm_clearance` asks for it.
+    parameters: those of the joint plan, for the least condition; the defaults if omitted.
+    layer_height: mm, for beads without a height of their own. cylinders: of each link of the robot,
+    kept clear like the nozzle if `cell.arm_clearance` asks for it.
     """
     rapids = RapidWays(
         joint_path,

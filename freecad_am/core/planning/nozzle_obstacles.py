@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Whether a nozzle that moves meets what stands in the cell, `cell.obstacles`, or the links of positioner and track: while
-it deposits, between points too, and on rapids where the part moves in the world. Where it stands still rapids see obstacles
-among all that stands about the part."""
+"""Detects contact of a moving nozzle with the obstacles of the cell, `cell.obstacles`, or with
+links of positioner and track.
+
+The check covers deposit moves, between points too, and rapids if the part moves in the world. For a
+fixed nozzle, rapids treat obstacles like everything else around the part.
+"""
 
 from __future__ import annotations
 
@@ -16,18 +19,21 @@ from ..types import Array, Mask
 from .rapids.clearance import evenly
 
 ON_BEADS = "CLEARANCE"
-# between two looks: of the joint that moves most, rad and mm, and of the way of the nozzle's ends in the world, mm
+# maximum steps between two checks: of the joint that moves most, rad and mm, and of the nozzle's
+# ends in the world, mm
 STEP, SLIDE, WAY = float(np.radians(2.0)), 5.0, 1.0
 PIECE = 4096  # moves, or looks, that are done together
 
 
 def in_the_way(cell: Cell) -> tuple[str, ...]:
-    """What is looked at, by the names that messages have: obstacles, then the links beside the robot."""
+    """Return the names of the checked bodies as messages show them: obstacles, then links of
+    external axes.
+    """
     return (*(body.name for body in cell.obstacles), *(link.name for link in cell.external_links))
 
 
 def findings(motion: Motion, cell: Cell) -> list[Issue]:
-    """An error for each of these that the nozzle meets while it deposits, at the first bead where it does."""
+    """Report each body that the nozzle touches while it deposits, at the first bead with contact."""
     rows = 1 + np.flatnonzero(motion.deposit[1:])
     met_there, issues = find_contacts(cell, motion.joints[rows - 1], motion.joints[rows]), []
     for number, (name, hits) in enumerate(zip(in_the_way(cell), met_there, strict=True)):
@@ -56,8 +62,10 @@ def findings(motion: Motion, cell: Cell) -> list[Issue]:
 
 
 def find_contacts(cell: Cell, start: Array, end: Array) -> Mask:
-    """(k, n) which of what is `in_the_way` a nozzle meets on n moves straight in the joints (n, axes); none where these are
-    NaN."""
+    """Return the mask (k, n) of the `in_the_way` bodies that a nozzle touches on n moves.
+
+    The moves are straight in the joints (n, axes); moves with NaN joints have no contact.
+    """
     hits = np.zeros((len(in_the_way(cell)), len(start)), dtype=bool)
     if cell.torch_stands or not len(hits):
         return hits

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Other cells that a job may be done in: another branch, another place of the part, external axes, the likeliest
-first; each is told as keys of a job file."""
+"""Other cells for a job, the likeliest first: another branch, another part position, external axes.
+
+Each change is given as keys of a job file.
+"""
 
 from __future__ import annotations
 
@@ -33,11 +35,11 @@ from .joint_path import JointPath
 from .motion import assemble
 from .plan import Progress, best_branches, plan_joints
 
-LAYERS = 3  # of a job, planned anew with each change
+LAYERS = 3  # layers of a job that are planned with each change
 POINTS = 12_000  # planned so in all
 
 
-# the findings about a joint path, maybe of some layers alone, in a cell, with all layers of its toolpath there
+# returns the issues of a joint path in a cell; the path may cover only some layers of the toolpath
 Look = Callable[[JointPath, cells.Cell, Toolpath], Sequence[Issue]]
 
 
@@ -50,10 +52,13 @@ class Fixed(NamedTuple):
 
 @dataclass(frozen=True)
 class Tried:
-    """A job to plan: that which is infeasible, or it with a change, told as keys of a job file. fixed: the toolpath with the
-    build direction of the part's axis; None where it has it, or cannot. own_speed: of several features, whether each has a
-    travel speed of its own. external_links: links of its positioner and track as they were read. look: what finds the collisions of
-    arm and platform; None where nobody looks."""
+    """A job to plan: the infeasible one, or this job with a change as keys of a job file.
+
+    fixed: the toolpath with the part's axis as build direction; None if it has that direction
+    already or cannot. own_speed: for several features, whether each has a travel speed of its own.
+    external_links: link geometry of its positioner and track as loaded. look: finds the collisions
+    of arm and platform; None to skip this check.
+    """
 
     toolpath: Callable[[], Toolpath]
     settings: CellParameters
@@ -70,7 +75,7 @@ class Tried:
     look: Look | None = None
 
     def cell(self, toolpath: Toolpath) -> cells.Cell:
-        """The cell of a toolpath of it."""
+        """Return the cell for a toolpath of this job."""
         found = cells.resolve(self.settings, toolpath.frame, toolpath.family, self.folders)
         adjacent = external_links(found.external, known_links=self.external_links)
         return dataclasses.replace(
@@ -78,7 +83,7 @@ class Tried:
         )
 
     def issues(self, toolpath: Toolpath, whole: bool, progress: Progress) -> tuple[Issue, ...]:
-        """What is wrong with it; rapids only of a whole one."""
+        """Return the issues of the job; rapids are checked only for a whole toolpath."""
         cell = self.cell(toolpath)
         joints = dataclasses.replace(self.joints, compare=())
         path = plan_joints(toolpath, cell, joints, progress, self.cylinders)
@@ -95,7 +100,7 @@ class Tried:
 
 
 def some_of(toolpath: Toolpath, failed: Sequence[int]) -> Toolpath:
-    """The toolpath with LAYERS of its layers at most, of those that failed, or of all."""
+    """Return the toolpath with at most LAYERS layers, chosen among the failed layers, or among all."""
     known = [k for k in failed if k < len(toolpath.layers)] or list(range(len(toolpath.layers)))
     chosen = sorted({known[round(at)] for at in np.linspace(0, len(known) - 1, LAYERS)})
     return dataclasses.replace(toolpath, layers=tuple(toolpath.layers[k] for k in chosen))
@@ -119,8 +124,10 @@ def change_cell(job: Tried, remedy: str, **values: object) -> Tried:
 
 
 def clear_of_arm(job: Tried, codes: set[str]) -> Iterator[Tried]:
-    """What may clear arm and platform of part and substrate: to hold these by a clamp that reaches below all of them, to plan
-    with a clearance of the arm, and both."""
+    """Yield changes that may clear arm and platform from part and substrate.
+
+    These are a clamp that reaches below part and substrate, a plan with arm clearance, and both.
+    """
     if codes.isdisjoint(COLLISIONS):
         return
     clamped = held_by_clamp(job)
@@ -139,8 +146,11 @@ def clear_of_arm(job: Tried, codes: set[str]) -> Iterator[Tried]:
 
 
 def held_by_clamp(job: Tried) -> Tried | None:
-    """The job with what reaches below the platform held above it, in the middle, by what is no plate: as pipes are clamped.
-    None where nothing reaches below it."""
+    """Return the job with everything below the platform raised above it, centred, and without a
+    platform plate.
+
+    This is how pipes are clamped. None if nothing extends below the platform.
+    """
     toolpath, settings = job.toolpath(), job.settings
     cell = job.cell(toolpath)
     if cell.offset is not None:
@@ -185,9 +195,11 @@ def branches(job: Tried) -> Iterator[Tried]:
 
 
 def points(job: Tried) -> Iterator[Tried]:
-    """Where the deposition point, or the fixed platform, may well be: where the machine has most room, then beside where it
-    is."""
-    if externals(job.settings.external):  # the platform stands on the positioner
+    """Yield other positions of the deposition point or the fixed platform.
+
+    The first is the one where the machine has most room; positions near the present one follow.
+    """
+    if externals(job.settings.external):  # the platform is on the positioner
         return
     best = proposed_cell.proposed(job.settings, job.folders)
     if best.deposition_point != job.settings.deposition_point:

@@ -45,7 +45,7 @@ METHODS = {
 }
 ALL_METHODS = METHODS | {
     closed_form.METHOD: closed_form.plan
-}  # and the one where there is nothing to choose
+}  # and the method for machines without a choice
 # what there is to choose where a robot is free to turn about the tool
 OF_ROBOTS = (
     "method",
@@ -66,7 +66,7 @@ OF_ROBOTS = (
     "external_axes",
 )
 BRANCHES = 8
-# with the branch left open: beads looked at in each, and branches planned until one serves
+# for branch auto: beads sampled in each branch, and branches planned until one is feasible
 SCREENED, MAX_BRANCHES_PLANNED = 12, 3
 REVOLUTION = "revolution"
 
@@ -82,11 +82,12 @@ def plan_joints(
     progress: Progress = _silent,
     cylinders: Cylinders = (),
 ) -> JointPath:
-    """The joint path of a toolpath.
+    """Plan the joint path of a toolpath.
 
-    Findings (unreachable, over a limit, singular, too fast) are issues of the result with layer, bead and point; the
-    path is there all the same, to be looked at. progress(fraction, text) may raise to cancel. cylinders: of each link, kept
-    clear where `cell.arm_clearance` asks for it. Raises InputError NOT_FOR_SETUP for what only rotary axes can do.
+    Problems (unreachable, over a limit, singular, too fast) are issues of the result with layer,
+    bead and point; the path exists even so, for display. progress(fraction, text) may raise to
+    cancel. cylinders: of each link, kept clear if `cell.arm_clearance` asks for it. Raises
+    InputError NOT_FOR_SETUP for settings that need a five-axis machine.
     """
     lock, (parameters, not_used) = lock_of(cell, parameters, toolpath), _used(cell, parameters)
     features = toolpath.parts
@@ -141,7 +142,10 @@ def _choices(task: Task) -> tuple[str, str, tuple[str, ...]]:
 
 
 def _branch_wanted(cell: Cell, parameters: JointParameters) -> int | None:
-    """The branch to plan in, None where all are to be searched. Where nothing is free it is chosen bead by bead."""
+    """Return the branch to plan in, None to search all of them.
+
+    Machines without a free coordinate choose it bead by bead.
+    """
     if not cell.machine.free:
         return 0
     return (
@@ -166,7 +170,7 @@ def _in_branches(
     failed = _failed(paths, issues, bead_ids)
     for branch in branches[1:] if has_errors(issues) else ():
         branch_task = dataclasses.replace(base_task, branch=branch)
-        # most branches fail at the same beads: these alone are soon planned
+        # most branches fail at the same beads, so plan only these first: it is fast
         failed_beads = [beads[k] for k in failed], [bead_ids[k] for k in failed]
         if failed and has_errors(_planned(branch_task, *failed_beads, progress)[1]):
             continue
@@ -215,7 +219,9 @@ def _in_branches(
 def _failed(
     paths: Sequence[BeadPath], issues: Sequence[Issue], bead_ids: Sequence[tuple[int, int]]
 ) -> list[int]:
-    """Which beads have errors, SCREENED of them at most; where some were divided, those of their layers."""
+    """Return the beads with errors, at most SCREENED; if some beads were divided, all beads in
+    their layers.
+    """
     wrong = {(issue.layer, issue.bead) for issue in issues if issue.level == ERROR}
     if len(paths) != len(set(bead_ids)):
         wrong = {bead_id for bead_id in bead_ids if bead_id[0] in {layer for layer, _ in wrong}}
@@ -233,7 +239,9 @@ def _failed(
 
 
 def _used(cell: Cell, parameters: JointParameters) -> tuple[JointParameters, list[Issue]]:
-    """The parameters without what was chosen about what is not free, the rotation about the tool, and a note on that."""
+    """Return the parameters with defaults for settings of a tool rotation that the machine lacks,
+    and a note.
+    """
     if cell.machine.free:
         return parameters, []
     usual = JointParameters()
@@ -269,9 +277,10 @@ def best_branches(
     arm_clearance: ArmKept | None = None,
     bead_ids: Sequence[Place] = (),
 ) -> list[int]:
-    """The branches worth planning, the best first: those that serve as many beads as any, by objective, then margin.
+    """Return the branches worth planning, the best first.
 
-    A few beads from the first to the last are looked at; what they promise, the planning has to keep.
+    These serve the largest number of beads; the order is by objective, then by margin. The ranking
+    samples a few beads from the first to the last, so the plan may still fail.
     """
     ranks = _ranked(
         beads, bead_ids, Task(cell, 0, parameters, joined, arm_clearance), range(BRANCHES)
@@ -282,8 +291,12 @@ def best_branches(
 def _ranked(
     beads: Sequence[Bead], bead_ids: Sequence[Place], base_task: Task, among: Sequence[int]
 ) -> list[tuple[int, int, float, float, int]]:
-    """Of each branch what ranks it, the best first: beads looked at that it serves (less than 0), those that it would serve
-    if no link came too near (less than 0), objective, margin (less than 0), and itself."""
+    """Return the ranking keys of each branch, the best first.
+
+    The keys are the number of sampled beads that it serves (negative), the number that it would
+    serve without the link clearance (negative), the objective, the margin (negative), and the
+    branch.
+    """
     sampled = np.unique(np.round(np.linspace(0, len(beads) - 1, SCREENED)).astype(int))
     points = gather([beads[k] for k in sampled], base_task.cell, search.POINTS_PER_BEAD)
     ranks = []
@@ -305,7 +318,7 @@ def _ranked(
         )
         feasible = margin >= 0.0
         worth = float(objective[feasible].sum()) if feasible.any() else np.inf
-        # rounded, so that of branches that are mirror images the same comes first everywhere
+        # rounded, so that every machine puts the same one of two mirrored branches first
         ranks.append(
             (
                 -int(feasible.sum()),
@@ -357,7 +370,9 @@ def _optimise_external(
 
 
 def _finished(task: Task, paths: Sequence[BeadPath]) -> tuple[list[BeadPath], list[Issue]]:
-    """The paths with the points that straight motion asks for, turns counted on, and what is wrong with them."""
+    """Return the paths with the points that straight motion needs and unwrapped turns, and their
+    issues.
+    """
     straight = closing.close_gaps(task, _as_run(task, paths))
     paths, notes = turns.unwrapped(task, [path for path, _ in straight])
     paths, missed = as_held(task.cell, paths, task.lock, task.parameters.max_residual)
@@ -381,7 +396,9 @@ def _as_run(task: Task, paths: Sequence[BeadPath]) -> list[tuple[BeadPath, list[
     """The paths longer where their beads go back or run on, with the points that straight motion asks for."""
     if (
         not task.cell.machine.free
-    ):  # whose beads are looked at as they are run: axes have room for all of it, or for none
+        # these beads are checked with overlap and retreat: the axes have room for the whole run or for
+        # none
+    ):
         return [(path, []) for path in paths]
     longer = [
         extend_past_seam(task, go_back(task, path, task.retreat), task.overlap) for path in paths
@@ -392,7 +409,7 @@ def _as_run(task: Task, paths: Sequence[BeadPath]) -> list[tuple[BeadPath, list[
 def _slowed(
     cell: Cell, paths: Sequence[BeadPath], features: Parts
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """The paths slowed where axes cannot follow and that is usual, and what is wrong with the rest."""
+    """Slow the paths where axes cannot follow and slowing is usual, and report the rest."""
     slowed, notes = list(paths), []
     for feature, layers in features:
         feature_layers = set(layers.tolist())

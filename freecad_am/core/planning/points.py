@@ -21,10 +21,11 @@ UNPOSED = PoseFrames(np.zeros((0, 4, 4)), 1.0, np.zeros((0, 4, 4)))
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """T points of B beads. position, tool: (T, 3) part frame. parameter: (T,). first: (B,) index of each bead's
-    first point. bead: (T,) the bead a point belongs to. closed: (B,) bool, whether the bead ends where it starts.
-    external: (T, k) values of the external axes, None where there are none. sliding: (axes,) those that slide, None
-    where none does."""
+    """T points of B beads. position, tool: (T, 3) part frame. parameter: (T,). first: (B,) index of each
+    bead's
+       first point. bead: (T,) the bead a point belongs to. closed: (B,) bool, whether the bead ends
+       where it starts. external: (T, k) values of the external axes, None without external axes.
+       sliding: (axes,) prismatic axes, None without any."""
 
     position: Array
     tool: Array
@@ -72,7 +73,7 @@ class Points:
         )
 
     def only(self, bead: int) -> tuple[Points, slice]:
-        """The points of one bead alone, and where they stand among all."""
+        """Return the points of one bead and their rows among all points."""
         ends = np.append(self.first, len(self))
         rows = slice(int(ends[bead]), int(ends[bead + 1]))
         none = np.zeros(rows.stop - rows.start, dtype=np.int64)
@@ -118,8 +119,10 @@ class Points:
 def gather(
     beads: Sequence[Bead], cell: Cell, max_points: int | None = None, posed: bool = True
 ) -> Points:
-    """The points of the beads, thinned to `max_points` per bead and turn about the axis, both ends kept; with frames of none where
-    they are not posed."""
+    """Return the points of the beads, thinned to `max_points` per bead and turn about the axis.
+
+    Both ends of a bead stay. Not `posed`: the frames are left empty.
+    """
     rows = [thinned(bead, max_points) for bead in beads]
     counts = np.array([len(index) for index in rows])
     position = np.concatenate([bead.points[index] for bead, index in zip(beads, rows)])
@@ -143,12 +146,14 @@ def gather(
 
 
 def in_pieces(count: int) -> list[slice]:
-    """So many points in pieces that are worked on one after the other."""
+    """Return slices that divide `count` points into pieces for processing in sequence."""
     return [slice(start, start + PIECE) for start in range(0, count, PIECE)]
 
 
 def _frames_of(cell: Cell, position: Array, tool: Array, external: Array | None) -> PoseFrames:
-    """`cell.pose_frames`, piece by piece: what they are made of is many times as large as they are."""
+    """Return `cell.pose_frames`, computed in pieces: its intermediate arrays are many times as
+    large.
+    """
     frame_groups = [
         cell.pose_frames(position[rows], tool[rows], None if external is None else external[rows])
         for rows in in_pieces(len(position))
@@ -167,7 +172,9 @@ def _frames_of(cell: Cell, position: Array, tool: Array, external: Array | None)
 
 
 def thinned(bead: Bead, max_points: int | None) -> Integers:
-    """Which points of a bead are looked at, `max_points` per turn about the axis: all with None."""
+    """Return the sampled points of a bead, `max_points` per turn about the axis; all points for
+    None.
+    """
     if max_points is None:
         return np.arange(len(bead))
     turns = abs(bead.parameter[-1] - bead.parameter[0]) / TURN
@@ -179,7 +186,10 @@ def thinned(bead: Bead, max_points: int | None) -> Integers:
 
 @lru_cache(maxsize=64)
 def _evenly(count: int, max_points: int) -> Integers:
-    """So many of a count of points, both ends among them: beads have the same counts again and again."""
+    """Return evenly spaced rows, both ends included.
+
+    Cached, as beads often have equal counts.
+    """
     rows: Integers = np.unique(np.round(np.linspace(0, count - 1, max_points)).astype(np.int64))
     rows.flags.writeable = False
     return rows
@@ -218,8 +228,10 @@ def unwrapped(joints: Array, points: Points) -> Array:
 
 
 def unwrapped_by_turns(joints: Array, points: Points) -> Array:
-    """`unwrapped` but for the last bits, of joints that are all within reach: by whole turns, of the axes alone that take
-    any, in a third of its time."""
+    """Return `unwrapped` joints, equal up to rounding, for joints that are all within reach.
+
+    It only handles whole turns of the axes that take any, which needs a third of the time.
+    """
     step = np.diff(joints, axis=-2)
     leading_axes = tuple(range(step.ndim - 1))
     takes_turns = (

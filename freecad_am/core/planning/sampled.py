@@ -23,8 +23,11 @@ Place = tuple[int, int]
 
 @dataclass(frozen=True)
 class Sampled:
-    """Some beads and points of a toolpath. beads, points: of how many one is among them, 1 where all are. places: (layer,
-    bead) that each of the beads has in the whole, in the order of deposit."""
+    """A sample of the beads and points of a toolpath.
+
+    beads, points: one in this number is kept, 1 for all. places: (layer, bead) of each sampled bead
+    in the full toolpath, in print order.
+    """
 
     toolpath: Toolpath
     beads: int
@@ -54,7 +57,7 @@ class Sampled:
 
 
 def sample_toolpath(toolpath: Toolpath, max_points: int, together: int = 1) -> Sampled:
-    """Sample about `max_points` points of a toolpath, all of it if it has no more.
+    """Sample about `max_points` points of a toolpath; a smaller toolpath is kept complete.
 
     The first and last bead are kept, and the ends of each bead; layers keep their numbers, beads do
     not. The chord error grows with the point spacing. A few beads with very many turns keep more

@@ -24,11 +24,11 @@ from .remedies import LONGEST_SEARCH
 
 def suited(job: Tried, progress: Progress, failed_layers: Collection[int] = ()) -> CellParameters:
     """Return the parameters of the first cell in which some layers of a job can be done, the current ones
-    first; the current ones if none is found.
+    first; the current ones without such a cell.
 
-    The layers are the first, the middle and the last one, the one that leans most, and those that
-    failed in the plan of the complete job, by their numbers. progress may raise to cancel. Raises the
-    errors of reading the toolpath and resolving the cell.
+    The layers are the first, the middle and the last one, the one that leans most, and
+    `failed_layers`, which failed in the plan of the complete job. progress may raise to cancel.
+    Raises the errors of reading the toolpath and resolving the cell.
     """
     toolpath = job.toolpath()
     sample = _layers(toolpath, failed_layers)

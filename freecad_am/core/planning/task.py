@@ -47,7 +47,7 @@ class LimitRows:
 
     @cached_property
     def plain(self) -> bool:
-        """True when every row is one axis alone."""
+        """True if every row contains only one axis."""
         return bool((np.count_nonzero(self.matrix, axis=1) == 1).all())
 
     def offset(self, joints: Array) -> Array:
@@ -56,14 +56,18 @@ class LimitRows:
         return share
 
     def margin(self, joints: Array) -> Array:
-        """(...) the smallest margin of all rows, 1 in the middle and 0 at a limit; -inf where joints are NaN."""
+        """Return (...) the smallest margin over the rows, 1 in the middle and 0 at a limit; -inf
+        for NaN joints.
+        """
         worst: Array = reduce(
             np.maximum, map(np.abs, self._offsets(joints))
         )  # sooner than max(axis=-1)
         return np.where(np.isnan(worst), UNREACHABLE, 1.0 - worst)
 
     def _offsets(self, joints: Array) -> Iterator[Array]:
-        """(...) of each row in turn what `offset` tells: rows of one axis alone take nothing but that axis."""
+        """Yield the `offset` (...) of each row in turn; a row with only one axis reads only that
+        axis.
+        """
         if not self.plain:
             yield from np.moveaxis(self.offset(joints), -1, 0)
             return
@@ -93,7 +97,7 @@ def limit_rows(limits: Limits, reserve: float = 0.0) -> LimitRows:
 
 Parts = tuple[
     tuple[Toolpath, Index], ...
-]  # of a toolpath: that of each feature, and its layers in all of it
+]  # the toolpath of each feature, and its layers in the full toolpath
 
 # Eq. 17 divides by the stroke. An axis without end would weigh nothing and could spin as it likes, so it counts
 # with this stroke: large enough to leave the other axes still on a part of revolution (docs/decisions).
@@ -106,12 +110,13 @@ MIN_MARGIN = -1e-6
 
 @dataclass(frozen=True)
 class Task:
-    """A cell with one branch and the parameters of the planning.
+    """A cell with one branch and the planning parameters.
 
-    joined: whether the polynomial of a closed bead must come back to its value but for whole turns. On parts of revolution
-    it need not: there a limited axis turns back between layers. kept: what keeps the links clear, where that is asked for.
-    lock: of two turning axes the one that stands. chord_error, overlap, retreat: mm, those of the toolpath; parts: the
-    toolpath of each feature, and its layers, which say how fast beads are laid and how far they may lean.
+    joined: whether the polynomial of a closed bead must return to its start value apart from whole
+    turns. Parts of revolution do not need this: there a limited axis rewinds between layers. kept:
+    the link clearance check, if requested. lock: the locked one of two rotary axes. chord_error,
+    overlap, retreat: mm, from the toolpath. parts: the toolpath of each feature, and its layers,
+    which give travel speeds and maximum tilts.
     """
 
     cell: Cell
@@ -142,7 +147,7 @@ class Task:
 
     @cached_property
     def unturned(self) -> Mask:
-        """(axes,) bool, axes whose whole turns count for nothing: those without limits, and those that slide."""
+        """(axes,) bool, axes for which whole turns have no meaning: continuous and prismatic axes."""
         return np.asarray(self.continuous | self.cell.machine.chain.sliding, dtype=np.bool_)
 
     def rows_of_axis(self, axis: int) -> tuple[float, float]:
@@ -286,8 +291,10 @@ class Task:
         return result
 
     def _tips_of(self, poses: PoseFrames, phi: Array) -> Array:
-        """(N, 4, 4) flange poses that tell where the deposition point is and what phi turns about: where the torch stands
-        that is known, and any will do."""
+        """Return flange poses (N, 4, 4) that give the deposition point and the axis of phi.
+
+        A fixed torch has a known deposition point, so any pose will do.
+        """
         return (
             np.broadcast_to(np.eye(4), (len(phi), 4, 4))
             if self.cell.torch_stands
@@ -321,7 +328,8 @@ class Task:
             value[rows] = jac.condition(
                 self._jacobian(flange[rows], joints[rows]), self.parameters.characteristic_length
             )
-        # the last bits depend on where in memory the arrays happen to lie: the same job gives the same bytes without them
+        # the last bits depend on the memory alignment of the arrays; without them the same job
+        # gives the same bytes
         return np.round(value, 12)
 
     def thresholds(self, points: Points) -> Array:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a program tells the welder or extruder about a bead: its schedule, and when the deposit is on."""
+"""The blocks of a bead in a program: its schedule, and the switches of the deposit."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from ...program import Block, Call, DepositOff, DepositOn, Moves, Schedule, Weav
 from ...types import Array, Integers
 
 OUTPUT, ARC, CALL = "output", "arc", "call"
-# rad, or mm of what slides: a move that takes no axis farther than this takes no time that a switch could be ahead by
+# rad, or mm of prismatic axes: a move that takes every axis at most this far takes no time for a
+# switch in advance
 STILL = 2e-5
 
 
@@ -26,9 +27,13 @@ def deposited(
     process: ProcessParameters,
     parameters: ProgramParameters,
 ) -> list[Block]:
-    """The blocks of a bead of the class `name` with runs of its moves and the schedule of each. InputError NO_SCHEDULE where
-    it has none and others have, or the arc instruction needs one; SCHEDULE for another one within the bead that is not told
-    by an output."""
+    """Return the blocks of a bead of the class `name`, for runs of its moves with the schedule of
+    each.
+
+    Raises InputError NO_SCHEDULE if a schedule is missing that other beads have or the arc
+    instruction needs. Raises SCHEDULE if the schedule changes within the bead by other means than
+    an output.
+    """
     bead_process, by = process.for_class(name), parameters.schedule.by
     moves, numbers = zip(*runs, strict=True)
     if None in numbers and (process.scheduled or by == ARC):
@@ -67,7 +72,7 @@ def deposited(
     blocks: list[Block] = [*schedule_before, on, *weave, moves[0]]
     for run, number in runs[
         1:
-    ]:  # posts may stop between runs, so that there are no more of them than schedules
+    ]:  # posts may stop between runs, so keep only as many runs as schedules
         blocks += [*([] if number is None or parameters.dry_run else [Schedule(number, True)]), run]
     off, still = (
         DepositOff(bead_process.lead_off, schedule, None if bead_process.lead_off else lead),
@@ -96,7 +101,9 @@ def split_by_schedule(
 
 
 def _ahead(schedule: int | None, parameters: ProgramParameters) -> list[Block]:
-    """What stands before a bead where its schedule is not a part of the arc instruction."""
+    """Return the blocks before a bead that set its schedule, unless the arc instruction contains
+    it.
+    """
     if schedule is None or parameters.dry_run or parameters.schedule.by == ARC:
         return []
     if parameters.schedule.by == CALL:

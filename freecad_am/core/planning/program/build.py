@@ -138,11 +138,11 @@ def build(
     waits: Sequence[float] = (),
     returns: Collection[tuple[int, int]] = (),
 ) -> Program:
-    """The program of a motion, for a controller that takes it.
+    """Build the program of a motion for a controller.
 
-    returns: beads (layer, index) that return to a place, of `returning`; the torch waits above them until that has cooled.
-    waits: s that the machine stands before each layer (`Layer.wait`), none when left out; `between_layers.wait` counts
-    towards them. Before the first layer that is run there is nothing to wait for.
+    returns: beads (layer, index) that return to an earlier place, see `returning`; the torch waits
+    above them until the deposit has cooled. waits: pauses before each layer (`Layer.wait`), s, none
+    if omitted; `between_layers.wait` counts towards them. The first executed layer has no pause.
 
     Raises InputError: START_AT for a start past the last bead, NO_SCHEDULE, SCHEDULE.
     """
@@ -218,15 +218,20 @@ def external_kinds(cell: Cell) -> tuple[str, ...]:
 
 
 def _unit(cell: Cell, parameters: ProgramParameters, controller: Controller) -> str:
-    """What the controller calls the mechanism beside the robot. A track has no name unless one is given: it is always on."""
+    """Return the controller's name of the mechanism with the external axes.
+
+    A track has no name unless one is given: it is always on.
+    """
     if cell.external is None:
         return ""
     return parameters.axes.unit or (controller.positioner if cell.external.turning else "")
 
 
 def returning(toolpath: Toolpath, paths: Sequence[BeadPath]) -> frozenset[tuple[int, int]]:
-    """The beads (layer, index) of a joint path that are the first ones where something was deposited before: of the layers
-    of a solid on a hub, or of whole layers."""
+    """Return the first beads (layer, index) of a joint path where something was printed before.
+
+    These are beads on layers of a rotary slicing solid, or the first beads of whole layers.
+    """
     if any(path.bead.returns for path in paths):
         return frozenset((path.layer, path.index) for path in paths if path.bead.returns)
     if any(bead.kind for _, _, bead in toolpath):
@@ -350,7 +355,9 @@ class _Blocks:
         return [*leading_moves, replace(self._moves(rows[-1:], RAPID), interpolation=LINEAR_MOVE)]
 
     def _moves(self, rows: Integers, kind: str, arriving: bool = False) -> Moves:
-        """A run of rows; arriving: the first one comes from where the machine happens to stand."""
+        """Return the moves of the rows; `arriving`: the first one starts from an unknown machine
+        position.
+        """
         motion, cell, parameters = self.motion, self.cell, self.parameters
         duration = motion.duration[rows].copy()
         if arriving:

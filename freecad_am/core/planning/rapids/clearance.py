@@ -48,7 +48,9 @@ class Moves(NamedTuple):
 
 
 class Looks(NamedTuple):
-    """Where the nozzle is looked at: tip and tool axis (l, 3) in part coordinates, the move (l,) and the share of it."""
+    """Checked nozzle positions: tip and tool axis (l, 3) in part coordinates, the move (l,) and the
+    share of it.
+    """
 
     tip: Array
     axis: Array
@@ -64,8 +66,10 @@ Touching = Callable[[Nozzle, Looks], Mask]
 
 
 class RapidObstacles:
-    """What is in the way of rapids: beads of their width and height, with the row from which they are there, platform and
-    bodies."""
+    """The obstacles of rapids: beads of their width and height, platform and bodies.
+
+    A bead counts from the row on at which it exists.
+    """
 
     def __init__(self, cell: Cell, deposit: Beads, bodies: Sequence[Body]) -> None:
         self.cell = cell
@@ -219,8 +223,8 @@ def _evenly(cell: Cell, moves: Moves, count: Index) -> Looks:
 
 
 def evenly(count: Index) -> tuple[Index, Array]:
-    """Return the move (l,) and the share of it for evenly spread positions, one more along each move than
-    the count (k,), both ends included.
+    """Return the move (l,) and the share of it for evenly spaced positions: on each move one more than the
+    count (k,), both ends included.
     """
     move = np.repeat(np.arange(len(count)), count + 1)
     step = np.arange(len(move)) - np.repeat(np.cumsum(count + 1) - count - 1, count + 1)

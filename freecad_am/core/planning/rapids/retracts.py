@@ -45,8 +45,12 @@ _LEANS = tuple(range(1, 1 + SIDES * (len(LEANS_RAD) - 1)))
 
 
 class Choice(NamedTuple):
-    """A way off a bead: its height as a share of that asked for, the index of its direction, the turn about the tool axis on
-    the way, rad, and the index of what the tool axis leans by (SIDES to each angle, after none)."""
+    """A retract from a bead, relative to the requested one.
+
+    share: of the requested height. direction: index of the direction. turn: rad about the tool axis
+    on the way. lean: index of the added tilt of the tool axis: none, then SIDES tilts for each
+    angle.
+    """
 
     share: float = 1.0
     direction: int = 0
@@ -94,8 +98,11 @@ def groups(direction: int, thorough: bool) -> tuple[tuple[Choice, ...], ...]:
 
 
 class Ways(NamedTuple):
-    """Ways off ends of beads: the numbers (k,) of the ends, heights (k,) mm, directions (k, 3), turns (k,) rad, and what is
-    added to the tool axes at the far end (k, 3)."""
+    """Retracts from ends of beads: end numbers (k,), heights (k,) mm, directions (k, 3), turns (k,)
+    rad and tilts (k, 3).
+
+    A tilt is a vector that is added to the tool axis at the far end.
+    """
 
     end: Index
     height: Array
@@ -135,8 +142,10 @@ class Failure:
 
 @dataclass(frozen=True, eq=False)
 class Ends:
-    """The first (even) and last (odd) points of all beads, n = twice their number: rows of points, directions, rotations
-    (n,) rad and joints (n, axes)."""
+    """The first (even) and last (odd) points of all beads, n = twice the bead count.
+
+    Holds points, directions, rotations (n,) rad and joints (n, axes).
+    """
 
     point: Array
     tool: Array
@@ -157,13 +166,15 @@ class Ends:
         )
 
 
-# how far the tip may stray from the straight way, mm: a twentieth of what is usual beside a wall
+# maximum deviation of the tip from the straight path, mm: a twentieth of the usual distance to a
+# wall
 STRAY_MM = 0.5
-# the most moves that a way is cut into, and the largest turn about the tool axis in one of them, rad
+# maximum number of moves in a retract, and maximum turn about the tool axis in one move, rad
 MOST_MOVES = 64
 MOVE_TURN_RAD = math.radians(60.0)
 BETWEEN = np.array([0.25, 0.5, 0.75])
-# what a program's last digit may take away, rad: free beside the limits on the way asked for, all others keep RESERVE
+# rad; loss by a program's last digit: the requested retract keeps this distance to limits, all
+# others keep RESERVE
 LAST_DIGIT_RAD = math.radians(0.001)
 ROUNDING_RAD = 1e-9
 # a direction must lead away from the bead: least cosine of its angle to the tool axis
@@ -173,7 +184,7 @@ SAME_DIRECTION = 1e-6
 
 @dataclass(frozen=True)
 class Retracts:
-    """Finds ways off the ends of beads. branch: of the robot, None for a machine with five axes."""
+    """Finds retracts from the ends of beads. branch: of the robot, None for a five-axis machine."""
 
     cell: Cell
     ends: Ends
@@ -182,8 +193,12 @@ class Retracts:
 
     @cached_property
     def directions(self) -> Array:
-        """(10, n, 3) where ways may lead: along tool axis, build direction, platform's normal, halfway between two of them,
-        and from the tool axis to four sides; NaN where that leads back to the bead or is one of those before."""
+        """(10, n, 3) possible directions of retracts.
+
+        These are tool axis, build direction, platform normal, halfway between two of the former,
+        and from the tool axis to four sides; NaN for a direction that leads back to the bead or
+        repeats an earlier one.
+        """
         tool, build = self.ends.tool, self.ends.build
         normal = np.broadcast_to(self.cell.mount[:3, 2], tool.shape)
         sides = (tool + self._sides(2.0 * np.pi * k / 4) for k in range(4))
@@ -218,7 +233,7 @@ class Retracts:
 
     @cached_property
     def leaning(self) -> Array:
-        """(1 + leans, n, 3) what is added to the tool axes at the far end."""
+        """(1 + leans, n, 3) vectors added to the tool axes at the far end."""
         sides = [self._sides(2.0 * np.pi * k / SIDES) for k in range(SIDES)]
         return np.stack(
             [0.0 * sides[0], *(math.tan(angle) * side for angle in LEANS_RAD[1:] for side in sides)]
@@ -248,9 +263,11 @@ class Retracts:
         tolerance: float = STRAY_MM,
         thorough: bool = True,
     ) -> tuple[list[Leg | None], list[Failure | None]]:
-        """Return the legs off the ends `end_numbers` (k,) by the heights (k,) mm along a direction, or the
-        nearest alternatives; where there is none at all, None and the failure of the requested leg. Not
-        `thorough`: only by other rotations.
+        """Return the legs off the ends `end_numbers` (k,) by the heights (k,) mm along a direction.
+
+        A leg that is not possible is replaced by the nearest alternative; without any, it is None
+        and the failure of the requested leg is returned. Not `thorough`: the only alternatives are
+        other rotations.
         """
         legs: list[Leg | None] = [None] * len(end_numbers)
         failures: list[Failure | None] = [None] * len(end_numbers)
@@ -377,7 +394,7 @@ class Retracts:
         arm, robot_axes = self.cell.robot.arm, self.cell.robot.chain.axes
         assert arm is not None
         phi = self.ends.phi[candidates.end, None] + share * candidates.turn[:, None]
-        # external axes stand still on these ways
+        # external axes do not move on retracts
         external = np.repeat(joints[:, None], moves, axis=1)
         flange = self.cell.flange_poses(
             tip.reshape(-1, 3), tools, phi.ravel(), external.reshape(-1, shape[2])
@@ -411,8 +428,11 @@ class Retracts:
         return deviation
 
     def fits(self, joints: Array, reserved: Array) -> Mask:
-        """Whether all rows of the ways (k, m, axes) are reached, keep this much free beside every limit, and are not below
-        the least condition."""
+        """Return whether all rows of the retracts (k, m, axes) are reachable and keep reserve and
+        condition.
+
+        reserved: free distance to every limit, rad. The condition must not be below the least one.
+        """
         with np.errstate(invalid="ignore"):
             fits: Mask = (self.cell.limits.margin(joints) >= reserved - ROUNDING_RAD).all(
                 axis=(1, 2)

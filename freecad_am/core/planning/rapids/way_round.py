@@ -3,9 +3,9 @@
 
 Two trees of clear moves grow towards the same samples, one from each end, until a clear move joins
 them (RRT-Connect, after Kuffner and LaValle 2000); here they grow by many samples at once. The
-joined path is then shortened: of all clear moves between its points those with the least time are
-kept, and these points are pulled towards each other as far as the path stays clear. The samples
-are always the same, without randomness, so that the same job has the same rapids.
+joined path is then shortened: the clear moves between its points that take the least time are kept,
+and these points are pulled towards each other as far as the path stays clear. The samples are
+always the same, without randomness, so that the same job has the same rapids.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def attempts(
     points = np.vstack(
         [*(bead.points for bead in beads), platform, *(body.vertices for body in all_)]
     )
-    # from anywhere inside, a way of the diameter along any direction leads out of it
+    # from any inside point, a move by the diameter in any direction leads outside
     furthest = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
     base = retract or FIRST_RETRACT
     heights = [*([] if retract else [base]), *(factor * base for factor in RETRACT_FACTORS)]
@@ -100,7 +100,9 @@ class Ranges:
 
 
 class _Tree:
-    """Places (n, axes) that clear moves lead to from the first one, each from its parent (n,), in so many s (n,)."""
+    """A tree of joint positions (n, axes), each reached from its parent (n,) by a clear move, in a
+    total of `lasts` (n,) s.
+    """
 
     def __init__(self, root: Array) -> None:
         self.place, self.parent, self.lasts = root[None], np.array([-1]), np.zeros(1)
@@ -253,7 +255,11 @@ Legs = dict[int, Leg | None]
 
 
 class LedRound:
-    """Finds ways round. clear: whether nothing is met on moves. ways: the numbers of those that are led round."""
+    """Finds detours around obstacles.
+
+    The argument `clear` returns whether moves are free of contact. The attribute `ways` holds the
+    numbers of the rapids with a detour.
+    """
 
     def __init__(self, cell: Cell, retracts: Retracts, clear: Callable[[Moves], Mask]) -> None:
         self.cell, self.retracts, self.clear = cell, retracts, clear
@@ -302,8 +308,9 @@ class LedRound:
         attempts: Sequence[Attempt],
         deposited: int,
     ) -> tuple[Leg | None, Array] | None:
-        """Return a clear leg off the end of a bead, None where it needs none, and its far joints; None without
-        any.
+        """Return a clear leg off the end of a bead and its far joints; None without one.
+
+        The leg is None if the end needs none.
         """
         if tried_leg is None and self._clear(joints[None], joints[None], deposited)[0]:
             return None, joints
@@ -316,7 +323,7 @@ class LedRound:
     def _others(
         self, end: int, tried_leg: Leg | None, attempts: Sequence[Attempt]
     ) -> Iterator[Leg]:
-        """The leg tried before, and those of all attempts."""
+        """Yield the leg tried before, then those of every attempt."""
         if tried_leg is not None:
             yield tried_leg
         for attempt in attempts:

@@ -142,8 +142,11 @@ class RapidWays:
         return Way(rapid.start, np.array(rows), np.array(role, dtype=np.int64), singular)
 
     def _between(self, start: Array, end: Array, moves: int) -> tuple[list[Array], float | None]:
-        """Rows that cut a move into so many, or a few more where one of them is near a singularity; and how near, where that
-        does not help."""
+        """Return rows that divide a move into `moves` parts, and the condition near a singularity.
+
+        Up to MORE_MOVES more parts are tried if a row is near a singularity. The condition is None
+        if a division avoids it.
+        """
         subdivisions = [
             [start + (end - start) * (k / count) for k in range(1, count)]
             for count in range(moves, moves + MORE_MOVES + 1)

@@ -28,13 +28,14 @@ Progress = Callable[[float, str], None]
 
 @dataclass(frozen=True, eq=False)
 class Followed:
-    """What a curve asks of the machine at T points of B beads.
+    """Machine state along a curve at T points of B beads.
 
-    joints: (T, axes) rad, counted on along each bead, NaN out of reach. margin: (T,) the share left to the nearest limit, 1
-    in the middle, less than 0 beyond, -inf out of reach. condition: (T,), 0 out of reach. displacement: (B,) eq. 17, NaN
-    out of reach. ratio: (T,) the largest joint speed on the segment that ends at the point, as a share of what the axis can
-    do. good: (T,) points that the planner has nothing to say against. wound: (T,) points past a limit that would not be,
-    were an axis whole turns elsewhere: along the bead it runs out of turns.
+    joints: (T, axes) rad, unwrapped along each bead, NaN out of reach. margin: (T,) the share left
+    to the nearest limit, 1 in the middle, less than 0 beyond, -inf out of reach. condition: (T,), 0
+    out of reach. displacement: (B,) eq. 17, NaN out of reach. ratio: (T,) the largest joint speed
+    on the segment that ends at the point, as a share of the axis limit. good: (T,) points without a
+    complaint of the planner. wound: (T,) points past a limit that an axis with other whole turns
+    would keep: it runs out of turns along the bead.
     """
 
     phi: Array
@@ -62,8 +63,11 @@ class Sums:
 
 
 def durations(beads: Sequence[Bead], point_indices: Sequence[Integers] | None = None) -> Array:
-    """(T,) s from each point to the next at travel speed, as the time of the segment that ends at a point; 0 where a bead
-    begins. point_indices: the points of each bead that are looked at, all of them where they are not given."""
+    """Return the time (T,) from each point to the next at travel speed, s.
+
+    The value at a point is the time of the segment that ends there; 0 at the start of a bead.
+    point_indices: the sampled points of each bead, by default all.
+    """
     segment_times = []
     for k, bead in enumerate(beads):
         length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)

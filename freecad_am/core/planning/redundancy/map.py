@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The free rotation as a map: points of a path against the whole turn, with the state of the machine
-in each cell.
+"""The redundancy map: points of a path against a whole turn of the tool, with the machine state in
+each cell.
 
-Every cell is judged as the planner judges an independent point: the closed form of all branches at
-once, limited axes in the turn nearest to the middle of their range. Further effects of a curve on
-the map, such as an axis that runs out of turns along a bead, are in `curve`.
+Every cell is rated as the planner rates an independent point: by the closed form of all branches at
+once, with limited axes in the turn nearest to the middle of their range. `curve` shows further
+effects of a curve on the map, such as an axis that runs out of turns along a bead.
 """
 
 from __future__ import annotations
@@ -29,13 +29,14 @@ from ..task import UNREACHABLE, LimitRows, Task, append_external
 
 RZ, ROTATION = "rz", "rotation"
 ROWS, MAX_COLUMNS = 181, 300
-MIN_POINTS_PER_BEAD = 12  # points of a bead, fewer of which would not show what a curve does
+MIN_POINTS_PER_BEAD = 12  # points of a bead below which a curve is not readable
 
 
 @dataclass(frozen=True, eq=False)
 class Columns:
-    """Points of a path that are looked at. bead: (C,) which of the beads; point: (C,) which point of it; points: them,
-    each standing for itself."""
+    """Sampled points of a path. bead: (C,) bead of each; point: (C,) point number in the bead;
+    points: the points, each independent.
+    """
 
     bead: Index
     point: Index
@@ -47,11 +48,12 @@ class Columns:
 
 @dataclass(frozen=True, eq=False)
 class RedundancyMap:
-    """Cells of `values` (R,) rad by columns C. axis: what the values are, RZ or ROTATION.
+    """Cells of `values` (R,) rad by columns C. axis: the kind of the values, RZ or ROTATION.
 
-    phi: (R, C) rotation about the tool axis. margin: (8, R, C) of each branch the share left to the nearest limit, 1 in
-    the middle of all ranges, 0 at a limit, -inf out of reach. touching: (C,) whether the nozzle meets the platform or a
-    body, whatever the rotation. outside: (R, C) whether the rotation is one that the job does not allow.
+    phi: (R, C) rotation about the tool axis. margin: (8, R, C) for each branch the share left to
+    the nearest limit, 1 in the middle of all ranges, 0 at a limit, -inf out of reach. touching:
+    (C,) whether the nozzle meets the platform or a body, whatever the rotation. outside: (R, C)
+    whether the job forbids the rotation.
     """
 
     columns: Columns
@@ -65,9 +67,12 @@ class RedundancyMap:
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """One branch of a map. margin, condition: (R, C). threshold: (C,) smallest condition allowed. forbidden: (R, C) what is
-    outside of the rotations allowed or where the nozzle touches. arm: (R, C) where a link of the robot touches something,
-    None as long as nobody has looked."""
+    """One branch of a map.
+
+    margin, condition: (R, C). threshold: (C,) smallest condition allowed. forbidden: (R, C) cells
+    outside of the allowed rotations or with nozzle contact. arm: (R, C) cells with contact of a
+    robot link, None before this check has run.
+    """
 
     branch: int
     margin: Array
@@ -104,9 +109,11 @@ class Picture:
 
 
 def columns(beads: Sequence[Bead], cell: Cell, max_columns: int = MAX_COLUMNS) -> Columns:
-    """Points of the beads, evenly among all, at most `max_columns`; the ends of beads are among them.
+    """Return points of the beads, evenly spread, at most `max_columns`; the ends of beads are
+    included.
 
-    Of more beads than have room for MIN_POINTS_PER_BEAD points each, as many as do, evenly among them.
+    If not all beads have room for MIN_POINTS_PER_BEAD points each, an even selection of beads is
+    taken.
     """
     counts = np.array([len(bead) for bead in beads])
     bead_numbers = list(range(len(beads)))
@@ -187,9 +194,10 @@ def redundancy_map(
     bodies: Sequence[Body] = (),
     values: Array | None = None,
 ) -> RedundancyMap:
-    """The map of all branches for the columns, of a job's cell, limits and rotation range; bodies in part coordinates.
+    """Return the map of all branches for the columns. // It uses the job's cell, limits and rotation range.
+    bodies: in part coordinates.
 
-    values: (R,) rad of the rows, else the whole turn.
+        values: (R,) rad of the rows, else the whole turn.
     """
     values = np.linspace(-np.pi, np.pi, ROWS) if values is None else values
     phi = rotation_of(task.cell, map_columns.points.tool, values[:, None], axis)
@@ -236,12 +244,11 @@ def arm_touched(
     moment: Index,
     row_stride: int = 1,
 ) -> Mask:
-    """Return the cells (R, C) of a branch in which a link of the robot touches nozzle, platform, a body or
-    the deposit of that moment.
+    """Return the cells (R, C) of a branch in which a link of the robot touches something.
 
-    moment: (C,) number of points of the deposit at a column. row_stride: one of `row_stride` rows is
-    checked and represents its neighbours. Cells past a limit, or not allowed for another reason, are
-    not checked.
+    Checked are nozzle, platform, bodies and the deposit printed so far at each column. moment: (C,)
+    number of printed points at a column. row_stride: one of `row_stride` rows is checked and
+    represents its neighbours. Cells past a limit, or forbidden for another reason, are not checked.
     """
     count = len(redundancy.values)
     rows = np.arange(min(row_stride // 2, count - 1), count, row_stride)
@@ -295,7 +302,9 @@ def in_turns(values: Array, starts: Mask) -> Array:
 
 
 def joints_at(task: Task, map_columns: Columns, column: int, phi: float) -> Array:
-    """(8, axes) joints of all branches at one cell, in the turn that the map counts with; NaN out of reach."""
+    """Return the joints (8, axes) of all branches at one cell, in the turn used by the map; NaN out
+    of reach.
+    """
     joints = _joints_of_branches(
         task, map_columns.points.select_points(np.array([column])), np.array([[phi]])
     )[:, 0, 0]
@@ -305,7 +314,9 @@ def joints_at(task: Task, map_columns: Columns, column: int, phi: float) -> Arra
 
 
 def _joints_of_branches(task: Task, points: Points, phi: Array) -> Array:
-    """(8, R, C, axes) joints of all branches for rotations phi (R, C) of C points; NaN out of reach."""
+    """Return the joints (8, R, C, axes) of all branches at C points with rotations phi (R, C); NaN
+    out of reach.
+    """
     arm = task.cell.machine.arm
     assert arm is not None  # resolve() refuses other machines
     joints = arm.inverse(points.frames.flange_poses(phi).reshape(-1, 4, 4))[:8]

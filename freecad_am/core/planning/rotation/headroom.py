@@ -16,7 +16,7 @@ from ..redundancy.curve import durations
 
 @dataclass(frozen=True)
 class Worst:
-    """A worst value, in which layer it is, and of which limit or axis, '' for none."""
+    """A worst value, its layer and the label of its limit or axis, '' for none."""
 
     value: float
     layer: int
@@ -25,9 +25,13 @@ class Worst:
 
 @dataclass(frozen=True, eq=False)
 class Judgement:
-    """T points of beads. margin: (T,) share left to the nearest limit, 1 in the middle, less than 0 beyond. condition: (T,).
-    ratio: (T,) largest joint speed on the segment that ends at the point, as a share of what the axis can do, where a bead
-    begins that of its second point. All NaN out of reach. The worst of each is None where no point is reached."""
+    """The margins of T points of beads, NaN out of reach.
+
+    margin: (T,) share left to the nearest limit, 1 in the middle, less than 0 beyond. condition:
+    (T,). ratio: (T,) largest joint speed, as a share of the axis limit, on the segment that ends at
+    the point; at the start of a bead the value of its second point. The worst value of each is None
+    if no point is reached.
+    """
 
     margin: Array
     condition: Array
@@ -68,7 +72,7 @@ def _speeds(path: BeadPath) -> Array:
 def _worst(
     values: Array, layer: Integers, labels: Sequence[str], largest: bool = False
 ) -> Worst | None:
-    """Of (T, k) values of k things."""
+    """Return the worst entry of (T, k) values with k labels."""
     if not np.isfinite(values).any():
         return None
     row, what = np.unravel_index(

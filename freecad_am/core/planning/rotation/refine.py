@@ -24,7 +24,8 @@ from ..task import Task, condition_margin
 from . import refine_state
 from .refine_state import State, slopes_of, state_of, values_of
 
-# values (r,) of the constraints at all points, kept where >= 0, and their derivatives (r, k); None where unreachable
+# returns values (r,) of the constraints at all points, kept if >= 0, and their derivatives (r, k);
+# None if unreachable
 Constraints = Callable[[Array], "tuple[Array, Array] | None"]
 
 REACH = 0.3  # of a first step, rad of the polynomial
@@ -81,7 +82,7 @@ def approached(constraints: Constraints, start: Array) -> Array:
 CONSTRAINT_TOLERANCE = 4e-7
 # runs of the optimiser, each with the constraints added that the one before came close to
 ROUNDS = 4
-INACTIVE_VALUE = 1.0  # of a constraint that does not matter; those of limits and condition are less
+INACTIVE_VALUE = 1.0  # value of an irrelevant constraint; limits and condition have smaller values
 MIN_OBJECTIVE_SCALE = 1e-9  # objective that an objective is set against
 STATIONARY = "stationary at the start found by the search"
 OUT_OF_LIMITS = "no polynomial found that keeps all limits"
@@ -149,8 +150,12 @@ def refine(
 
 @dataclass(frozen=True, eq=False)
 class Linear:
-    """Constraints >= 0 at all points of a bead, about the values `at` (T,) of its polynomial there: `value` and `slope`
-    (r, T), FAR_OFF and 0 of those that do not matter. reach: by how much the polynomial may change at most."""
+    """Linearised constraints >= 0 at all points of a bead, about the values `at` (T,) of its
+    polynomial.
+
+    value, slope: (r, T); irrelevant constraints have INACTIVE_VALUE and 0. reach: maximum change of
+    the polynomial.
+    """
 
     at: Array
     value: Array
@@ -166,16 +171,20 @@ def refine_along(
     directions: Array,
     extra_constraints: Linear,
 ) -> tuple[Array, str, int]:
-    """Of one bead the coefficients (degree + 1,), better than those it starts with as long as `extra_constraints` holds; why and after
-    how many iterations the optimiser stopped. directions: (degree + 1, degree + 1) what may change, as `basis.changes`
-    gives it; thresholds (T,)."""
+    """Return better coefficients (degree + 1,) of one bead that keep `extra_constraints`.
+
+    Also returns why the optimiser stopped and its iterations. directions: (degree + 1, degree + 1)
+    allowed changes, from `refine_state.changes`. thresholds: (T,).
+    """
     used = directions[:, np.abs(directions).any(axis=0)]
     return _slsqp(_Bead(task, points, thresholds, extra_constraints), start, used)
 
 
 @dataclass(frozen=True, eq=False)
 class _Bead:
-    """One bead alone, its points and the condition asked for at each; what else is to be kept, where that is asked for."""
+    """A single bead with its points, its smallest allowed conditions and optional extra
+    constraints.
+    """
 
     task: Task
     points: Points
@@ -346,8 +355,11 @@ def _run(bead: _Bead, start: Array, directions: Array, x: Array, rows: Integers)
 
 
 def _tightest(values: Array, points: int) -> Integers:
-    """Which constraints are told to the optimiser: of each row those at its local minima along the bead and beside them,
-    but for those that are FAR_OFF from being violated."""
+    """Select the constraints for the optimiser.
+
+    Each row contributes its local minima along the bead and their neighbours, unless they are at
+    least INACTIVE_VALUE.
+    """
     value = values.reshape(-1, points)
     padded = np.pad(value, ((0, 0), (1, 1)), constant_values=np.inf)
     lowest = (value <= padded[:, :-2]) & (value <= padded[:, 2:])
@@ -387,7 +399,7 @@ def evaluate_paths(
     coefficients: Array,
     refined: Refined,
 ) -> list[BeadPath]:
-    """Return the paths of all beads for given coefficients (B, degree + 1), evaluated at all their points."""
+    """Return the paths of all beads for given coefficients (B, degree + 1), evaluated at every point."""
     phi, _ = task.rotation(points, points.polynomial(coefficients))
     joints = task.joints(points, phi)
     condition = task.condition(points, phi, joints)

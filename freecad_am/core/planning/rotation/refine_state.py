@@ -106,8 +106,11 @@ def _state_in_pieces(
     joints: Array,
     powers: Array,
 ) -> State:
-    """The state without the derivatives of the constraints, of many beads at once. The condition is taken from below
-    where that tells that it is kept, which is at all but a few points."""
+    """Return the state of many beads at once, without the derivatives of the constraints.
+
+    A lower bound replaces the condition wherever it proves that the condition is kept: at all but a
+    few points.
+    """
     length = task.parameters.characteristic_length
     rates, ratio = np.empty_like(joints), np.empty(len(points))
     for rows_now in in_pieces(len(points)):

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The search over the whole range of offset and slope that every layer starts from.
 
-One start of a local optimiser loses layers whose feasible rotations lie elsewhere. Kinematics over arrays makes
-looking everywhere cheap: few points per bead, the limits first, a cheap bound of the condition as screen, the
-true condition only for what the bound leaves open.
+A local optimiser with one start loses layers whose feasible rotations are elsewhere. Array
+kinematics makes a full search cheap. It takes few points per bead and checks the limits first. A
+cheap bound of the condition then screens the candidates, and the exact condition is computed only
+for those that the bound leaves open.
 """
 
 from __future__ import annotations
@@ -37,7 +38,8 @@ TIE = 1e-6
 CHUNK = 30_000
 # passes of condition checks; the last one covers all unknown candidates of beads that need more
 MAX_CONDITION_PASSES = 5
-# sigma_min / sigma_max lies between the bound 1 / kappa_F and its 6-fold: kappa_2 <= kappa_F <= 6 kappa_2
+# sigma_min / sigma_max is between the bound 1 / kappa_F and 6 times the bound: kappa_2 <= kappa_F
+# <= 6 kappa_2
 BOUND_SPREAD = 6.0
 
 
@@ -91,10 +93,10 @@ def everywhere(
     offsets: int = OFFSETS,
     best_alone: bool = False,
 ) -> Found:
-    """Candidates over the whole range of offset (one turn) and slope, for every bead of the points.
+    """Return candidates over the whole range of offset (one turn) and slope, for every bead.
 
-    Of closed beads that have to join up those of slopes that do not make whole turns are out of the question. best_alone:
-    nothing is asked for but the best of each bead; where one serves, conditions of worse ones are not looked at.
+    Closed beads that have to join up only allow slopes of whole turns. best_alone: only the best
+    candidate of each bead matters; once one serves, the conditions of worse ones are not computed.
     """
     joined = task.joined & points.closed
     if slopes is None:
@@ -154,8 +156,8 @@ def add_conditions(
 def judge(
     task: Task, points: Points, thresholds: Array, coefficients: Array, conditions: bool = True
 ) -> Found:
-    """Return objective and margin of given candidates (C, B, degree + 1); without `conditions` the margin
-    of the limits only.
+    """Return objective and margin for given candidates (C, B, degree + 1); without `conditions` the margin
+    covers the limits only.
     """
     size = max(1, CHUNK // len(points))
     results = [
@@ -231,7 +233,7 @@ def _objective(task: Task, points: Points, phi: Array, joints: Array) -> Array:
 
 
 def _total_joint_motion(points: Points, joints: Array) -> Array:
-    """Return the sum (..., B) of the squared steps of all axes with equal weights, rad^2."""
+    """Return the sum (..., B) over all axes of the squared steps, with equal weights, rad^2."""
     step = steps(joints, points)
     return points.total((step * step).sum(axis=-1))
 
@@ -413,10 +415,10 @@ def replace_infeasible(
 def find_rotations(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[Place], candidates_found: Found
 ) -> list[BeadPath | None]:
-    """Return for each bead the path of the rotation best at all its points and between them, refined from
-    there if that keeps all limits too; None if no rotation serves.
+    """Return for each bead the path of the best rotation, None if no rotation serves.
 
-    candidates_found: the candidates of these beads, judged at few points.
+    The rotation serves at every point and between points. It is refined from there if the refined
+    path keeps the limits too. candidates_found: the candidates of the beads, rated at a few points.
     """
     points, between = gather(beads, task.cell), gather([_finer(bead) for bead in beads], task.cell)
     thresholds = task.thresholds(points)
@@ -449,7 +451,7 @@ def find_rotations(
 def _judged_at(
     task: Task, points: Points, thresholds: Array, candidates: Found, max_count: int
 ) -> Found:
-    """Of the candidates of each bead that serve, the best, as many as `max_count` at most, judged at these points."""
+    """Rate the best serving candidates of each bead, at most `max_count`, at these points."""
     worth = np.where(candidates.margin >= 0.0, candidates.objective, np.inf)
     count = max(1, min(max_count, int((candidates.margin >= 0.0).sum(axis=0).max())))
     best_rows = np.argsort(worth, axis=0, kind="stable")[:count]

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Arms of which several solutions bear the same words: along a bead the one before is followed.
+"""Arms with several solutions in one configuration: along a bead the solution follows the previous
+one.
 
-Only solutions of the words wanted are looked at, and of these the nearest.
+Only solutions in the requested configuration count, and among them the nearest one.
 """
 
 from __future__ import annotations
@@ -46,8 +47,11 @@ def step_by_step(arm: SerialArm, flange: Array, branch: int, before: Array) -> A
 
 
 def _bearing(arm: SerialArm, flange: Array, branch: int) -> tuple[Array, bool]:
-    """Joints (solutions, ..., axes) that bear the words, the least singular first, NaN for those that do not; and whether
-    there is more than one anywhere."""
+    """Return the solutions (solutions, ..., axes) in the configuration, and whether any pose has
+    several.
+
+    The least singular comes first; NaN marks other configurations.
+    """
     lead = flange.shape[:-2]
     joints, words = arm.solutions(flange.reshape(-1, 4, 4))
     bearing = words == branch
@@ -60,8 +64,10 @@ def _bearing(arm: SerialArm, flange: Array, branch: int) -> tuple[Array, bool]:
 
 
 def _nearest(found: Array, before: Array) -> Array:
-    """Of joints (solutions, ..., axes) those nearest to the joints before (..., axes), whole turns aside; the first where
-    that is not known."""
+    """Select the joints nearest to the joints before (..., axes), apart from whole turns.
+
+    found: (solutions, ..., axes). The first solution is taken if the joints before are unknown.
+    """
     step = found - before
     step = shortest(step)
     away = (step * step).sum(axis=-1)

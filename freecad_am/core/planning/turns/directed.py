@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Axis values of machines that point and tool axis leave nothing free: the ways along a bead.
+"""Axis values of machines on which point and tool axis leave no free coordinate: the courses along
+a bead.
 
-Two turning axes bring the tool axis to the torch, one of them where the other stands locked; what slides follows.
+Two rotary axes turn the tool axis to the torch, or one if the other is locked; the prismatic axes
+follow.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ from . import rotary_courses
 
 @dataclasses.dataclass(frozen=True)
 class Lock:
-    """axis: 0 or 1, which of the turning axes stands still. angle: rad, where."""
+    """A locked rotary axis. axis: 0 or 1, its index. angle: rad."""
 
     axis: int
     angle: float
@@ -49,7 +51,10 @@ def courses(
 
 
 def chosen(cell: Cell, ways: Sequence[Array], before: Array) -> Array:
-    """Of all courses (n, 5) and whole turns the one within the limits that starts nearest to where the axes are."""
+    """Choose the course (n, 5) within the limits that starts nearest to the current axis values.
+
+    All courses and whole turns are candidates.
+    """
     lower, upper = cell.limits.lower + RESERVE, cell.limits.upper - RESERVE
     return rotary_courses.chosen(
         ways, before, lower, upper, cell.machine.max_speed, ~cell.machine.chain.sliding
@@ -57,7 +62,7 @@ def chosen(cell: Cell, ways: Sequence[Array], before: Array) -> Array:
 
 
 def _locked(arm: FiveAxis, lock: Lock, tools: Array, torch: Array) -> Array:
-    """(n, 2) the turning axes, one of which stands."""
+    """Return the values (n, 2) of the rotary axes, with one of the axes locked."""
     turned = np.full((len(tools), 2), lock.angle)
     turned[:, 1 - lock.axis] = arm.locked(lock.axis, lock.angle, tools, torch).angle
     return turned

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Four axes (Dai 2020, section 5): which turning axis stands still and where, and how the tool is held then."""
+"""Four-axis motion (Dai 2020, section 5): the locked rotary axis, its angle and the resulting tool
+axes.
+"""
 
 from __future__ import annotations
 
@@ -21,9 +23,10 @@ from .directed import Lock
 
 
 def lock_of(cell: Cell, parameters: JointParameters, toolpath: Toolpath) -> Lock | None:
-    """The axis that stands still and where: as asked, or where the largest residual is least; None where none does.
+    """Return the locked axis and its angle: the requested one, or the angle with the least maximum
+    residual.
 
-    Raises InputError NOT_FOR_SETUP for robots.
+    None without a lock. Raises InputError NOT_FOR_SETUP for robots.
     """
     if parameters.lock == "none":
         return None
@@ -50,8 +53,12 @@ def lock_of(cell: Cell, parameters: JointParameters, toolpath: Toolpath) -> Lock
 def as_held(
     cell: Cell, paths: Sequence[BeadPath], lock: Lock | None, allowed: float
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """The paths with the tool axes that their beads will really be laid with, not those asked for at poles and where an axis
-    stands; and of a lock what is missed most, an error beyond `allowed` rad. Robots hold it as asked for."""
+    """Return the paths with the actual tool axes of their beads, and an issue for the worst
+    residual of a lock.
+
+    Actual and requested axes differ at poles and with a locked axis. A residual beyond `allowed`
+    rad is an error. Robots keep the requested axes.
+    """
     if cell.machine.free:
         return list(paths), []
     done, strays = list(paths), list[tuple[float, int, int, int]]()

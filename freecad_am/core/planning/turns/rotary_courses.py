@@ -31,12 +31,15 @@ def courses(found: Turns) -> list[Array]:
 
 
 def led_over(course: Array, free: Mask, place: Array) -> Array:
-    """Angles (n,) along places (n,) mm of a bead: those that are free, between others, led evenly from one to the other, so
-    that the axis has all of the way to turn and need not turn where it ends."""
+    """Interpolate the free angles (n,) evenly between their neighbours along a bead.
+
+    place: (n,) mm along the bead. The axis has the whole distance to turn, instead of a jump at its
+    end.
+    """
     known = np.flatnonzero(~free)
     if not len(known):
         return course
-    # even along the way; what is before the first and after the last stays as it is
+    # even along the path; angles before the first and after the last known one stay
     led = np.interp(place, place[known], course[known])
     inside = free & (np.arange(len(free)) > known[0]) & (np.arange(len(free)) < known[-1])
     return np.where(inside, led, course)
@@ -55,7 +58,9 @@ def continuous(turned: Array) -> list[Array]:
 
 
 def kept(angles: Array, free: Mask) -> Array:
-    """Angles (2, n) with those that are free as they were before, or as they come to be where none was before."""
+    """Return the angles (2, n) with free ones equal to the previous fixed one, at the beginning to
+    the next one.
+    """
     known = np.flatnonzero(~free)
     if not len(known):
         return angles
@@ -88,9 +93,13 @@ def chosen(
     turning: Mask,
     least_motion: bool = False,
 ) -> Array:
-    """Of all courses (n, a) and whole turns of the axes that turn (a,) the one within the limits (a,) that starts nearest to
-    the values before (a,) by the largest speeds; of least motion before that. Without one within the limits, the one that
-    leaves them least; without one of numbers, the first."""
+    """Choose the course (n, a) within the limits (a,) that starts nearest to the values before
+    (a,).
+
+    All whole turns of the `turning` axes (a,) are candidates; the distance is measured as time at
+    maximum speed. `least_motion` puts the least motion first. If no course is within the limits,
+    the one that exceeds them least is taken; if every course has NaN values, the first.
+    """
     ranked = []
     for course in ways:
         moved = course.copy()

@@ -107,14 +107,16 @@ def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:
 
 
 def _come_round(bead: Bead) -> bool:
-    """Whether the external axes of a closed bead end where they began, but for whole turns."""
+    """Return whether the external axes of a closed bead end at their start values, apart from whole
+    turns.
+    """
     return bead.external is None or bool(
         (np.abs(shortest(bead.external[-1] - bead.external[0])) < ROUNDING).all()
     )
 
 
 def turning_axis(task: Task, joints: Array) -> int | None:
-    """The limited axis that ends a whole turn or more away from where it started, None when there is none."""
+    """Return the limited axis that ends a whole turn or more from its start, None without one."""
     if not np.isfinite(joints).all():
         return None
     turns = np.where(task.unturned, 0.0, np.abs(np.round((joints[-1] - joints[0]) / TURN)))
@@ -122,11 +124,12 @@ def turning_axis(task: Task, joints: Array) -> int | None:
 
 
 def pieces(task: Task, bead: Bead, joints: Array, more: int = 0) -> list[slice]:
-    """Where a bead is cut so that the turning axis starts each piece anew within its limits.
+    """Return the slices of a bead in which the turning axis stays within its limits.
 
-    A piece ends where the axis would pass a limit; the next starts with the axis turned back. An axis
-    without the stroke for a full turn gets pieces of equal length, `more` than the fewest, which then need
-    rotations of their own; where points are out of reach nobody knows how many, and the bead is left whole.
+    A piece ends where the axis would pass a limit; the next one starts with the axis turned back.
+    An axis without the stroke for a full turn gets pieces of equal length, `more` than the fewest,
+    which then need rotations of their own. If points are out of reach, the number is unknown and
+    the bead stays whole.
     """
     axis = int(np.argmax(np.ptp(joints, axis=0) * ~task.unturned))
     low, high = task.rows_of_axis(axis)
@@ -140,7 +143,8 @@ def pieces(task: Task, bead: Bead, joints: Array, more: int = 0) -> list[slice]:
         return [slice(int(start), int(end) + 1) for start, end in zip(ends[:-1], ends[1:])]
     if abs(along[-1] - along[0]) > ROUNDING:
         return _cut(along, bool(along[-1] > along[0]), low, high)
-    # an axis that comes back may start from either side: from that with the fewer pieces, one alone being no way
+    # an axis that comes back may start from either side: take the side with fewer pieces; a single
+    # piece does not help
     both = [_cut(along, rising, low, high) for rising in (True, False)]
     return min(both, key=lambda parts: (len(parts) == 1, len(parts)))
 
@@ -169,12 +173,12 @@ def is_spiral(bead: Bead) -> bool:
 
 
 def is_otherwise(bead: Bead, pieces: Sequence[Bead]) -> bool:
-    """Whether a bead is laid from another seam, or in several pieces."""
+    """Return whether a bead has another seam or several pieces."""
     return len(pieces) > 1 or bool((pieces[0].points[0] != bead.points[0]).any())
 
 
 def seam_notes(moved: list[int], split: list[int]) -> list[Issue]:
-    """What is said of layers whose seams were moved, and of those with beads that were split."""
+    """Return the notes on layers with moved seams and on layers with split beads."""
     return ([seam_note(moved)] if moved else []) + ([split_note(split)] if split else [])
 
 
@@ -208,10 +212,11 @@ MOVED, SPLIT = "seam moved for a limited axis", "split for a limited axis"
 def for_beads(
     task: Task, beads: Sequence[Bead], places: Sequence[Place]
 ) -> list[list[BeadPath] | None]:
-    """For each bead the path from another seam, or of its pieces; None where neither keeps all limits.
+    """Return for each bead the path from another seam, or the paths of its pieces; None if neither
+    keeps all limits.
 
-    The rotations are looked for as if the robot's last axis, and those beside it, had no end; then a start, or cuts, are
-    found that suit their limits.
+    The search treats the robot's last axis and the external axes as continuous; then a start or
+    cuts are chosen that suit their limits.
     """
     result: list[list[BeadPath] | None] = [None] * len(beads)
     left = [k for k, bead in enumerate(beads) if not is_spiral(bead)]
@@ -243,7 +248,9 @@ def for_beads(
 def put_in(
     task: Task, paths: Sequence[BeadPath], helped: Mapping[int, list[BeadPath]]
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """The paths with those that were helped in their places, beads numbered anew, and what was done said."""
+    """Return the paths with the replacements inserted and beads renumbered, and notes on the
+    changes.
+    """
     result: list[BeadPath] = []
     issues: list[Issue] = []
     for k, path in enumerate(paths):
@@ -265,8 +272,10 @@ def put_in(
 
 
 def _would_fit_continuous(task: Task, path: BeadPath) -> bool:
-    """Whether the end of the last axis is what keeps a spiral from its limits: it turns an axis that ends, or all limits
-    would hold if the last one had none. Of the least evils the search may have taken one at another axis.
+    """Return whether the limits of the last axis are why a spiral breaks a limit.
+
+    The limited axis makes a whole turn, or a continuous last axis would keep every limit. The
+    search chooses the least violation, which may be at another axis.
     """
     if turning_axis(task, path.joints) is not None:
         return True
