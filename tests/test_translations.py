@@ -168,7 +168,11 @@ SHOWING = {
     "say",
     "_say",
     "tell",
+    "show_note",
+    "show_text",
     "_tell",
+    "_show_note",
+    "_show_verdict",
     "add_text",
     "heading",
     "question",
@@ -193,7 +197,7 @@ NAMES = {
     "text",
 }
 # names and icons of commands, and names of objects, which nobody reads
-UNREAD = {"Tool": {0}, "_tell": set()}
+UNREAD = {"Tool": {0}, "_tell": set(), "_show_note": set()}
 
 
 def bare(node: ast.AST) -> list[str]:

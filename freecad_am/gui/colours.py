@@ -20,10 +20,10 @@ from .widgets.present import present
 
 STEPS = 256
 # roles of texts; PLAIN is whatever the theme gives a text
-PLAIN, WRONG, GOOD, FAINT = "plain", "wrong", "good", "faint"
+PLAIN, INVALID, GOOD, FAINT = "plain", "wrong", "good", "faint"
 # at least 4.5:1 on the grounds of FreeCAD's themes
-_ON_LIGHT = {WRONG: "#b3121f", GOOD: "#14693d", FAINT: "#5c6370"}
-_ON_DARK = {WRONG: "#ff8a80", GOOD: "#5fd39b", FAINT: "#aab3c0"}
+_ON_LIGHT = {INVALID: "#b3121f", GOOD: "#14693d", FAINT: "#5c6370"}
+_ON_DARK = {INVALID: "#ff8a80", GOOD: "#5fd39b", FAINT: "#aab3c0"}
 _ROLE = "RoboticAM_colour"  # property of widgets whose text has a role
 _PROBE = "RoboticAM_ThemeProbe"
 _MIDDLE = 128  # lightness of 255
@@ -54,16 +54,16 @@ _LAB = np.array(
 
 def ramp(share: Any) -> Array:
     """(n, 3) colours 0..1 of shares (n,) 0..1: dark blue, teal, green, yellow, or as the preferences say."""
-    places = np.clip(np.asarray(share, dtype=np.float64), 0.0, 1.0) * (STEPS - 1)
-    return _table(preferences.ramp())[np.rint(places).astype(int)]
+    positions = np.clip(np.asarray(share, dtype=np.float64), 0.0, 1.0) * (STEPS - 1)
+    return _table(preferences.ramp())[np.rint(positions).astype(int)]
 
 
 @cache
 def _table(name: str) -> Array:
     share = np.linspace(0.0, 1.0, STEPS)
     lightness = 0.42 + 0.47 * share
-    first, turn, strong = _HUES[name]
-    hue = np.radians(first + turn * share)
+    start_hue, turn, strong = _HUES[name]
+    hue = np.radians(start_hue + turn * share)
     chroma = strong * (0.17 - 0.02 * np.sin(np.pi * share))
     lab = np.stack([lightness, chroma * np.cos(hue), chroma * np.sin(hue)], axis=-1)
     linear = (lab @ np.linalg.inv(_LAB).T) ** 3 @ np.linalg.inv(_LMS).T

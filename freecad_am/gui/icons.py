@@ -22,14 +22,14 @@ _TRIANGLE_ON, _TRIANGLE_BACK = ((0, 2), (6, 8), (0, 14)), ((6, 2), (0, 8), (6, 1
 _MARKS = {
     "play": (((3, 2), (14, 8), (3, 14)),),
     "pause": (((3, 2), (6, 2), (6, 14), (3, 14)), ((10, 2), (13, 2), (13, 14), (10, 14))),
-    "point_on": tuple(tuple((x + at, y) for x, y in _TRIANGLE_ON) for at in (2, 8)),
-    "point_back": tuple(tuple((x + at, y) for x, y in _TRIANGLE_BACK) for at in (2, 8)),
+    "point_on": tuple(tuple((x + shift, y) for x, y in _TRIANGLE_ON) for shift in (2, 8)),
+    "point_back": tuple(tuple((x + shift, y) for x, y in _TRIANGLE_BACK) for shift in (2, 8)),
     "layer_on": (
-        *(tuple((x + at, y) for x, y in _TRIANGLE_ON) for at in (1, 7)),
+        *(tuple((x + shift, y) for x, y in _TRIANGLE_ON) for shift in (1, 7)),
         ((13, 2), (15, 2), (15, 14), (13, 14)),
     ),
     "layer_back": (
-        *(tuple((x + at, y) for x, y in _TRIANGLE_BACK) for at in (3, 9)),
+        *(tuple((x + shift, y) for x, y in _TRIANGLE_BACK) for shift in (3, 9)),
         ((1, 2), (3, 2), (3, 14), (1, 14)),
     ),
 }
@@ -43,7 +43,7 @@ def path(name: str) -> str:
     return os.path.join(FOLDER, f"{name}.svg")
 
 
-def of_player(name: str, colour: Any) -> Any:
+def player_icon(name: str, colour: Any) -> Any:
     """The icon of a button of a player, such as "play", in a colour."""
     icon = QtGui.QIcon()
     for size in _SIZES:
@@ -61,7 +61,7 @@ def of_player(name: str, colour: Any) -> Any:
     return icon
 
 
-def with_badge(name: str, status: str) -> str:
+def badge_path(name: str, status: str) -> str:
     """The path of the icon with a dot in the colour of the status; the plain icon when all is well."""
     colour = BADGES.get(status)
     if colour is None:
@@ -77,7 +77,7 @@ def with_badge(name: str, status: str) -> str:
             dir=App.getTempPath(),
             delete=False,
             encoding="utf-8",
-        ) as made:
-            made.write(text.replace("</svg>", f"{dot}</svg>"))
-        _made[name, colour] = made.name
+        ) as icon_file:
+            icon_file.write(text.replace("</svg>", f"{dot}</svg>"))
+        _made[name, colour] = icon_file.name
     return _made[name, colour]

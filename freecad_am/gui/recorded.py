@@ -32,8 +32,8 @@ def change(obj: Any, arguments: dict[str, str]) -> None:
 
 def act(obj: Any, function: str, arguments: dict[str, str]) -> None:
     """Call a function on a stage. Raises what it raises, ReferenceError when the stage is gone."""
-    first = reference(obj)
-    _run(obj.Document, function, first, arguments)
+    target = reference(obj)
+    _run(obj.Document, function, target, arguments)
 
 
 def reference(obj: Any) -> str:
@@ -58,9 +58,9 @@ def _document(document: Any) -> str:
     )
 
 
-def _run(document: Any, function: str, first: str, arguments: dict[str, str]) -> None:
-    texts = [first, *(f"{key}={text}" for key, text in arguments.items())]
-    before = _wrong(document)
+def _run(document: Any, function: str, target: str, arguments: dict[str, str]) -> None:
+    texts = [target, *(f"{key}={text}" for key, text in arguments.items())]
+    old_findings = _wrong(document)
     Gui.doCommand(IMPORT)
     call = f"am.{function}({', '.join(texts)})"
     # an element of a link array is made an object in the same step of undo
@@ -69,7 +69,7 @@ def _run(document: Any, function: str, first: str, arguments: dict[str, str]) ->
     )
     with busy(), step:
         Gui.doCommand(call)
-    new = [finding for finding in _wrong(document) if finding not in before]
+    new = [finding for finding in _wrong(document) if finding not in old_findings]
     for name, status, message in new[:1]:  # those that follow say it again
         text = tr("{} failed: {}") if status == FAILED else tr("{} is infeasible: {}")
         App.Console.PrintError(text.format(name, translated(message)) + "\n")
@@ -92,5 +92,5 @@ def _one_step(document: Any, name: str) -> Iterator[None]:
 
 def _wrong(document: Any) -> list[tuple[str, str, str]]:
     """Label, status and message of the stages that something is wrong with, inputs first."""
-    found = [(obj.Label, obj.Status, reason_of(obj)) for obj in api.stages_of(document)]
-    return [finding for finding in found if finding[1] in (FAILED, INFEASIBLE)]
+    findings = [(obj.Label, obj.Status, reason_of(obj)) for obj in api.stages_of(document)]
+    return [finding for finding in findings if finding[1] in (FAILED, INFEASIBLE)]

@@ -10,7 +10,7 @@ import pytest
 from pivy import coin
 
 from freecad_am import api
-from freecad_am.gui.nodes.wall import drawn
+from freecad_am.gui.nodes.wall import face_mesh
 from freecad_am.objects.shapes.bodies import snapshot_of
 
 pytestmark = pytest.mark.usefixtures("person")
@@ -62,7 +62,7 @@ def test_a_bent_face_is_tinted_by_the_triangles_that_are_on_screen(person):
     doc.recompute()
     person.look()
     face = max(range(len(part.Shape.Faces)), key=lambda k: part.Shape.Faces[k].Area)
-    points, corners = drawn(snapshot_of(part), [f"Face{face + 1}"])
+    points, corners = face_mesh(snapshot_of(part), [f"Face{face + 1}"])
     assert len(corners) > 100
     seen = {tuple(sorted(map(tuple, np.round(one, 3)))) for one in on_screen(part)}
     assert {tuple(sorted(map(tuple, np.round(one, 3)))) for one in points[corners]} <= seen

@@ -46,12 +46,12 @@ def test_texts_follow_the_theme_of_the_window(person):
             application.setStyleSheet(sheet)
             person.idle(0.2)
             assert colours.is_dark() == is_dark
-            for role in (colours.PLAIN, colours.WRONG, colours.GOOD, colours.FAINT):
+            for role in (colours.PLAIN, colours.INVALID, colours.GOOD, colours.FAINT):
                 assert contrast(colours.of(role), person.widgets.QColor(ground)) >= 4.5, role
             if not label.styleSheet():
-                colours.set_role(label, colours.WRONG)
+                colours.set_role(label, colours.INVALID)
             person.idle(0.1)
-            assert colours.of(colours.WRONG).name() in label.styleSheet()
+            assert colours.of(colours.INVALID).name() in label.styleSheet()
     finally:
         application.setStyleSheet("")
         label.deleteLater()

@@ -149,7 +149,7 @@ def test_all_that_a_simulation_tells_has_room_from_the_start(person, joint_path)
     person.idle(0.2)
     assert not simulation.scroll.horizontalScrollBar().isVisible()
     # a text that nobody has thought of is shown whole
-    labels["doing"].tell("deposits and waits and rapids " * 4)
+    labels["doing"].show_text("deposits and waits and rapids " * 4)
     assert labels["doing"].width() >= labels["doing"].sizeHint().width()
     simulation.close()
 

@@ -164,7 +164,7 @@ def test_plain_numbers_have_the_comma_that_the_language_has(french, commas, hand
     ],
 )
 def test_numbers_with_blanks_between_have_their_point_changed(text, told):
-    assert fields._with_point(text, ",", ".") == told
+    assert fields._replace_decimal_point(text, ",", ".") == told
 
 
 def test_the_numbers_of_a_pose_and_a_list_have_the_comma_of_the_language(french, commas):

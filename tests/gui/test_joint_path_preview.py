@@ -130,7 +130,7 @@ def test_a_change_is_planned_anew_and_tells_where_it_cannot_be_carried_out(
 
 def test_a_panel_that_is_closed_while_it_computes_leaves_nothing(person, stages, monkeypatch):
     begun, ended = threading.Event(), threading.Event()
-    tried = joint_path_panel._tried
+    tried = joint_path_panel._plan_sample
 
     def endless(job):
         begun.set()
@@ -140,7 +140,7 @@ def test_a_panel_that_is_closed_while_it_computes_leaves_nothing(person, stages,
         finally:
             ended.set()
 
-    monkeypatch.setattr(joint_path_panel, "_tried", endless)
+    monkeypatch.setattr(joint_path_panel, "_plan_sample", endless)
     person.select(stages[0])
     person.click("RoboticAM_JointPath")
     panel = person.panel(PANEL)
@@ -189,14 +189,14 @@ def test_inputs_deleted_while_the_preview_is_computed_are_told_as_missing(
 ):
     toolpath, _ = stages
     begun, go_on, seen = threading.Event(), threading.Event(), []
-    tried = joint_path_panel._tried
+    tried = joint_path_panel._plan_sample
 
     def held(job):
         begun.set()
         go_on.wait(20)
         return tried(job)
 
-    monkeypatch.setattr(joint_path_panel, "_tried", held)
+    monkeypatch.setattr(joint_path_panel, "_plan_sample", held)
     say = joint_path_panel.JointPathPanel._say
     monkeypatch.setattr(
         joint_path_panel.JointPathPanel,
@@ -228,9 +228,11 @@ def test_apply_renews_the_preview_and_the_toolpath_stays_back(person, stages, mo
     monkeypatch.setattr(joint_path_panel, "MAX_POINTS", 300)
     made = api.make_joint_path(toolpath.Document, toolpath, cell)
     begun = []
-    tried = joint_path_panel._tried
+    tried = joint_path_panel._plan_sample
     monkeypatch.setattr(
-        joint_path_panel, "_tried", lambda job: (begun.append(job.parameters.degree), tried(job))[1]
+        joint_path_panel,
+        "_plan_sample",
+        lambda job: (begun.append(job.parameters.degree), tried(job))[1],
     )
     person.double_click(made)
     panel = person.panel(PANEL)

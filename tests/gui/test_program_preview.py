@@ -11,7 +11,7 @@ import pytest
 from freecad_am import api
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.gui import registry
-from freecad_am.gui.panels.program import FIRST
+from freecad_am.gui.panels.program import SHOWN_LINES
 from freecad_am.gui.widgets import suggestions
 
 PANEL = "RoboticAM_Program"
@@ -61,12 +61,12 @@ def test_the_first_lines_are_those_that_are_written(person, hand, joint_path):
     person.panel_closed()
     files = api.result(document.Program).files
     assert len(files) > 2 and document.UndoCount == steps + 1
-    assert begins == files["CUP.LS"].decode().splitlines()[:FIRST]
+    assert begins == files["CUP.LS"].decode().splitlines()[:SHOWN_LINES]
     count = sum(len(content.splitlines()) for content in files.values())
     assert f"Lines: {count}, files: {len(files)}" in parts
     api.change(document.Program, max_points=2000)
     written = api.result(document.Program).files["CUP.LS"].decode().splitlines()
-    assert len(first) == FIRST and first == written[:FIRST]
+    assert len(first) == SHOWN_LINES and first == written[:SHOWN_LINES]
     minutes, seconds = divmod(document.JointPath.TotalTime, 60.0)
     assert f"Lines: {len(written)}, files: 1" in text
     assert (

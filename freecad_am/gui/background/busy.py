@@ -74,7 +74,7 @@ def _attend(worker: Worker, title: str, doing: str, dialog: _Dialog) -> None:
             or (dialog.is_due and not dialog.visible)
         ):
             loop.quit()
-        dialog.tell(title, worker.fraction, worker.text or doing)
+        dialog.show_progress(title, worker.fraction, worker.text or doing)
 
     timer.setInterval(LOOK_EVERY)
     timer.timeout.connect(look)
@@ -151,24 +151,24 @@ class _Dialog:
             )  # Qt makes one for each Cancel it was given
         self.box.setMinimumWidth(_WIDTH)
         self.box.canceled.connect(self.cancel)
-        self.tell(title, None, doing)
+        self.show_progress(title, None, doing)
         QtGui.QApplication.setOverrideCursor(
             QtGui.QCursor(QtCore.Qt.ArrowCursor)
         )  # over FreeCAD's waiting one
         self.box.show()
         self.button.setFocus()
 
-    def tell(self, title: str, fraction: float | None, text: str) -> None:
+    def show_progress(self, title: str, fraction: float | None, text: str) -> None:
         """What is computed, how far it is (None: unknown) and what it is doing."""
         if self.box is None:
             return
-        shown = (
+        message = (
             tr("{}: {}").format(title, translated(text))
             if text
             else tr("{} is being computed").format(title)
         )
-        if self.text.text() != shown:
-            self.text.setText(shown)
+        if self.text.text() != message:
+            self.text.setText(message)
         self.bar.setRange(0, 0 if fraction is None else STEPS)
         if fraction is not None:
             self.bar.setValue(round(STEPS * min(1.0, max(0.0, fraction))))

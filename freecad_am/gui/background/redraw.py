@@ -13,7 +13,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 
 
-def with_fields(view: Any) -> None:
+def schedule_redraw(view: Any) -> None:
     """Have a 3D view drawn when fields that change now are painted. Raises RuntimeError when it is closed."""
     # not view.redraw(): in FreeCAD 0.20 that may draw at once, and it leaves out what Coin still has to do before
     view.graphicsView().viewport().update()
@@ -23,4 +23,4 @@ def views_with_fields(document: str) -> None:
     """The same of all 3D views of a document."""
     if document in App.listDocuments():
         for view in Gui.getDocument(document).mdiViewsOfType("Gui::View3DInventor"):
-            with_fields(view)
+            schedule_redraw(view)

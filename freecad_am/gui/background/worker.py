@@ -70,7 +70,7 @@ class Worker:
         try:
             one_thread.here()
             try:
-                with told_to(self._tell):
+                with told_to(self._report):
                     self._value = self._work()
             except BaseException as error:  # told to whoever asks for the result
                 self._error = error
@@ -80,7 +80,7 @@ class Worker:
             with self._ending:
                 self.ended.set()
 
-    def _tell(self, fraction: float, text: str) -> None:
+    def _report(self, fraction: float, text: str) -> None:
         if self._cancelled:
             raise Cancelled
         self.fraction, self.text = fraction, text

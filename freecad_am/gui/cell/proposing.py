@@ -56,9 +56,9 @@ class ProposingPanel(PreviewPanel):
         self.put: dict[str, Any] = {}  # what the panel itself has entered
         self.noted: dict[str, Any] = {}  # what fields held when something was told of a proposal
         super().__init__(title, [], obj, nodes)
-        self.enabled = {place: self.places[place][0].widget.isEnabled() for place in OF_ROBOTS}
+        self.enabled = {key: self.places[key][0].widget.isEnabled() for key in OF_ROBOTS}
         if obj is None:
-            self.put.update((place, self._holds(place)) for place in (POINT, BRANCH))
+            self.put.update((key, self._holds(key)) for key in (POINT, BRANCH))
         self.proposing, self.suiting = Background(self.form), Background(self.form)
 
     def follow_undo(self) -> None:
@@ -68,8 +68,8 @@ class ProposingPanel(PreviewPanel):
         self.suiting.cancel()
         self.before = (self.places[MACHINE][0].value, self._widget(SETUP).currentData())
 
-    def _widget(self, place: str) -> Any:
-        return self.places[place][0].widget
+    def _widget(self, key: str) -> Any:
+        return self.places[key][0].widget
 
     def _tell_of_machine(self, text: str) -> None:
         """What is wrong with the machine."""
@@ -84,17 +84,17 @@ class ProposingPanel(PreviewPanel):
     def _ask_proposal(self, name: str, machine: Machine) -> None:
         """Find out, beside the window, what suits the machine; nothing for one that was not chosen here."""
         setup = self._widget(SETUP).currentData()
-        before, self.before = self.before, (name, setup)
-        if before == self.before or (before is None and self.obj is not None):
+        previous, self.before = self.before, (name, setup)
+        if previous == self.before or (previous is None and self.obj is not None):
             return
         self.proposing.cancel()
         self.suiting.cancel()
-        for place in self.noted:
-            self.tell(place, "")
+        for key in self.noted:
+            self.show_note(key, "")
         self.noted.clear()
         if not machine.free or not (arrangement_of(setup).free and arrangement_of(setup).planned):
             return
-        folders, known, wanted, tool = (
+        folders, proposals, current, tool = (
             user_machines.folders(),
             dict(self.of_machine),
             self.before,
@@ -102,24 +102,26 @@ class ProposingPanel(PreviewPanel):
         )
 
         def work() -> dict[tuple[str, str], CellParameters]:
-            for one in filter(None, (before, wanted)):
+            for pair in filter(None, (previous, current)):
                 with contextlib.suppress(InputError):  # the one before is gone
-                    known[one] = known.get(one) or cell_of(one[0], folders, one[1], tool)
-            return known
+                    proposals[pair] = proposals.get(pair) or cell_of(
+                        pair[0], folders, pair[1], tool
+                    )
+            return proposals
 
         self.proposing.start(
-            work, lambda worker: self._propose(worker, before, wanted, machine.title)
+            work, lambda worker: self._propose(worker, previous, current, machine.title)
         )
 
     def _tool(self) -> Any:
         """The pose of the tip on the flange as it is entered, None where that cannot be read as numbers."""
-        row, held = self.places[TOOL][0].row, self._holds(TOOL)
+        row, entry = self.places[TOOL][0].row, self._holds(TOOL)
         with contextlib.suppress(AmError):
-            return None if held is None else row.inner(held, row.label)
+            return None if entry is None else row.inner(entry, row.label)
         return None
 
     def _propose(
-        self, worker: Worker, before: tuple[str, str] | None, wanted: tuple[str, str], title: str
+        self, worker: Worker, previous: tuple[str, str] | None, current: tuple[str, str], title: str
     ) -> None:
         """Enter what suits the machine where nobody has entered anything else than what suited the one before."""
         try:
@@ -130,52 +132,54 @@ class ProposingPanel(PreviewPanel):
         except Exception as error:  # of nobody's making
             self._tell_of_machine(f"{type(error).__name__}: {error}")
             return
-        proposal = self.of_machine.get(wanted)
+        proposal = self.of_machine.get(current)
         default = CellParameters()
-        usual = (None if before is None else self.of_machine.get(before)) or default
+        usual = (None if previous is None else self.of_machine.get(previous)) or default
         if proposal is None:  # no cell can have it, which the preview tells
             return
         if EXTERNAL in self.put and self._may_put(
             EXTERNAL, default.external
         ):  # that of the machine before
             self.places[EXTERNAL][0].show(default.external)
-        for place, value, *was in (
+        for key, value, *was in (
             (POINT, proposal.deposition_point, usual.deposition_point, default.deposition_point),
             (BRANCH, proposal.branch, usual.branch, default.branch),
         ):
-            field = self.places[place][0]
-            shown, holds = field.row.outer(value), self._holds(place)
-            if _alike(holds, shown):
+            field = self.places[key][0]
+            proposed, holds = field.row.outer(value), self._holds(key)
+            if _alike(holds, proposed):
                 continue
-            if self._may_put(place, *map(field.row.outer, was)):
+            if self._may_put(key, *map(field.row.outer, was)):
                 self._put(
-                    place,
-                    shown,
+                    key,
+                    proposed,
                     tr("Proposed for {}; enter the values of your cell.").format(title),
                 )
             else:
                 self._note(
-                    place,
-                    tr("Kept as entered; for {} it would be {}.").format(title, _value_text(shown)),
+                    key,
+                    tr("Kept as entered; for {} it would be {}.").format(
+                        title, _value_text(proposed)
+                    ),
                 )
         self._ask_for_job()
 
-    def _may_put(self, place: str, *usual: Any) -> bool:
+    def _may_put(self, key: str, *usual: Any) -> bool:
         """Whether nobody has entered anything else than the panel itself, or what is usual."""
-        return self.enabled[place] and any(
-            _alike(self._holds(place), one) for one in (self.put.get(place), *usual)
+        return self.enabled[key] and any(
+            _alike(self._holds(key), value) for value in (self.put.get(key), *usual)
         )
 
-    def _put(self, place: str, shown: Any, text: str) -> None:
+    def _put(self, key: str, value: Any, text: str) -> None:
         """Enter what is proposed, and say so."""
-        self.places[place][0].show(shown)
-        self.put[place] = shown
-        self._note(place, text)
+        self.places[key][0].show(value)
+        self.put[key] = value
+        self._note(key, text)
 
-    def _note(self, place: str, text: str) -> None:
+    def _note(self, key: str, text: str) -> None:
         """Tell something of a proposal as long as the field holds what it does."""
-        self.noted[place] = self._holds(place)
-        self.tell(place, text, wrong=False)
+        self.noted[key] = self._holds(key)
+        self.show_note(key, text, wrong=False)
 
     # ---- what suits the job at hand
 
@@ -187,7 +191,7 @@ class ProposingPanel(PreviewPanel):
             return
         with contextlib.suppress(AmError):
             draft = Draft(self.proxy, self.document, self.draft, self._links(), self._values())
-            made, suited, label = (
+            compute, suited, label = (
                 draft.prepare(),
                 suited_cell.suit_to_toolpath(toolpath),
                 toolpath.Label,
@@ -195,7 +199,7 @@ class ProposingPanel(PreviewPanel):
             entered = self._all_held()
 
             def work() -> tuple[dict[str, Any], dict[str, Any]]:
-                settings = made().value
+                settings = compute().value
                 return flat(settings), flat(suited(settings))
 
             self.suiting.start(
@@ -205,7 +209,7 @@ class ProposingPanel(PreviewPanel):
     def _suit(self, worker: Worker, entered: dict[str, Any], label: str) -> None:
         """Enter the cell of the job where nobody has entered anything else in any of its fields, else tell it there."""
         try:
-            asked, found = worker.result()
+            entered_values, suited_values = worker.result()
         except AmError:  # which the preview tells
             return
         except Exception as error:  # of nobody's making
@@ -214,49 +218,49 @@ class ProposingPanel(PreviewPanel):
         if self._all_held() != entered:  # something else was entered meanwhile
             self._ask_for_job()
             return
-        default, shown = flat(CellParameters()), {}
-        for place, (field, _, _) in self.places.items():
+        default, changes = flat(CellParameters()), {}
+        for name, (field, _, _) in self.places.items():
             key = field.row.key
-            if found[key] != asked[key]:
-                shown[place] = field.row.outer(found[key]), field.row.outer(default[key])
+            if suited_values[key] != entered_values[key]:
+                changes[name] = field.row.outer(suited_values[key]), field.row.outer(default[key])
         free = all(
-            place in self.enabled and self._may_put(place, usual)
-            for place, (_, usual) in shown.items()
+            name in self.enabled and self._may_put(name, usual)
+            for name, (_, usual) in changes.items()
         )
-        for place, (value, _) in shown.items():
-            self._unfolded(place)
+        for name, (value, _) in changes.items():
+            self._unfolded(name)
             if free:
                 self._put(
-                    place,
+                    name,
                     value,
                     tr("Proposed for the job of {}; enter the values of your cell.").format(label),
                 )
             else:
                 text = tr("Kept as entered; the job of {} is feasible with {}.")
-                self._note(place, text.format(label, _value_text(value)))
+                self._note(name, text.format(label, _value_text(value)))
 
     def _all_held(self) -> dict[str, Any]:
-        return {place: self._holds(place) for place in self.places}
+        return {key: self._holds(key) for key in self.places}
 
     # ---- entries
 
-    def _holds(self, place: str) -> Any:
+    def _holds(self, key: str) -> Any:
         """What a field holds, None where that cannot be read."""
         with contextlib.suppress(InputError):
-            return self.places[place][0].value
+            return self.places[key][0].value
         return None
 
     def judge_entries(self) -> None:
         """What was told of a proposal goes once something else is entered."""
         super().judge_entries()
-        for place, held in list(self.noted.items()):
-            if not _alike(self._holds(place), held):
-                del self.noted[place]
-                self.tell(place, "")
+        for key, value in list(self.noted.items()):
+            if not _alike(self._holds(key), value):
+                del self.noted[key]
+                self.show_note(key, "")
 
     def _carry_out(self) -> bool:
         """Make or change the cell, after what was typed last is followed. What that entered nobody has seen: it is told."""
-        before = dict(self.put)
+        previous = dict(self.put)
         self.later.at_once()
         for background in (self.proposing, self.suiting):
             worker = background.worker
@@ -269,19 +273,17 @@ class ProposingPanel(PreviewPanel):
                 self.say(tr("Cancelled: the document is unchanged."))
                 return False
             background.at_once()
-        unseen = [
-            self._line(place) for place, value in self.put.items() if value != before.get(place)
-        ]
-        done = super()._carry_out()
-        for line in unseen if done else []:
+        unseen = [self._line(key) for key, value in self.put.items() if value != previous.get(key)]
+        succeeded = super()._carry_out()
+        for line in unseen if succeeded else []:
             App.Console.PrintWarning(line)
-        return done
+        return succeeded
 
-    def _line(self, place: str) -> str:
+    def _line(self, key: str) -> str:
         """A line of the report view about what the panel itself has entered at a place."""
-        label, value = self.places[place][0].label, _value_text(self.put[place])
+        label, value = self.places[key][0].label, _value_text(self.put[key])
         text = tr("{}: {} is now {}. {}").format(
-            self.form.windowTitle(), label, value, self.notes[place].text()
+            self.form.windowTitle(), label, value, self.notes[key].text()
         )
         return f"{text}\n"
 
@@ -293,17 +295,13 @@ class ProposingPanel(PreviewPanel):
         super().close()
 
 
-def _alike(one: Any, other: Any) -> bool:
+def _alike(a: Any, b: Any) -> bool:
     """Whether two poses, or two texts, are the same to whoever reads them."""
-    if isinstance(one, tuple) and isinstance(other, tuple):
-        if any(isinstance(number, str) for number in (*one, *other)):  # an expression
-            return one == other
-        return bool(np.allclose(one, other, rtol=0.0, atol=1e-6))
-    return (
-        isinstance(one, str)
-        and isinstance(other, str)
-        and one.replace(",", " ").split() == other.split()
-    )
+    if isinstance(a, tuple) and isinstance(b, tuple):
+        if any(isinstance(number, str) for number in (*a, *b)):  # an expression
+            return a == b
+        return bool(np.allclose(a, b, rtol=0.0, atol=1e-6))
+    return isinstance(a, str) and isinstance(b, str) and a.replace(",", " ").split() == b.split()
 
 
 def _value_text(value: Any) -> str:

@@ -12,7 +12,7 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ..texts.in_language import tr
-from ..texts.labels import without_key
+from ..texts.labels import escape_mnemonic
 from ..widgets.present import present
 
 
@@ -53,12 +53,12 @@ class Lookout:
 
     def __init__(
         self,
-        shown: Callable[[], Shown],
+        get_shown: Callable[[], Shown],
         changed: Callable[[Any, str], None],
-        ended: Callable[[str, bool], None],
+        on_end: Callable[[str, bool], None],
         goes: Callable[[], None] = lambda: None,
     ) -> None:
-        self.shown, self.changed, self.ended, self.goes = shown, changed, ended, goes
+        self.shown, self.changed, self.ended, self.goes = get_shown, changed, on_end, goes
         App.addDocumentObserver(self)
 
     def stop(self) -> None:
@@ -99,7 +99,7 @@ class _Part:
     """A dock of ours, and the pixels it asks for: at least these, or just these where the user has given them by hand."""
 
     dock: Any
-    asked: int
+    extent: int
     by_hand: bool = False
 
 
@@ -123,79 +123,84 @@ class DockArea:
         self.timer.setInterval(_STABLE_MS)
         self.timer.timeout.connect(self._measure)
 
-    def enter(self, dock: Any, least: int) -> None:
+    def enter(self, dock: Any, min_pixels: int) -> None:
         """A dock is about to be opened; it asks for `least` pixels, 0 for what its fields need."""
         self._look()
         if not self.parts:
-            self.before = {one.objectName(): self._extent(one) for one in self._seen()}
+            self.before = {
+                neighbour.objectName(): self._extent(neighbour)
+                for neighbour in self._visible_docks()
+            }
         hint, window = dock.sizeHint(), Gui.getMainWindow()
         sideways = self.across == QtCore.Qt.Horizontal
         natural = hint.width() if sideways else hint.height()
-        most = int(MOST_SHARE * (window.width() if sideways else window.height()))
+        max_pixels = int(MOST_SHARE * (window.width() if sideways else window.height()))
         self.parts.append(
-            _Part(dock, self.wishes.get(dock.objectName(), min(least or natural, most)))
+            _Part(dock, self.wishes.get(dock.objectName(), min(min_pixels or natural, max_pixels)))
         )
 
     def fit_size(self) -> None:
         """Make it as large as it is to be."""
-        shown = [part.dock for part in self.parts if self._stands(part.dock)]
-        if shown:
-            self._resize(shown[-1:], [self._wanted()])
+        docks = [member.dock for member in self.parts if self._stands(member.dock)]
+        if docks:
+            self._resize(docks[-1:], [self._target_extent()])
             self.made = self.last = None
             self.timer.start()
 
     def leave(self, dock: Any) -> None:
         """A dock is about to be closed: what stays is soon as large as without it."""
-        if not any(part.dock is dock for part in self.parts):
+        if not any(member.dock is dock for member in self.parts):
             return
         self._look()
-        for part in self.parts:
-            if part.dock is dock and part.by_hand:
-                self.wishes[dock.objectName()] = part.asked
-        self.parts = [part for part in self.parts if part.dock is not dock]
+        for member in self.parts:
+            if member.dock is dock and member.by_hand:
+                self.wishes[dock.objectName()] = member.extent
+        self.parts = [member for member in self.parts if member.dock is not dock]
         QtCore.QTimer.singleShot(0, self._give_back)
 
     def has_another(self, dock: Any) -> bool:
         """Whether another dock of ours is seen there at the same time."""
-        seen = self._seen()
-        return any(part.dock is not dock and part.dock in seen for part in self.parts)
+        visible_docks = self._visible_docks()
+        return any(
+            member.dock is not dock and member.dock in visible_docks for member in self.parts
+        )
 
     def _give_back(self) -> None:
         if self.parts:
             self.fit_size()
             return
-        there = [one for one in self._seen() if one.objectName() in self.before]
-        self._resize(there, [self.before[one.objectName()] for one in there])
+        docks = [dock for dock in self._visible_docks() if dock.objectName() in self.before]
+        self._resize(docks, [self.before[dock.objectName()] for dock in docks])
 
-    def _wanted(self) -> int:
+    def _target_extent(self) -> int:
         """The pixels that all who are there make together, as they came."""
         pixels = max(self.before.values(), default=0)
-        for part in self.parts:
-            pixels = part.asked if part.by_hand else max(pixels, part.asked)
+        for member in self.parts:
+            pixels = member.extent if member.by_hand else max(pixels, member.extent)
         return pixels
 
     def _look(self) -> None:
         """Take notice of what the user has done by hand since."""
-        self.parts = [part for part in self.parts if self._stands(part.dock)]
+        self.parts = [member for member in self.parts if self._stands(member.dock)]
         if not self.parts:
             return
-        found = self._found()
-        if found is not None and self.made is not None and abs(found - self.made) > _TOLERANCE_PX:
-            self.parts[-1].asked, self.parts[-1].by_hand = found, True
+        extent = self._current_extent()
+        if extent is not None and self.made is not None and abs(extent - self.made) > _TOLERANCE_PX:
+            self.parts[-1].extent, self.parts[-1].by_hand = extent, True
 
     def _measure(self) -> None:
-        found = self._found()
-        if found is not None and found != self.last:  # Qt moves docks little by little
-            self.last = found
+        extent = self._current_extent()
+        if extent is not None and extent != self.last:  # Qt moves docks little by little
+            self.last = extent
             self.timer.start()
         else:
-            self.made = found
+            self.made = extent
 
-    def _found(self) -> int | None:
+    def _current_extent(self) -> int | None:
         """The pixels of ours now; None where none is seen."""
-        seen = self._seen()
-        own = [part.dock for part in reversed(self.parts) if part.dock in seen]
-        return self._extent(own[0]) if own else None
+        visible_docks = self._visible_docks()
+        own_docks = [member.dock for member in reversed(self.parts) if member.dock in visible_docks]
+        return self._extent(own_docks[0]) if own_docks else None
 
     # ---- the window
 
@@ -206,19 +211,21 @@ class DockArea:
             and Gui.getMainWindow().dockWidgetArea(dock) == self.area
         )
 
-    def _seen(self) -> list[Any]:
+    def _visible_docks(self) -> list[Any]:
         """The docks that stand there, without those behind others: Qt keeps these outside of the window."""
         window = Gui.getMainWindow()
         docks = present(window, QtGui.QDockWidget)
         return [
-            one for one in docks if self._stands(one) and one.geometry().intersects(window.rect())
+            dock
+            for dock in docks
+            if self._stands(dock) and dock.geometry().intersects(window.rect())
         ]
 
     def _extent(self, dock: Any) -> int:
         """Pixels of a dock, with the tabs above or below it: so Qt counts when docks are resized."""
         if self.across == QtCore.Qt.Horizontal:
             return int(dock.width())
-        window, place = Gui.getMainWindow(), dock.geometry()
+        window, rect = Gui.getMainWindow(), dock.geometry()
         bars = [
             bar.geometry()
             for bar in present(window, QtGui.QTabBar)
@@ -227,10 +234,10 @@ class DockArea:
         tabs = [
             bar.height()
             for bar in bars
-            if bar.left() <= place.center().x() <= bar.right()
-            and place.adjusted(0, -_TOLERANCE_PX, 0, _TOLERANCE_PX).intersects(bar)
+            if bar.left() <= rect.center().x() <= bar.right()
+            and rect.adjusted(0, -_TOLERANCE_PX, 0, _TOLERANCE_PX).intersects(bar)
         ]
-        return int(place.height() + sum(tabs[:1]))
+        return int(rect.height() + sum(tabs[:1]))
 
     def _resize(self, docks: list[Any], pixels: list[int]) -> None:
         if docks:
@@ -258,15 +265,15 @@ class Dock(QtGui.QDockWidget):
 
     def setWindowTitle(self, title: str) -> None:
         """Show a title as it is: an `&` in it marks no key."""
-        super().setWindowTitle(without_key(title))
+        super().setWindowTitle(escape_mnemonic(title))
 
     def hold(self, title: str, content: Any) -> None:
         """Show this, under this title; what it held goes."""
         self.setWindowTitle(title)
-        before = self.widget()
+        old_content = self.widget()
         self.setWidget(content)
-        if before is not None:
-            before.deleteLater()
+        if old_content is not None:
+            old_content.deleteLater()
 
     def come(self) -> None:
         """Open it, in front of those it shares a place with."""
@@ -286,13 +293,15 @@ class Dock(QtGui.QDockWidget):
 
     def _join(self, window: Any) -> None:
         """Become a tab of one of ours that stands there, or would if it were open."""
-        there = [
-            one
-            for one in _docks.values()
-            if one is not self and not one.isFloating() and window.dockWidgetArea(one) == self.area
+        docks = [
+            dock
+            for dock in _docks.values()
+            if dock is not self
+            and not dock.isFloating()
+            and window.dockWidgetArea(dock) == self.area
         ]
-        if there:
-            window.tabifyDockWidget(max(there, key=lambda one: one.isVisible()), self)
+        if docks:
+            window.tabifyDockWidget(max(docks, key=lambda dock: dock.isVisible()), self)
 
     def _fit_size(self) -> None:
         """The room it asks for."""
@@ -339,10 +348,10 @@ def dock(name: str, area: Any, wide: float = 0.0, high: int = 0) -> Dock:
     return _docks[name]
 
 
-def _area(one: Dock) -> DockArea | None:
+def _area(dock: Dock) -> DockArea | None:
     """The room of the area where a dock stands, or would; None of one that floats."""
-    area = Gui.getMainWindow().dockWidgetArea(one)
-    if one.isFloating() or area == _NOWHERE:
+    area = Gui.getMainWindow().dockWidgetArea(dock)
+    if dock.isFloating() or area == _NOWHERE:
         return None
     for one_area in _areas:
         if one_area.area == area:

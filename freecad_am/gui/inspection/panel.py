@@ -27,7 +27,7 @@ from ..panels.stage import StagePanel, show
 from ..path.colouring import round_numbers
 from ..picking.pick_field import Input
 from ..picking.picking import usable
-from ..picking.shape_inputs import meant
+from ..picking.shape_inputs import job_selection
 from ..texts.in_language import tr, translated, translated_error
 from ..widgets.fold import Fold
 
@@ -44,18 +44,19 @@ class PlannedChoice(Input):
         self.widget.setToolTip(translated(link.help))
         self.widget.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
         self.widget.setMinimumContentsLength(8)
-        found = offered(self.document)
-        for obj in found:
+        objects = offered(self.document)
+        for obj in objects:
             self.widget.addItem(obj.Label, obj.Name)
-        selected = [obj for obj in meant(self.document.Name) if obj in found]
+        selected = [obj for obj in job_selection(self.document.Name) if obj in objects]
         features = [
-            obj for obj in found if stage_of(obj) is not None and stage_of(obj).kind == "feature"
+            obj for obj in objects if stage_of(obj) is not None and stage_of(obj).kind == "feature"
         ]
-        wanted = next(
-            iter([*([present] if present is not None else selected), *features[-1:], *found]), None
+        proposed = next(
+            iter([*([present] if present is not None else selected), *features[-1:], *objects]),
+            None,
         )
-        if wanted is not None:
-            self.widget.setCurrentIndex(max(0, self.widget.findData(wanted.Name)))
+        if proposed is not None:
+            self.widget.setCurrentIndex(max(0, self.widget.findData(proposed.Name)))
 
     def choose_toolpath(self) -> None:
         """The last toolpath, where none is chosen."""
@@ -81,12 +82,12 @@ class PlannedChoice(Input):
 
     def arguments(self) -> dict[str, str]:
         name = self.widget.currentData() if self.widget.count() else ""
-        chosen = self.document.getObject(name) if name else None
-        if name and chosen is None:
+        planned = self.document.getObject(name) if name else None
+        if name and planned is None:
             raise InputError(
                 "NO_INPUT", "Inspection", "Planned is missing, as it was deleted; choose another"
             )
-        return {"planned": "None" if chosen is None else recorded.reference(chosen)}
+        return {"planned": "None" if planned is None else recorded.reference(planned)}
 
 
 class FileChoice(Input):
@@ -135,13 +136,13 @@ class FileChoice(Input):
 
     def _choose(self, *_: Any) -> None:
         present = self.line.text().strip()
-        first = os.path.dirname(present or App.ActiveDocument.FileName)
-        some = " ".join(f"*{ending} *{ending.upper()}" for ending in (*TABLES, *MESHES))
+        folder = os.path.dirname(present or App.ActiveDocument.FileName)
+        patterns = " ".join(f"*{ending} *{ending.upper()}" for ending in (*TABLES, *MESHES))
         path, _ = QtGui.QFileDialog.getOpenFileName(
             Gui.getMainWindow(),
             tr("Measured points"),
-            first,
-            f"{tr('Points and meshes')} ({some});;{tr('All files')} (*)",
+            folder,
+            f"{tr('Points and meshes')} ({patterns});;{tr('All files')} (*)",
         )
         if path:
             self.line.setText(path)
@@ -152,12 +153,12 @@ class FileChoice(Input):
 
 def offered(document: Any) -> list[Any]:
     """What points can be compared with, in the order of the tree."""
-    found = []
+    objects = []
     for obj in [] if document is None else document.Objects:
         stage = stage_of(obj)
         if (stage is not None and stage.kind in KINDS) or (stage is None and usable(obj)):
-            found.append(obj)
-    return found
+            objects.append(obj)
+    return objects
 
 
 HEIGHT = 130
@@ -195,14 +196,16 @@ class Histogram(QtGui.QWidget):
         def across(value: float) -> float:
             return float(area.left() + (value - low) / (high - low) * area.width())
 
-        shades = [QtGui.QColor.fromRgbF(*one.colour) for one in bands(self.tolerance)]
-        which = band_of(0.5 * (edges[:-1] + edges[1:]), self.tolerance)
-        most = max(int(counts.max()), 1)
-        for start, end, count, band in zip(edges[:-1], edges[1:], counts, which, strict=True):
-            tall = area.height() * int(count) / most
-            left = across(float(start))
+        shades = [QtGui.QColor.fromRgbF(*level.colour) for level in bands(self.tolerance)]
+        band_indices = band_of(0.5 * (edges[:-1] + edges[1:]), self.tolerance)
+        max_count = max(int(counts.max()), 1)
+        for start, end, count, band in zip(
+            edges[:-1], edges[1:], counts, band_indices, strict=True
+        ):
+            tall = area.height() * int(count) / max_count
+            bar_left = across(float(start))
             bar = QtCore.QRectF(
-                left, area.bottom() - tall, max(across(float(end)) - left - 0.5, 0.5), tall
+                bar_left, area.bottom() - tall, max(across(float(end)) - bar_left - 0.5, 0.5), tall
             )
             painter.fillRect(bar, shades[int(band)])
         self._axis(painter, area, across, low, high)
@@ -225,11 +228,11 @@ class Histogram(QtGui.QWidget):
         for number in np.asarray(round_numbers(factor * low, factor * high, 0.0)).tolist():
             box = QtCore.QRectF(across(number / factor) - 30.0, area.bottom() + 2.0, 60.0, line)
             painter.drawText(box, QtCore.Qt.AlignHCenter, f"{number:g}")
-        most = int(self.spread.counts.max())
+        max_count = int(self.spread.counts.max())
         text = (
             tr("deviation, {} (most: 1 point)").format(unit)
-            if most == 1
-            else tr("deviation, {} (most: {} points)").format(unit, most)
+            if max_count == 1
+            else tr("deviation, {} (most: {} points)").format(unit, max_count)
         )
         box = QtCore.QRectF(0.0, self.height() - line - 1.0, self.width(), line)
         painter.drawText(box, QtCore.Qt.AlignHCenter, text)
@@ -292,18 +295,18 @@ class InspectionPanel(StagePanel):
         self.results.widget.setVisible(value is not None)
         if value is None:
             return
-        found = [row for row in rows(value) if row.short]
+        figures = [row for row in rows(value) if row.short]
         self.table.clearSpans()
         self.table.setRowCount(0)
-        place = ""
-        for row in found:
-            if row.group not in ("", place):
+        group = ""
+        for row in figures:
+            if row.group not in ("", group):
                 self._add_line(translated(row.group))
                 self.table.setSpan(self.table.rowCount() - 1, 0, 1, self.table.columnCount())
-            place = row.group
+            group = row.group
             text = translated(row.short)
             self._add_line(
-                f"{_INDENT}{text}" if place else text, row.text, row.unit, help=translated(row.name)
+                f"{_INDENT}{text}" if group else text, row.text, row.unit, help=translated(row.name)
             )
         self.table.resizeColumnsToContents()
         self.table.horizontalHeader().setSectionResizeMode(0, QtGui.QHeaderView.Stretch)
@@ -322,29 +325,29 @@ class InspectionPanel(StagePanel):
             self.table.setItem(number, column, item)
         self.table.setRowHeight(number, self.table.fontMetrics().height() + _LINES)
 
-    def _placed(self, error: AmError) -> tuple[str, str]:
-        place, text = super()._placed(error)
+    def _locate(self, error: AmError) -> tuple[str, str]:
+        key, text = super()._locate(error)
         file = self.choices[1]
         name = os.path.basename(file.line.text().strip())
-        if not place and (error.where.endswith(".File") or (name and error.where.startswith(name))):
+        if not key and (error.where.endswith(".File") or (name and error.where.startswith(name))):
             return file.label, translated(error.message) if error.where.endswith(".File") else text
-        return place, text
+        return key, text
 
     def _value(self) -> Inspected | None:
         if self.obj is None or not self.obj.Key:
             return None
         try:
-            found: Inspected = api.result(self.obj)
-            return found
+            result: Inspected = api.result(self.obj)
+            return result
         except AmError:
             return None
 
     def _save(self, *_: Any) -> None:
         """Ask for a folder and write the figures."""
         try:
-            first = os.path.dirname(self.obj.Document.FileName)
+            start_folder = os.path.dirname(self.obj.Document.FileName)
             folder = QtGui.QFileDialog.getExistingDirectory(
-                Gui.getMainWindow(), tr("Save figures"), first
+                Gui.getMainWindow(), tr("Save figures"), start_folder
             )
             if folder:
                 paths = api.export(self.obj, folder)
@@ -359,12 +362,12 @@ class InspectionPanel(StagePanel):
 
 def inspect() -> None:
     """Open the panel of a new inspection; of the one that is selected, if there is one."""
-    chosen = [
+    inspections = [
         obj
         for obj in Gui.Selection.getSelection()
         if isinstance(getattr(obj, "Proxy", None), Inspection)
     ]
-    if chosen and chosen[-1].Document is App.ActiveDocument:
-        show(InspectionPanel(chosen[-1]))
+    if inspections and inspections[-1].Document is App.ActiveDocument:
+        show(InspectionPanel(inspections[-1]))
     else:
         show(InspectionPanel())

@@ -12,7 +12,7 @@ from PySide import QtCore, QtGui
 
 from ...core.issues import InputError
 from ...core.types import Array
-from ..colours import WRONG, of, set_role
+from ..colours import INVALID, of, set_role
 from ..texts.in_language import sentence, tr, translated_error
 
 
@@ -30,7 +30,7 @@ class Page(QtGui.QWizardPage):
         self.add_text(explanation)
         self.error = self.add_text("")
         self.error.setObjectName("error")
-        set_role(self.error, WRONG)
+        set_role(self.error, INVALID)
         self.error.hide()
 
     def add_text(self, text: str) -> Any:
@@ -149,9 +149,9 @@ class FigureTable:
 
     def fit(self) -> None:
         """Be as high as the rows there are."""
-        shown = min(self.widget.rowCount(), MOST_SHOWN)
+        row_count = min(self.widget.rowCount(), MOST_SHOWN)
         self.widget.setFixedHeight(
-            ROW_HEIGHT * shown + self.widget.horizontalHeader().sizeHint().height() + 4
+            ROW_HEIGHT * row_count + self.widget.horizontalHeader().sizeHint().height() + 4
         )
 
     def widen(self, columns: Sequence[int], widest: str) -> None:
@@ -177,7 +177,7 @@ class FigureTable:
         self.widget.blockSignals(True)
         for row, line in enumerate(np.asarray(values, float).tolist()):
             for column, value in enumerate(line):
-                self.widget.item(row, column).setText(shown(value))
+                self.widget.item(row, column).setText(format_figure(value))
         self.widget.blockSignals(False)
 
     def text(self, row: int, column: int) -> str:
@@ -210,18 +210,18 @@ class FigureTable:
             raise InputError("BAD_VALUE", where, tr("the field is empty; enter a number"))
         return number(text, where)
 
-    def begun(self, row: int, count: int) -> bool:
+    def has_entries(self, row: int, count: int) -> bool:
         """Whether anything is in the first cells of a row."""
         return any(self.text(row, column) for column in range(count))
 
     def paste(self) -> None:
         """Fill cells from the clipboard, from the current one on: figures with tabs, blanks or semicolons between them."""
         text = str(QtGui.QApplication.clipboard().text())
-        first, left = max(0, self.widget.currentRow()), max(0, self.widget.currentColumn())
+        top_row, left_column = max(0, self.widget.currentRow()), max(0, self.widget.currentColumn())
         for down, line in enumerate(line for line in text.splitlines() if line.strip()):
             words = line.replace(";", " ").split()
             for right, word in enumerate(words):
-                row, column = first + down, left + right
+                row, column = top_row + down, left_column + right
                 if (
                     row < self.widget.rowCount()
                     and column < self.widget.columnCount()
@@ -248,7 +248,7 @@ class _Table(QtGui.QTableWidget):
             super().keyPressEvent(event)
 
 
-def shown(value: float) -> str:
+def format_figure(value: float) -> str:
     """A figure as it is typed, '' for none."""
     return f"{value:.10g}" if math.isfinite(value) else ""
 

@@ -17,11 +17,11 @@ from ...core.kinematics.machines import pendant, pose_figures
 from ...core.kinematics.machines.pendant import Deviation, Suspect
 from ...core.types import Array
 from ..background.worker import Later
-from ..colours import GOOD, PLAIN, WRONG, set_role
+from ..colours import GOOD, INVALID, PLAIN, set_role
 from ..texts.in_language import tr
-from .figure_table import FigureTable, Page, axis_names, choice, error_text, heading, shown
+from .figure_table import FigureTable, Page, axis_names, choice, error_text, format_figure, heading
 
-LEAST, FIRST = 3, 5  # poses that a machine needs, rows that are there at first
+MIN_POSES, INITIAL_ROWS = 3, 5  # poses that a machine needs, rows that are there at first
 
 
 class PosesPage(Page):
@@ -95,18 +95,18 @@ class PosesPage(Page):
     def fill(self) -> None:
         """Empty rows, the first at the serial zeros; or the poses of the machine that is copied."""
         draft = self.owner.draft
-        count = FIRST if draft.values is None else len(draft.values)
+        count = INITIAL_ROWS if draft.values is None else len(draft.values)
         self.table.widget.setRowCount(0)
         self._head(count)
         if draft.values is None:
             for column, value in enumerate(draft.shown.zeros):
-                self.table.show(0, column, shown(value))
+                self.table.show(0, column, format_figure(value))
         else:
             in_base = frames.inverse(draft.base) @ draft.poses
             figures = pose_figures.figures_of(str(self.convention.currentData()), in_base)
             for row, line in enumerate(np.column_stack((draft.values, figures)).tolist()):
                 for column, value in enumerate(line):
-                    self.table.show(row, column, shown(round(value, 9)))
+                    self.table.show(row, column, format_figure(round(value, 9)))
 
     def _head(self, rows: int) -> None:
         columns = [*axis_names(self.owner), "X", "Y", "Z", *self._angles(), "Δ mm", "Δ deg"]
@@ -132,7 +132,7 @@ class PosesPage(Page):
     def initializePage(self) -> None:
         """Called by Qt when the page comes: poses stay, deviations are those of the conventions as they are now."""
         super().initializePage()
-        zeros = ", ".join(shown(value) for value in self.owner.draft.shown.zeros)
+        zeros = ", ".join(format_figure(value) for value in self.owner.draft.shown.zeros)
         self.zero.setText(
             tr("One pose must be at the serial zeros, where the controller shows {}.").format(zeros)
         )
@@ -140,7 +140,7 @@ class PosesPage(Page):
 
     # ---- what is entered
 
-    def _entered(self, whole: bool) -> tuple[Array, Array, list[int]]:
+    def _entered(self, require_complete: bool) -> tuple[Array, Array, list[int]]:
         """Joints (n, axes) as shown, flange poses (n, 4, 4) in base_link and their rows.
 
         Rows that are begun but not complete are left out unless `whole`; InputError names what is missing then.
@@ -152,7 +152,7 @@ class PosesPage(Page):
             try:
                 line = self.table.row(row, self.width)
             except InputError:
-                if whole:
+                if require_complete:
                     raise
                 continue
             if (
@@ -179,15 +179,15 @@ class PosesPage(Page):
     def take(self) -> None:
         """Into the draft, if the machine gives them."""
         draft = self.owner.draft
-        values, poses, rows = self._entered(whole=True)
-        if len(rows) < LEAST:
+        values, poses, rows = self._entered(require_complete=True)
+        if len(rows) < MIN_POSES:
             raise InputError(
                 "NO_POSES",
                 tr("Check poses"),
                 tr(
                     "only {} are entered, but at least {} are needed, as a machine without them "
                     "is not loaded; enter more"
-                ).format(len(rows), LEAST),
+                ).format(len(rows), MIN_POSES),
             )
         if not np.isclose(values, draft.shown.zeros, atol=1e-9).all(axis=1).any():
             raise InputError(
@@ -218,35 +218,35 @@ class PosesPage(Page):
         self._clear_offers()
         self.say("")
         try:
-            values, poses, rows = self._entered(whole=False)
+            values, poses, rows = self._entered(require_complete=False)
         except InputError as error:
-            self._tell(error_text(error), WRONG)
+            self._show_verdict(error_text(error), INVALID)
             return
         self.table.widget.blockSignals(True)
         for row in range(self.table.widget.rowCount()):
             for column in (self.width, self.width + 1):
                 self.table.show(row, column, "")
-        found = pendant.deviations(draft.chain, draft.shown, values, poses) if rows else []
-        for row, deviation in zip(rows, found, strict=True):
+        deviations = pendant.deviations(draft.chain, draft.shown, values, poses) if rows else []
+        for row, deviation in zip(rows, deviations, strict=True):
             self._show_deviation(row, deviation)
         self.table.widget.blockSignals(False)
         if not rows:
-            self._tell("", None)
-        elif pendant.fits(found):
-            worst = max(found, key=lambda one: one.position)
+            self._show_verdict("", None)
+        elif pendant.fits(deviations):
+            worst = max(deviations, key=lambda deviation: deviation.position)
             text = tr("The machine reproduces all {} poses, within {} mm.").format(
                 len(rows), f"{worst.position:.3g}"
             )
             if draft.shown.coupling == pendant.HORIZONTAL and draft.horizontal is None:
                 text += " " + tr("The limits of J3 as shown can be entered on the previous page.")
-            self._tell(text, GOOD)
+            self._show_verdict(text, GOOD)
         else:
             self.suspects = pendant.suspects(draft.chain, draft.shown, values, poses)
-            self._tell(self._reason(len(rows)), WRONG)
+            self._show_verdict(self._reason(len(rows)), INVALID)
             self._offer()
 
     def _reason(self, count: int) -> str:
-        if count < LEAST:
+        if count < MIN_POSES:
             return tr(
                 "The machine does not reproduce these poses; enter at least three to locate the "
                 "error."
@@ -260,13 +260,13 @@ class PosesPage(Page):
         )
 
     def _show_deviation(self, row: int, deviation: Deviation) -> None:
-        for column, value, most in (
+        for column, value, tolerance in (
             (self.width, deviation.position, pendant.TOLERANCE_MM),
             (self.width + 1, deviation.angle, pendant.TOLERANCE_DEG),
         ):
-            self.table.show(row, column, f"{value:.3f}", GOOD if value <= most else WRONG)
+            self.table.show(row, column, f"{value:.3f}", GOOD if value <= tolerance else INVALID)
 
-    def _tell(self, text: str, colour: str | None) -> None:
+    def _show_verdict(self, text: str, colour: str | None) -> None:
         self.verdict.setText(text)
         set_role(self.verdict, colour or PLAIN)
 
@@ -279,18 +279,18 @@ class PosesPage(Page):
 
     def _offer(self) -> None:
         """A button per thing that may be wrong, which puts it right."""
-        if len(self._entered(whole=False)[2]) < LEAST:
+        if len(self._entered(require_complete=False)[2]) < MIN_POSES:
             return
         for number, suspect in enumerate(self.suspects):
             button = QtGui.QPushButton(self._words(suspect))
             button.setObjectName(f"suspect{number}")
             button.setToolTip(tr("Changes the conventions accordingly; the entered poses stay"))
             button.setAutoDefault(False)
-            button.clicked.connect(lambda *_, wanted=suspect: self.adopt(wanted))
+            button.clicked.connect(lambda *_, candidate=suspect: self.adopt(candidate))
             self.offers.addWidget(button)
 
     def _words(self, suspect: Suspect) -> str:
-        words = [] if suspect.shown is None else [self._of_joints(suspect)]
+        words = [] if suspect.shown is None else [self._joint_text(suspect)]
         if suspect.pose is not None:
             x, y, z = (round(value, 2) + 0.0 for value in suspect.pose[:3, 3].tolist())
             turn = math.degrees(
@@ -305,7 +305,7 @@ class PosesPage(Page):
         text = tr(", and ").join(words)
         return text[:1].upper() + text[1:]
 
-    def _of_joints(self, suspect: Suspect) -> str:
+    def _joint_text(self, suspect: Suspect) -> str:
         names = [axis_names(self.owner)[axis] for axis in suspect.axes]
         axes = " + ".join(names)
         now = suspect.shown
@@ -319,7 +319,7 @@ class PosesPage(Page):
             )
         if suspect.kind == pendant.ZERO and now.coupling == self.owner.draft.shown.coupling:
             axis = suspect.axes[0]
-            return tr("{} shows {} at zero").format(names[0], shown(now.zeros[axis]))
+            return tr("{} shows {} at zero").format(names[0], format_figure(now.zeros[axis]))
         return tr("signs and zeros of {} differ").format(axes)
 
     def adopt(self, suspect: Suspect) -> None:

@@ -65,7 +65,7 @@ class SourcePage(Page):
         self.taken: str | None = None
         self.first = self._entered()
 
-    def begun(self) -> bool:
+    def has_entries(self) -> bool:
         """Whether anything was entered."""
         return self._entered() != self.first
 
@@ -186,8 +186,10 @@ class SourcePage(Page):
     def _copy_form(self) -> Any:
         form = QtGui.QWidget()
         rows = QtGui.QFormLayout(form)
-        known = machine.known(user_machines.folders())
-        self.original = choice("original", [(f"{title}  ({name})", name) for name, title in known])
+        entries = machine.known(user_machines.folders())
+        self.original = choice(
+            "original", [(f"{title}  ({name})", name) for name, title in entries]
+        )
         self.original.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
         self.original.setMinimumContentsLength(30)
         rows.addRow(tr("Machine"), self.original)
@@ -196,11 +198,11 @@ class SourcePage(Page):
     # ---- URDF
 
     def _browse(self, *_: Any) -> None:
-        found = QtGui.QFileDialog.getOpenFileName(
+        answer = QtGui.QFileDialog.getOpenFileName(
             self, tr("URDF file"), self.file.text(), "URDF (*.urdf *.xml)"
         )
-        if found and found[0]:
-            self.file.setText(found[0])
+        if answer and answer[0]:
+            self.file.setText(answer[0])
 
     def _look(self, *_: Any) -> None:
         """Offer the links of the file, once there is one."""
@@ -224,11 +226,11 @@ class SourcePage(Page):
                 cell = UrdfCell(self.robot.path)
                 self.mechanisms = [(tr("Robot"), cell.machine(), "")] + [
                     (
-                        tr("Track") if one.carries == ROBOT else tr("Positioner"),
-                        reference(one.machine),
-                        f"{one.where()} carries {one.carries}",
+                        tr("Track") if mechanism.carries == ROBOT else tr("Positioner"),
+                        reference(mechanism.machine),
+                        f"{mechanism.where()} carries {mechanism.carries}",
                     )
-                    for one in cell.external()
+                    for mechanism in cell.external()
                 ]
         several = len(self.mechanisms) > 1
         self.mechanism.clear()
@@ -239,15 +241,15 @@ class SourcePage(Page):
     def _choose_mechanism(self, index: int) -> None:
         """The links of the mechanism that is chosen."""
         if index >= 0:
-            _, meant, _ = self.mechanisms[index]
-            for box, link in ((self.base, meant.base), (self.tip, meant.tip)):
+            _, ends, _ = self.mechanisms[index]
+            for box, link in ((self.base, ends.base), (self.tip, ends.tip)):
                 box.setCurrentIndex(box.findText(link))
 
     def _stands(self) -> str:
         """Where the mechanism of these links stands in the cell of the file; '' where nothing tells it."""
         links = self.base.currentText(), self.tip.currentText()
         return next(
-            (where for _, meant, where in self.mechanisms if (meant.base, meant.tip) == links), ""
+            (where for _, ends, where in self.mechanisms if (ends.base, ends.tip) == links), ""
         )
 
     def _offer_tips(self, *_: Any) -> None:
@@ -264,10 +266,10 @@ class SourcePage(Page):
         if entered == self.taken and self.owner.draft is not None:
             return
         draft = {
-            "urdf": self._of_urdf,
-            "table": self._of_table,
-            "opw": self._of_opw,
-            "copy": self._of_copy,
+            "urdf": self._draft_of_urdf,
+            "table": self._draft_of_table,
+            "opw": self._draft_of_opw,
+            "copy": self._draft_of_copy,
         }[self.kind.currentData()]()
         try:
             machine_draft.closed_form(draft)
@@ -302,14 +304,14 @@ class SourcePage(Page):
             ]
         )
 
-    def _of_urdf(self) -> Draft:
+    def _draft_of_urdf(self) -> Draft:
         path = self.file.text().strip()
         if not path:
             raise InputError("NO_INPUT", tr("File"), tr("choose a URDF file"))
         self.robot = self.robot or Urdf(path)
         if not self.tip.count():
-            said = tr("no link is carried by {}").format(self.base.currentText())
-            raise InputError("BAD_URDF", os.path.basename(path), said)
+            reason = tr("no link is carried by {}").format(self.base.currentText())
+            raise InputError("BAD_URDF", os.path.basename(path), reason)
         ends = self.robot, self.base.currentText(), self.tip.currentText()
         described = self.robot.between(*ends[1:])
         if urdf_machine.is_mechanism(described.chain):
@@ -326,8 +328,10 @@ class SourcePage(Page):
         ).format(self._stands())
         return replace(draft, notes=(*draft.notes, stands))
 
-    def _of_table(self) -> Draft:
-        count = max((row + 1 for row in range(MOST_AXES) if self.rows.begun(row, 4)), default=0)
+    def _draft_of_table(self) -> Draft:
+        count = max(
+            (row + 1 for row in range(MOST_AXES) if self.rows.has_entries(row, 4)), default=0
+        )
         rows = []
         for number in range(count):
             theta, d, a, alpha, sign, slides = self.rows.row(number).tolist()
@@ -340,18 +344,18 @@ class SourcePage(Page):
                     np.radians(theta), d, a, np.radians(alpha), int(sign), bool(slides)
                 )
             )
-        before, after = (
+        base_pose, flange_pose = (
             frames.from_rpy(line[:3], np.radians(line[3:])) for line in self.ends.figures()
         )
         craig = bool(self.craig.currentData())
         chain = denavit_hartenberg.chain_of(
-            denavit_hartenberg.Table(tuple(rows), before, after, craig)
+            denavit_hartenberg.Table(tuple(rows), base_pose, flange_pose, craig)
         )
         return machine_draft.draft_of_chain(
             chain, f"{'modified' if craig else 'standard'} Denavit-Hartenberg table, as entered"
         )
 
-    def _of_opw(self) -> Draft:
+    def _draft_of_opw(self) -> Draft:
         lengths = dict(zip(LENGTHS, self.lengths.row(0).tolist(), strict=True))
         offsets, signs = self.turns.figures()
         for number, sign in enumerate(signs.tolist(), 1):
@@ -366,7 +370,7 @@ class SourcePage(Page):
             opw_recognition.chain_of(arm), "closed-form figures, as entered"
         )
 
-    def _of_copy(self) -> Draft:
+    def _draft_of_copy(self) -> Draft:
         return machine_draft.draft_of_machine(
             str(self.original.currentData()), user_machines.folders()
         )

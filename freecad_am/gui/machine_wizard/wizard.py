@@ -406,18 +406,18 @@ class MachineWizard(QtGui.QWizard):
 
     def _entered(self) -> bool:
         """Whether there is something to lose."""
-        return self.draft is not None or self.source_page.begun()
+        return self.draft is not None or self.source_page.has_entries()
 
     def _to_be_lost(self) -> bool:
         box = QtGui.QMessageBox
-        asked = box.question(
+        answer = box.question(
             self,
             tr("New machine"),
             tr("Close without saving a machine file? All entries are lost."),
             box.Discard | box.Cancel,
             box.Cancel,
         )
-        return bool(asked == box.Discard)
+        return bool(answer == box.Discard)
 
     def keyPressEvent(self, event: Any) -> None:
         """Enter in a field ends the field, not the page."""

@@ -28,7 +28,7 @@ from ...objects.work.progress import Cancelled
 from .. import icons, recorded
 from ..background.busy import carry_out
 from ..background.worker import Background, Worker
-from ..colours import PLAIN, WRONG, set_role
+from ..colours import INVALID, PLAIN, set_role
 from ..panels.stage import CLOSED
 from ..picking import picking
 from ..picking.picking import Pick
@@ -51,22 +51,22 @@ from .proposal import (
     Sizes,
     label,
     machines,
-    shown,
+    pick_line,
 )
 
 
-def left_out(found: JobProposal, width: float) -> Callable[[], tuple[Issue, ...]]:
+def left_out(job: JobProposal, width: float) -> Callable[[], tuple[Issue, ...]]:
     """The work, which touches no document, that finds what of the part would not be deposited as it is understood, by beads
     of a width, mm.
     What refuses the job is told by who makes it."""
-    parts, ground = [snapshot_of(pick.obj) for pick in found.parts], found.ground
-    names = found.parts[0].names
-    own = ground is not None and ground.obj == found.parts[0].obj
-    under = None if ground is None or own else snapshot_of(ground.obj)
+    snapshots, ground = [snapshot_of(pick.obj) for pick in job.parts], job.ground
+    names = job.parts[0].names
+    is_same_object = ground is not None and ground.obj == job.parts[0].obj
+    under = None if ground is None or is_same_object else snapshot_of(ground.obj)
 
     def work() -> tuple[Issue, ...]:
         try:
-            return deposit_balance.issues(_balance(found, parts, names, under, width))
+            return deposit_balance.issues(_balance(job, snapshots, names, under, width))
         except (InputError, *kernel.FAULTS):
             return ()
 
@@ -74,77 +74,77 @@ def left_out(found: JobProposal, width: float) -> Callable[[], tuple[Issue, ...]
 
 
 def _balance(
-    found: JobProposal,
-    parts: Sequence[Taken],
+    job: JobProposal,
+    snapshots: Sequence[Taken],
     names: tuple[str, ...],
     under: Taken | None,
     width: float,
 ) -> deposit_balance.Balance | None:
-    first, depths = parts[0], None
-    if found.kind == DEVELOPABLE:
-        chosen = () if found.ground is None else found.ground.names
-        base = None if under is None or not chosen else (under, chosen)
-        faces = chosen if under is None else ()
-        solids = found_in(parts, faces, under, base, DevelopableParameters(chord_error=COARSE))
+    snapshot, depths = snapshots[0], None
+    if job.kind == DEVELOPABLE:
+        face_names = () if job.ground is None else job.ground.names
+        base = None if under is None or not face_names else (under, face_names)
+        faces = face_names if under is None else ()
+        solids = found_in(snapshots, faces, under, base, DevelopableParameters(chord_error=COARSE))
         return deposit_balance.feature_balance(solids, width)
-    if found.kind not in (REVOLUTION, SURFACE) or first.shape is None:
+    if job.kind not in (REVOLUTION, SURFACE) or snapshot.shape is None:
         return None
-    shape = first.shape.copy(False)
-    if found.kind == REVOLUTION:
+    shape = snapshot.shape.copy(False)
+    if job.kind == REVOLUTION:
         depths = part_depths.revolved_depths(
-            shape, find_wall(shape, names, label=first.label), first.label
+            shape, find_wall(shape, names, label=snapshot.label), snapshot.label
         )
     else:
-        faces = tuple(name for name, _ in named_faces(shape, names, first.label))
+        faces = tuple(name for name, _ in named_faces(shape, names, snapshot.label))
         depths = part_depths.face_depths(
-            shape, faces, first.label, None if under is None else under.body()
+            shape, faces, snapshot.label, None if under is None else under.body()
         )
     return None if depths is None else deposit_balance.wall_balance(depths, width)
 
 
-def arguments(found: JobProposal, machine: str, asked: bool) -> dict[str, str]:
+def arguments(job: JobProposal, machine: str, is_chosen: bool) -> dict[str, str]:
     """Keywords and their values as text, of what was proposed, or asked for, for a machine or a saved cell. Where curved
     layers that were proposed cannot be carried out planes are laid, as in jobs with `kind: auto`."""
-    first = found.parts[0]
-    given = {"source": recorded.reference(first.obj)}
-    if found.kind != REVOLUTION:
-        given["kind"] = repr(found.kind)
-    if found.layers == GEODESIC:
-        given["layers"] = repr(found.layers)
-        if not asked:
-            given["layers_otherwise"] = repr(PLANES)
-    if found.mend:
-        given["mend"] = repr(found.mend)
-    if found.kind in (DEVELOPABLE, SOLID):
-        given.update(_of_solids(found))
+    pick = job.parts[0]
+    keywords = {"source": recorded.reference(pick.obj)}
+    if job.kind != REVOLUTION:
+        keywords["kind"] = repr(job.kind)
+    if job.layers == GEODESIC:
+        keywords["layers"] = repr(job.layers)
+        if not is_chosen:
+            keywords["layers_otherwise"] = repr(PLANES)
+    if job.mend:
+        keywords["mend"] = repr(job.mend)
+    if job.kind in (DEVELOPABLE, SOLID):
+        keywords.update(_solid_arguments(job))
     else:
-        given["faces"] = repr(list(first.names))
-        if found.ground is not None:
-            given["substrate"] = recorded.reference(found.ground.obj)
+        keywords["faces"] = repr(list(pick.names))
+        if job.ground is not None:
+            keywords["substrate"] = recorded.reference(job.ground.obj)
     if saved_cells.is_file_of_cell(machine):
-        given["cell"] = repr(machine)
+        keywords["cell"] = repr(machine)
     elif machine != CellParameters().machine:
-        given["machine"] = repr(machine)
+        keywords["machine"] = repr(machine)
     if preferences.post():
-        given["post"] = repr(preferences.post())
+        keywords["post"] = repr(preferences.post())
     if preferences.process():
-        given["process"] = repr(preferences.process())
-    return given
+        keywords["process"] = repr(preferences.process())
+    return keywords
 
 
-def _of_solids(found: JobProposal) -> dict[str, str]:
+def _solid_arguments(job: JobProposal) -> dict[str, str]:
     """Solids and what they stand on, which may be one with them, as a macro says it."""
-    first, *further = (pick.obj for pick in found.parts)
-    given, ground = {}, found.ground
+    source, *further = (pick.obj for pick in job.parts)
+    keywords, ground = {}, job.ground
     if further:
-        given["further"] = f"[{', '.join(recorded.reference(obj) for obj in further)}]"
-    if ground is not None and ground.obj == first:
-        given["faces"] = repr(list(ground.names))
+        keywords["further"] = f"[{', '.join(recorded.reference(obj) for obj in further)}]"
+    if ground is not None and ground.obj == source:
+        keywords["faces"] = repr(list(ground.names))
     elif ground is not None:
-        given["substrate"] = recorded.reference(ground.obj)
+        keywords["substrate"] = recorded.reference(ground.obj)
         if ground.names:
-            given["base_faces"] = repr(list(ground.names))
-    return given
+            keywords["base_faces"] = repr(list(ground.names))
+    return keywords
 
 
 def machine(document: Any) -> str:
@@ -202,10 +202,12 @@ class JobPanel:
         self.error, self.reason, self.left_out, self.no_post = (
             label(name) for name in ("error", "reason", "left_out", "no_post")
         )
-        set_role(self.error, WRONG)
+        set_role(self.error, INVALID)
         self.kind = self._kinds()
-        self.part = shown("Source", tr("Object to deposit: click it in the tree or the 3D view"))
-        self.ground = shown(
+        self.part = pick_line(
+            "Source", tr("Object to deposit: click it in the tree or the 3D view")
+        )
+        self.ground = pick_line(
             "Ground", tr("Substrate: click it with Ctrl in the tree or the 3D view")
         )
         self.machine = machines(machine(self.document), self.document)
@@ -227,11 +229,11 @@ class JobPanel:
         # under the fields, by what errors call what is entered there
         self.notes = {
             "cell.machine": notes[self.machine],
-            self.name.place: notes[self.name.widget],
+            self.name.where: notes[self.name.widget],
             self.stands.leaning.label: notes[self.stands.leaning.widget],
         }
-        for place, size in self.sizes.of_job.items():
-            self.notes[place] = self.notes[size.label] = notes[size.widget]
+        for key, size in self.sizes.of_job.items():
+            self.notes[key] = self.notes[size.label] = notes[size.widget]
             connect(size.widget.lineEdit(), "textChanged(QString)", self._entered_anew)
         connect(self.sizes.width.widget, "editingFinished()", self._judge_anew)
         connect(self.machine, "editTextChanged(QString)", self._entered_anew)
@@ -325,7 +327,9 @@ class JobPanel:
             self.found = JobProposal(self.asked, "", missing=translated_error(error))
             self._show()
             return
-        self.found = JobProposal("", tr("Analysing the shape."), (picking.whole(self.picks[0]),))
+        self.found = JobProposal(
+            "", tr("Analysing the shape."), (picking.expand_pick(self.picks[0]),)
+        )
         self._show()
         self.background.start(work, self._look)
 
@@ -337,14 +341,14 @@ class JobPanel:
         except Cancelled:
             pass
 
-    def _understood(self, found: JobProposal) -> None:
+    def _understood(self, job: JobProposal) -> None:
         """Show it, and find out what of the part would be left out."""
-        self.found = found
+        self.found = job
         self._show()
-        if found.parts and not found.missing:
+        if job.parts and not job.missing:
             with contextlib.suppress(AmError):  # told when the job is made
                 self.background.start(
-                    left_out(found, self.sizes.bead_width()), self._look_at_left_out
+                    left_out(job, self.sizes.bead_width()), self._look_at_left_out
                 )
 
     def _look_at_left_out(self, worker: Worker) -> None:
@@ -360,52 +364,52 @@ class JobPanel:
     def _show(self) -> None:
         """Show how the selection is understood, and what is missing."""
         self._tell_left_out(())
-        found = self.found
-        if found.kind:
-            self.kind.setCurrentIndex(self.kind.findData(found.choice))
+        job = self.found
+        if job.kind:
+            self.kind.setCurrentIndex(self.kind.findData(job.choice))
         for widget, picks in (
-            (self.part, found.parts),
-            (self.ground, () if found.ground is None else (found.ground,)),
+            (self.part, job.parts),
+            (self.ground, () if job.ground is None else (job.ground,)),
         ):
             text = ", ".join(" ".join([pick.obj.Label, *pick.names]) for pick in picks)
             widget.setText(text)
             widget.setCursorPosition(0)
             widget.setToolTip(text or widget.whatsThis())
-        self.fold.enable(self.ground, found.kind != REVOLUTION)
-        self.fold.enable(self.sizes.width.widget, found.kind not in FILLED)
-        self.fold.enable(self.sizes.spacing.widget, found.kind in FILLED)
+        self.fold.enable(self.ground, job.kind != REVOLUTION)
+        self.fold.enable(self.sizes.width.widget, job.kind not in FILLED)
+        self.fold.enable(self.sizes.spacing.widget, job.kind in FILLED)
         missing = (
-            found.missing
+            job.missing
             if self.picks
             else tr(
                 "Click the object to deposit, in the tree or the 3D view; then, with Ctrl, its "
                 "substrate, if any."
             )
         )
-        reason = found.reason
-        if found.kind and found.reason:
-            reason = tr("{}: {}.").format(self.kinds[found.choice], found.reason)
-        whole = proposal.taken_whole(found, self.picks)
-        self.reason.setText("\n".join(filter(None, (reason, whole, missing))))
-        set_role(self.reason, WRONG if missing and self.picks else PLAIN)
+        reason = job.reason
+        if job.kind and job.reason:
+            reason = tr("{}: {}.").format(self.kinds[job.choice], job.reason)
+        whole_note = proposal.taken_whole(job, self.picks)
+        self.reason.setText("\n".join(filter(None, (reason, whole_note, missing))))
+        set_role(self.reason, INVALID if missing and self.picks else PLAIN)
         self.reason.setVisible(bool(self.reason.text()))
-        if found.parts:
-            self.name.of(found.parts[0].obj.Label)
+        if job.parts:
+            self.name.of(job.parts[0].obj.Label)
 
     def say(self, text: str) -> None:
         """Show what is wrong."""
         self.error.setText(text)
         self.error.setVisible(bool(text))
 
-    def _tell(self, place: str, text: str) -> None:
+    def _show_note(self, key: str, text: str) -> None:
         """What is wrong with a field, under it."""
-        self.notes[place].setText(text)
-        self.notes[place].setVisible(bool(text))
+        self.notes[key].setText(text)
+        self.notes[key].setVisible(bool(text))
 
     def _entered_anew(self, *_: Any) -> None:
         """What was wrong is no longer there; a machine without a post is told now, not when all is planned."""
-        for place in self.notes:
-            self._tell(place, "")
+        for key in self.notes:
+            self._show_note(key, "")
         name = choices.entered(self.machine)
         self.stands.follow(suggestions.is_robot(name))
         self.sizes.platform.widget.setEnabled(not saved_cells.is_file_of_cell(name))
@@ -416,7 +420,7 @@ class JobPanel:
         self.no_post.setText(without)
         self.no_post.setVisible(bool(without))
         refusal = self.name.follow(name, self.stands.chosen())
-        self._tell(self.name.place, translated(refusal))
+        self._show_note(self.name.where, translated(refusal))
 
     # ---- called by FreeCAD
 
@@ -424,7 +428,7 @@ class JobPanel:
         """Make all stages; True closes the panel, an error is shown in it."""
         self.say("")
         self._entered_anew()
-        if self.notes[self.name.place].text():
+        if self.notes[self.name.where].text():
             self.fold.heading.setChecked(True)  # the note is in it
             return False
         try:
@@ -432,11 +436,11 @@ class JobPanel:
             if self.found.missing or not self.found.parts:
                 self.say(self.found.missing or self.reason.text())
                 return False
-            known = {obj.Name for obj in self.document.Objects}
+            old_names = {obj.Name for obj in self.document.Objects}
             recorded.make(self.document, "make_all", self._arguments())
         except AmError as error:
             if error.where in self.notes:
-                self._tell(error.where, translated(error.message))
+                self._show_note(error.where, translated(error.message))
                 self.fold.heading.setChecked(True)
             else:
                 self.say(translated_error(error))
@@ -446,10 +450,10 @@ class JobPanel:
             self.say(tr(CLOSED))
         else:
             self.close()
-            made = [obj for obj in api.stages_of(self.document) if obj.Name not in known]
-            proposal.show_alone(made)
-            proposal.show_machine(made, bool(self.stands.chosen()))
-            proposal.tell_next(made, self.found.layers)
+            stages = [obj for obj in api.stages_of(self.document) if obj.Name not in old_names]
+            proposal.show_alone(stages)
+            proposal.show_machine(stages, bool(self.stands.chosen()))
+            proposal.tell_next(stages, self.found.layers)
             return True
         return False
 
@@ -461,10 +465,10 @@ class JobPanel:
             self.background.at_once()
 
     def _arguments(self) -> dict[str, str]:
-        given = arguments(self.found, choices.entered(self.machine), bool(self.asked))
+        keywords = arguments(self.found, choices.entered(self.machine), bool(self.asked))
         saved = saved_cells.is_file_of_cell(choices.entered(self.machine))
         sizes = self.sizes.arguments(self.found.kind in FILLED, saved)
-        return {**given, **self.stands.arguments(), **self.name.choice.arguments(), **sizes}
+        return {**keywords, **self.stands.arguments(), **self.name.choice.arguments(), **sizes}
 
     def reject(self) -> Any:
         """Nothing was done."""

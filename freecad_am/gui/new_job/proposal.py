@@ -45,7 +45,7 @@ def label(name: str) -> Any:
     return text
 
 
-def shown(name: str, help: str) -> Any:
+def pick_line(name: str, help: str) -> Any:
     """What was clicked, by name."""
     line = QtGui.QLineEdit()
     line.setObjectName(name)
@@ -56,7 +56,7 @@ def shown(name: str, help: str) -> Any:
     return line
 
 
-def machines(chosen: str, doc: Any) -> Any:
+def machines(selected: str, doc: Any) -> Any:
     """The machines there are, one of them chosen, and the saved cells, first."""
     machine = QtGui.QComboBox()
     machine.setObjectName("Machine")
@@ -66,14 +66,14 @@ def machines(chosen: str, doc: Any) -> Any:
     machine.setEditable(True)
     cells = [(path, tr("saved cell: {}").format(name)) for path, name in saved_cells.known(doc)]
     choices.offer(machine, [*cells, *choices.machines()])
-    choices.enter(machine, chosen)
+    choices.enter(machine, selected)
     return machine
 
 
 class JobName:
     """The name of the program: of what is deposited, as the controller takes it, until another one is typed."""
 
-    place = "name"  # as errors call it
+    where = "name"  # as errors call it
 
     def __init__(self) -> None:
         self.choice = shape_inputs.NameChoice("")
@@ -112,9 +112,9 @@ class HowItStands:
                 "position, another branch or a positioner is proposed and shown."
             )
         )
-        for one in OF_ROBOTS:
-            if one.planned:
-                self.setup.addItem(choices.worded(one.setup), one.setup)
+        for arrangement in OF_ROBOTS:
+            if arrangement.planned:
+                self.setup.addItem(choices.worded(arrangement.setup), arrangement.setup)
         self.proposed = str(self.setup.currentData())
         row = _row(BuildDirectionParameters, LEANING)
         self.leaning = fields.make(row, row.default)
@@ -126,10 +126,10 @@ class HowItStands:
 
     def propose(self, setup: str) -> None:
         """Put a set-up that suits the machine, unless another one was chosen than was proposed before."""
-        at = self.setup.findData(setup)
-        if at >= 0 and self.setup.currentData() == self.proposed:
+        index = self.setup.findData(setup)
+        if index >= 0 and self.setup.currentData() == self.proposed:
             self.proposed = setup
-            self.setup.setCurrentIndex(at)
+            self.setup.setCurrentIndex(index)
 
     def chosen(self) -> str:
         """The set-up that was chosen, '' where it is the usual one, or there is none to choose."""
@@ -143,19 +143,19 @@ class HowItStands:
         """Keywords of `make_all` and their values as text; none for the usual set-up. InputError for what cannot be read."""
         if not self.chosen():
             return {}
-        given, value = {"setup": repr(self.chosen())}, self.leaning.value
-        return given if value == self.leaning.shown else {**given, LEANING: repr(value)}
+        keywords, value = {"setup": repr(self.chosen())}, self.leaning.value
+        return keywords if value == self.leaning.shown else {**keywords, LEANING: repr(value)}
 
 
 class FittedLength:
     """A length that may be left empty, as which it is found out when the job is made."""
 
-    def __init__(self, row: Row, placeholder: str, more: str) -> None:
+    def __init__(self, row: Row, placeholder: str, extra_help: str) -> None:
         self.quantity = QuantityField(row.outer(row.default), row.unit, row.label)
         self.widget = self.quantity.box
         self.widget.setObjectName(row.name)
         self.label = self.heading = translated(row.label)
-        self.widget.setToolTip(f"{translated(row.spec.help)} {more}")
+        self.widget.setToolTip(f"{translated(row.spec.help)} {extra_help}")
         self.widget.setWhatsThis(fields.whats_this(row, "cell"))
         self.quantity.known_text = ""
         self.quantity.line.clear()
@@ -200,16 +200,16 @@ class Sizes:
     def arguments(self, filled: bool, saved: bool) -> dict[str, str]:
         """Keywords of `make_all` and their values as text, of what is entered. filled: beads have a spacing; saved: the cell
         has a platform of its own. InputError for what cannot be read."""
-        given = {}
+        keywords = {}
         for field in (self.layer, *((self.spacing,) if filled else ())):
             if field.changed:
-                given[field.row.key] = repr(field.value)
+                keywords[field.row.key] = repr(field.value)
         if not filled and self.width.changed:
             values = {**preferences.process(), self.width.row.key: self.width.value}
-            given["process"] = repr(values)
+            keywords["process"] = repr(values)
         if not saved and self.platform.value is not None:
-            given["platform_diameter"] = repr(self.platform.value)
-        return given
+            keywords["platform_diameter"] = repr(self.platform.value)
+        return keywords
 
 
 def _row(section: type, key: str) -> Row:
@@ -248,14 +248,14 @@ def tell_next(stages: list[Any], proposed: str = "") -> None:
     ]
     if wrong is None and warned:
         text = tr("{} Read the warnings first: double-click {}.").format(text, ", ".join(warned))
-    near = [
+    notes = [
         sentence(issue.message)
         for obj in stages
         for issue in issues_of(obj)
         if issue.code in LOOK_AT and issue.level == NOTE
     ]
-    if wrong is None and near:
-        text = " ".join([text, *(f"{note}." for note in near)])
+    if wrong is None and notes:
+        text = " ".join([text, *(f"{note}." for note in notes)])
     if proposed == GEODESIC and any(
         obj.Proxy.kind == "feature" and obj.Layers != GEODESIC for obj in stages
     ):
@@ -272,10 +272,10 @@ def show_alone(stages: list[Any]) -> None:
             obj.ViewObject.Visibility = False
 
 
-def show_machine(stages: list[Any], asked: bool) -> None:
+def show_machine(stages: list[Any], is_setup_chosen: bool) -> None:
     """Show the robot at the job where its set-up was asked for, and tell which positioner was put there."""
     cell = next((obj for obj in stages if obj.Proxy.kind == "cell"), None)
-    if cell is None or not asked:
+    if cell is None or not is_setup_chosen:
         return
     cell.ViewObject.ShowMachine = True
     if externals(cell.External):
@@ -328,10 +328,10 @@ class JobProposal:
 def proposal(picks: Sequence[Pick], width: float) -> Callable[[], JobProposal]:
     """The work, which touches no document, that finds out what picks mean, for beads of a width, mm. InputError NO_SHAPE; of the work FAULTY,
     NO_FACES."""
-    known = [(pick, _looked_at(pick)) for pick in picks]
-    if len(known) == 1:
-        return lambda: _of_one(*known[0], width)
-    return lambda: _of_several(known, width)
+    pairs = [(pick, _copy_shape(pick)) for pick in picks]
+    if len(pairs) == 1:
+        return lambda: _propose_for_one(*pairs[0], width)
+    return lambda: _propose_for_several(pairs, width)
 
 
 def as_kind(choice: str, picks: Sequence[Pick], reason: str) -> JobProposal:
@@ -348,7 +348,7 @@ def as_kind(choice: str, picks: Sequence[Pick], reason: str) -> JobProposal:
                     picks[0].obj.Label
                 ),
             )
-        return JobProposal(kind, reason, (picking.whole(picks[0]),))
+        return JobProposal(kind, reason, (picking.expand_pick(picks[0]),))
     if kind == SURFACE:
         wall, ground, unclear = picking.proposal(picks)
         if wall is None:
@@ -356,84 +356,87 @@ def as_kind(choice: str, picks: Sequence[Pick], reason: str) -> JobProposal:
                 picks[0].obj.Label
             )
             return JobProposal(kind, reason, (), ground, missing)
-        wall = picking.whole(wall)
+        wall = picking.expand_pick(wall)
         missing = "" if picking.stands(wall) else _ground_missing(wall, ground)
         return JobProposal(kind, reason, (wall,), ground, unclear or missing)
     if kind == CURVES:
         return JobProposal(
-            kind, reason, (_with_edges(picks[0]),), next((Pick(one.obj) for one in picks[1:]), None)
+            kind,
+            reason,
+            (_several_elements(picks[0]),),
+            next((Pick(pick.obj) for pick in picks[1:]), None),
         )
     if kind == CLADDING:
-        faces = picking.with_faces(picks[0])
+        faces = picking.pick_of_faces(picks[0])
         solid = not picking.is_mesh(faces.obj) and bool(global_shape(faces.obj).Solids)
         missing = tr("Click, with Ctrl, the faces to cover.") if solid and not faces.names else ""
         return JobProposal(
-            kind, reason, (faces,), next((Pick(one.obj) for one in picks[1:]), None), missing
+            kind, reason, (faces,), next((Pick(pick.obj) for pick in picks[1:]), None), missing
         )
     if kind == SOLID:
         return JobProposal(kind, reason, tuple(Pick(pick.obj) for pick in picks), layers=layers)
-    faced = [pick for pick in picks if picking.with_faces(pick).names]
+    faced = [pick for pick in picks if picking.pick_of_faces(pick).names]
     if len(picks) == 1:
         mesh = picking.is_mesh(picks[0].obj)
         lonely = mesh or (not faced and len(global_shape(picks[0].obj).Solids) < 2)
         missing = tr("Select also, with Ctrl, the hub: a cylinder or cone.") if lonely else ""
-        ground = picking.with_faces(faced[0]) if faced else None
+        ground = picking.pick_of_faces(faced[0]) if faced else None
         return JobProposal(kind, reason, (Pick(picks[0].obj),), ground, missing)
     hub = faced[0] if len(faced) == 1 else picks[-1]
     return JobProposal(
         kind,
         reason,
-        tuple(Pick(one.obj) for one in picks if one is not hub),
-        picking.with_faces(hub),
+        tuple(Pick(pick.obj) for pick in picks if pick is not hub),
+        picking.pick_of_faces(hub),
     )
 
 
-def taken_whole(found: JobProposal, picks: Sequence[Pick]) -> str:
+def taken_whole(job: JobProposal, picks: Sequence[Pick]) -> str:
     """That all of an object is deposited of which one face was clicked; '' where none was."""
-    clicked = {pick.obj.Name for pick in picks if len(picking.with_faces(pick).names) == 1}
-    for part in found.parts:
-        if found.kind != DEVELOPABLE and not part.names and part.obj.Name in clicked:
+    clicked = {pick.obj.Name for pick in picks if len(picking.pick_of_faces(pick).names) == 1}
+    for target in job.parts:
+        if job.kind != DEVELOPABLE and not target.names and target.obj.Name in clicked:
             return tr(
                 "The whole of {} is used. To use single faces, click several with Ctrl; for a "
                 "single one, use the panel of Feature or Wall on Part."
-            ).format(part.obj.Label)
+            ).format(target.obj.Label)
     return ""
 
 
-def _of_one(pick: Pick, part: Taken, width: float) -> JobProposal:
-    meant = _meant(pick, part)
-    clicked = picking.with_faces(pick).names
-    found = proposed(
-        part, meant.names, None, False, width, True, clicked=() if meant.names else clicked
+def _propose_for_one(pick: Pick, snapshot: Taken, width: float) -> JobProposal:
+    target = _deposit_pick(pick, snapshot)
+    clicked = picking.pick_of_faces(pick).names
+    result = proposed(
+        snapshot, target.names, None, False, width, True, clicked=() if target.names else clicked
     )
-    if found.kind == DEVELOPABLE:  # hub and solids are of one object
+    if result.kind == DEVELOPABLE:  # hub and solids are of one object
         ground = (
             Pick(pick.obj, clicked)
-            if clicked and part.shape is not None and len(part.shape.Solids) < 2
+            if clicked and snapshot.shape is not None and len(snapshot.shape.Solids) < 2
             else None
         )
-        return _as_proposed(found, (Pick(pick.obj),), ground)
-    return _as_proposed(found, (meant,), None)
+        return _as_proposed(result, (Pick(pick.obj),), ground)
+    return _as_proposed(result, (target,), None)
 
 
-def _of_several(known: Sequence[tuple[Pick, Taken]], width: float) -> JobProposal:
+def _propose_for_several(pairs: Sequence[tuple[Pick, Taken]], width: float) -> JobProposal:
     """By what stands on what, their number, and the faces picked."""
-    picks = [pick for pick, _ in known]
-    faced = [one for one in known if picking.with_faces(one[0]).names]
-    for ground, hub in (*faced, *(one for one in reversed(known) if one not in faced)):
-        rest = [one for one in known if one[0] is not ground]
-        base = picking.with_faces(ground).names
+    picks = [pick for pick, _ in pairs]
+    faced = [pair for pair in pairs if picking.pick_of_faces(pair[0]).names]
+    for ground, hub in (*faced, *(pair for pair in reversed(pairs) if pair not in faced)):
+        solids = [pair for pair in pairs if pair[0] is not ground]
+        base = picking.pick_of_faces(ground).names
         if all(
-            not picking.with_faces(pick).names and stands_on_hub(part, hub, base)
-            for pick, part in rest
+            not picking.pick_of_faces(pick).names and stands_on_hub(snapshot, hub, base)
+            for pick, snapshot in solids
         ):
-            found = proposed(rest[0][1], (), hub, False, width, True, base=base)
+            result = proposed(solids[0][1], (), hub, False, width, True, base=base)
             return _as_proposed(
-                found, tuple(Pick(pick.obj) for pick, _ in rest), picking.with_faces(ground)
+                result, tuple(Pick(pick.obj) for pick, _ in solids), picking.pick_of_faces(ground)
             )
-    if len(known) > 2:
-        if all(part.shape is None or part.shape.Solids for _, part in known):
-            reason = tr("{} solids are selected, to be filled").format(len(known))
+    if len(pairs) > 2:
+        if all(snapshot.shape is None or snapshot.shape.Solids for _, snapshot in pairs):
+            reason = tr("{} solids are selected, to be filled").format(len(pairs))
             return JobProposal(
                 SOLID, reason, tuple(Pick(pick.obj) for pick in picks), layers=PLANES
             )
@@ -441,20 +444,20 @@ def _of_several(known: Sequence[tuple[Pick, Taken]], width: float) -> JobProposa
     wall, ground, _ = picking.proposal(picks)
     if wall is None or ground is None:  # both are meshes
         wall, ground = picks
-    part, under = (
-        next(look for pick, look in known if pick.obj == one.obj) for one in (wall, ground)
+    snapshot, under = (
+        next(look for pick, look in pairs if pick.obj == role.obj) for role in (wall, ground)
     )
-    meant = _meant(next(pick for pick in picks if pick.obj == wall.obj), part)
+    target = _deposit_pick(next(pick for pick in picks if pick.obj == wall.obj), snapshot)
     return _as_proposed(
-        proposed(part, meant.names, under, False, width, True), (meant,), Pick(ground.obj)
+        proposed(snapshot, target.names, under, False, width, True), (target,), Pick(ground.obj)
     )
 
 
-def _as_proposed(found: Proposal, parts: tuple[Pick, ...], ground: Pick | None) -> JobProposal:
-    starts = found.stands and picking.is_alone(parts[0].obj)
-    missing = _ground_missing(parts[0], ground) if found.kind == SURFACE and not starts else ""
+def _as_proposed(result: Proposal, picks: tuple[Pick, ...], ground: Pick | None) -> JobProposal:
+    starts = result.stands and picking.is_alone(picks[0].obj)
+    missing = _ground_missing(picks[0], ground) if result.kind == SURFACE and not starts else ""
     return JobProposal(
-        found.kind, translated(found.reason), parts, ground, missing, found.layers, found.mend
+        result.kind, translated(result.reason), picks, ground, missing, result.layers, result.mend
     )
 
 
@@ -465,22 +468,22 @@ def _ground_missing(wall: Pick, ground: Pick | None) -> str:
     return tr("Select also, with Ctrl, the part it grows on.")
 
 
-def _meant(pick: Pick, part: Taken) -> Pick:
+def _deposit_pick(pick: Pick, snapshot: Taken) -> Pick:
     """What is to be deposited of what was clicked: several edges, several faces, or all of it."""
-    if part.shape is None:
+    if snapshot.shape is None:
         return Pick(pick.obj)
-    if not part.shape.Faces or sum(name.startswith(picking.EDGE) for name in pick.names) > 1:
-        return _with_edges(pick)
-    faces = picking.with_faces(pick)
-    return Pick(pick.obj) if len(faces.names) == 1 and len(part.shape.Faces) > 1 else faces
+    if not snapshot.shape.Faces or sum(name.startswith(picking.EDGE) for name in pick.names) > 1:
+        return _several_elements(pick)
+    faces = picking.pick_of_faces(pick)
+    return Pick(pick.obj) if len(faces.names) == 1 and len(snapshot.shape.Faces) > 1 else faces
 
 
-def _with_edges(pick: Pick) -> Pick:
+def _several_elements(pick: Pick) -> Pick:
     """A pick with edges and faces as they were clicked; a lone one stands for the whole."""
     return pick if len(pick.names) > 1 else Pick(pick.obj)
 
 
-def _looked_at(pick: Pick) -> Taken:
+def _copy_shape(pick: Pick) -> Taken:
     """What an object is now; a copy, as the window draws the original, maybe at the very moment it is looked at."""
-    found = snapshot_of(pick.obj)
-    return found if found.shape is None else Taken(found.label, found.shape.copy(False))
+    snapshot = snapshot_of(pick.obj)
+    return snapshot if snapshot.shape is None else Taken(snapshot.label, snapshot.shape.copy(False))

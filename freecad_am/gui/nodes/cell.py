@@ -32,14 +32,14 @@ from ...core.types import Array, Integers, Mask, NDArray
 from ...objects.fields import preferences
 from ...objects.shapes.cell_obstacles import mesh_of, meshes_of, readable_mesh, torch_of
 from ..texts.in_language import error_line
-from .lines import fill, placed, turned
+from .lines import fill, revolve, transform_node
 from .wall import unpickable
 
 TONES = {DARK: (0.24, 0.27, 0.31), BRIGHT: (0.66, 0.68, 0.71)}
 BAD = (0.86, 0.1, 0.12)
 _SHAPE = (0.8, 0.81, 0.83)  # of a user's file without a colour
 _CREASE = 0.6  # rad; flatter edges of a user's mesh look round
-_SMALLEST = 1.05  # a table is a little wider than the platform on it
+_MIN_TABLE_RATIO = 1.05  # a table is a little wider than the platform on it
 
 
 Look = Sequence[float] | None  # a colour, None for the one that is preferred
@@ -55,7 +55,7 @@ def plain_links(machine: Machine, platform: float, torch: float) -> Links:
     nozzle, mm; machines with rotary axes are drawn to fit them."""
     if not machine.arrangements[0].links_known:
         return table_links.solids(
-            machine.chain, max(table_links.RADIUS, 0.5 * _SMALLEST * platform), torch
+            machine.chain, max(table_links.RADIUS, 0.5 * _MIN_TABLE_RATIO * platform), torch
         )
     return robot_links.solids(machine.chain)
 
@@ -82,20 +82,20 @@ class MachineNodes:
         link, transform, materials = coin.SoSeparator(), coin.SoMatrixTransform(), []
         link.addChild(transform)
         mesh = mesh if mesh is not None or shape is None else _drawn_mesh(shape)
-        own = None if mesh is None else of_mesh(mesh)
-        parts = (
-            [(own, _SHAPE if shape is None or shape.colour is None else shape.colour)]
-            if own is not None
-            else [(of_solid(solid), TONES.get(solid.tone)) for solid in plain]
+        mesh_shape = None if mesh is None else mesh_node(mesh)
+        shapes = (
+            [(mesh_shape, _SHAPE if shape is None or shape.colour is None else shape.colour)]
+            if mesh_shape is not None
+            else [(solid_node(solid), TONES.get(solid.tone)) for solid in plain]
         )
-        for node, colour in parts:
-            material, part = coin.SoMaterial(), coin.SoSeparator()
+        for node, colour in shapes:
+            material, separator = coin.SoMaterial(), coin.SoSeparator()
             material.diffuseColor.setValue(*_rgb(colour))
             material.specularColor.setValue(0.25, 0.25, 0.25)
             material.shininess = 0.4
-            part.addChild(material)
-            part.addChild(node)
-            link.addChild(part)
+            separator.addChild(material)
+            separator.addChild(node)
+            link.addChild(separator)
             materials.append((material, colour))
         self.node.addChild(link)
         self.transforms.append(transform)
@@ -127,7 +127,7 @@ def move(matrix: Any, pose: Array) -> None:
     matrix.setValue(coin.SbMatrix(*pose.T.ravel().tolist()))
 
 
-def of_solid(solid: Solid) -> Any:
+def solid_node(solid: Solid) -> Any:
     """The node of a solid, without a colour."""
     values, shape = coin.SoVertexProperty(), coin.SoIndexedFaceSet()
     fill(values.vertex, solid.points.astype(np.float32))
@@ -150,7 +150,7 @@ def _drawn_mesh(shape: LinkShape) -> Mesh | None:
         return None
 
 
-def of_mesh(mesh: Mesh) -> Any:
+def mesh_node(mesh: Mesh) -> Any:
     """The node of a user's file."""
     group, hints = coin.SoGroup(), coin.SoShapeHints()
     hints.vertexOrdering, hints.shapeType = (
@@ -192,7 +192,11 @@ class ExternalLinkNodes:
                 coin.SoMaterial(),
             )
             material.diffuseColor.setValue(*_colour(link))
-            for child in (transform, material, of_mesh((link.body.vertices, link.body.triangles))):
+            for child in (
+                transform,
+                material,
+                mesh_node((link.body.vertices, link.body.triangles)),
+            ):
                 group.addChild(child)
             self.node.addChild(group)
             self.matrices.append(transform.matrix)
@@ -252,7 +256,7 @@ class Scenery:
     rest: Rest | None = None
 
 
-def without_machine(parameters: CellParameters, tip: Array, tool: Array, mount: Array) -> Scenery:
+def nozzle_scenery(parameters: CellParameters, tip: Array, tool: Array, mount: Array) -> Scenery:
     """The nozzle where the deposit ends: its last point (3,) and the tool axis there (3,)."""
     return Scenery(parameters, mount, at_end(tip, tool))
 
@@ -267,15 +271,15 @@ def at_the_end(
 ) -> Scenery:
     """The nozzle where a toolpath ends, upright on the platform without one. Errors as `cell.resolve`."""
     if toolpath is None:
-        return without_machine(parameters, np.zeros(3), np.array([0.0, 0.0, 1.0]), np.eye(4))
-    mount, last = (
+        return nozzle_scenery(parameters, np.zeros(3), np.array([0.0, 0.0, 1.0]), np.eye(4))
+    mount, last_bead = (
         cells.resolve(parameters, toolpath.frame, toolpath.family, folders).mount,
         toolpath.layers[-1].beads[-1],
     )
-    return without_machine(parameters, last.points[-1], last.tool[-1], mount)
+    return nozzle_scenery(parameters, last_bead.points[-1], last_bead.tool[-1], mount)
 
 
-def with_machine(
+def machine_scenery(
     parameters: CellParameters, toolpath: Toolpath | None, folders: Sequence[str]
 ) -> Scenery:
     """The machine at rest: the part upright, its highest point under the nozzle; the platform without a toolpath. Errors as
@@ -292,21 +296,21 @@ def with_machine(
 
 
 def _standing(cell: Cell, joints: Array, point: Array, solids: Links) -> tuple[Array, Rest]:
-    place = placing(cell, joints)
-    to_part = frames.inverse(place.part)
-    nozzle = to_part @ place.nozzle
+    placement = placing(cell, joints)
+    to_part = frames.inverse(placement.part)
+    nozzle = to_part @ placement.nozzle
     reached = bool(np.linalg.norm(nozzle[:3, 3] - point) < _REACHED)
     machine = cell.robot
     return nozzle, Rest(
         machine,
-        to_part @ place.links,
+        to_part @ placement.links,
         solids,
         meshes_of(machine),
         reached,
         cell.limits,
         joints,
         cell.external_links,
-        to_part @ place.external_links,
+        to_part @ placement.external_links,
     )
 
 
@@ -356,7 +360,7 @@ class CellNodes:
         for child in platform_nodes(value, scenery.mount):
             self.platform.addChild(child)
         self.nozzle.removeAllChildren()
-        self.standing = placed(scenery.nozzle)
+        self.standing = transform_node(scenery.nozzle)
         self.nozzle.addChild(self.standing)
         self.nozzle.addChild(nozzle_node(value))
         if self.machine is not None:
@@ -367,37 +371,37 @@ class CellNodes:
         if self.standing is not None:
             move(self.standing.matrix, pose)
 
-    def _set_machine(self, value: CellParameters, rest: Rest | None) -> None:
+    def _set_machine(self, value: CellParameters, rest_pose: Rest | None) -> None:
         """Pose the machine; its nodes are made anew only where it is to look otherwise."""
-        looks = () if rest is None else _looks(value, rest)
-        if rest is None or looks != self.looks:
+        looks = () if rest_pose is None else _looks(value, rest_pose)
+        if rest_pose is None or looks != self.looks:
             self.links.removeAllChildren()
             self.machine = None
         self.looks = looks
-        if rest is None:
+        if rest_pose is None:
             return
         if self.machine is None:
-            self.machine = MachineNodes(rest.machine, rest.solids, rest.meshes)
-            self.external_links = ExternalLinkNodes(rest.external_links)
+            self.machine = MachineNodes(rest_pose.machine, rest_pose.solids, rest_pose.meshes)
+            self.external_links = ExternalLinkNodes(rest_pose.external_links)
             self.links.addChild(self.machine.node)
             self.links.addChild(self.external_links.node)
-        self.machine.pose(rest.links)
+        self.machine.pose(rest_pose.links)
         if self.external_links is not None:
-            self.external_links.pose(rest.stands)
+            self.external_links.pose(rest_pose.stands)
 
 
-def _looks(value: CellParameters, rest: Rest) -> tuple[Any, ...]:
+def _looks(value: CellParameters, rest_pose: Rest) -> tuple[Any, ...]:
     """What the nodes of a machine are made of: its links as they are at zero, of machines with rotary axes the sizes that
     they are drawn to fit, and the files a user gave the links."""
-    chain = rest.machine.chain
+    chain = rest_pose.machine.chain
     return (
-        rest.machine.id,
+        rest_pose.machine.id,
         chain.links(np.zeros(chain.axes)).tobytes(),
         ()
         if arrangement_of(value.setup).links_known
         else (value.platform_diameter, value.nozzle.length),
-        *(None if mesh is None else hash(mesh[0].tobytes()) for mesh in rest.meshes),
-        *((link.name, hash(link.body.vertices.tobytes())) for link in rest.external_links),
+        *(None if mesh is None else hash(mesh[0].tobytes()) for mesh in rest_pose.meshes),
+        *((link.name, hash(link.body.vertices.tobytes())) for link in rest_pose.external_links),
     )
 
 
@@ -434,18 +438,18 @@ def platform_nodes(value: CellParameters, mount: Array) -> list[Any]:
     radius = 0.5 * value.platform_diameter
     thick = value.platform if isinstance(value.platform, float) else _LEAST_THICKNESS
     low = -max(_LEAST_THICKNESS, thick)
-    return [placed(mount), turned([(0.0, low), (radius, low), (radius, 0.0), (0.0, 0.0)])]
+    return [transform_node(mount), revolve([(0.0, low), (radius, low), (radius, 0.0), (0.0, 0.0)])]
 
 
 def nozzle_node(value: CellParameters) -> Any:
     """The nozzle of a cell: its tip at the origin, Z into it; with a torch this."""
-    held = torch_seen(value)
-    if held is not None:
-        return of_mesh((held.body.vertices, held.body.triangles))
+    torch = torch_seen(value)
+    if torch is not None:
+        return mesh_node((torch.body.vertices, torch.body.triangles))
     nozzle = value.nozzle
     tip_radius = 0.5 * nozzle.diameter
     top_radius = tip_radius + nozzle.length * np.tan(nozzle.half_angle)
-    return turned(
+    return revolve(
         [(0.0, 0.0), (tip_radius, 0.0), (top_radius, nozzle.length), (0.0, nozzle.length)]
     )
 
@@ -472,4 +476,4 @@ def holder_node(value: CellParameters) -> Any:
         or torch_seen(value) is not None
     ):
         return coin.SoSeparator()  # drawn with the machine's head, or with the nozzle
-    return of_solid(capsule(end, flange, radius, radius))
+    return solid_node(capsule(end, flange, radius, radius))

@@ -18,11 +18,11 @@ from .wall import WallNodes, unpickable
 
 OUTLINE, TINT = (0.0, 0.45, 0.45), (0.1, 0.62, 0.6)
 SIDES = 96
-BEYOND = 0.15  # of the way along the axis from contour to contour, by which a base is drawn longer on either side
+MARGIN_RATIO = 0.15  # of the way along the axis from contour to contour, by which a base is drawn longer on either side
 OUTSIDE = (
     0.003  # of its radius; the base is drawn that far out, to be seen before the hub's own face
 )
-NEARLY = 0.98  # of the way to the apex
+APEX_RATIO = 0.98  # of the way to the apex
 
 
 class HubNodes(WallNodes):
@@ -68,8 +68,8 @@ def drawing(solids: SolidsOnHub) -> Drawing:
     """What is drawn of solids, made without the window. InputError OPEN_MESH."""
     contours = [first_contours(group, solids.chord_error) for group in solids.groups]
     bases = [
-        _base(group, [contour for solid in some for contour in solid])
-        for group, some in zip(solids.groups, contours)
+        _base(group, [contour for solid in curves for contour in solid])
+        for group, curves in zip(solids.groups, contours)
     ]
     counts = np.cumsum([0, *(len(points) for points, _, _ in bases)])
     return Drawing(
@@ -78,15 +78,15 @@ def drawing(solids: SolidsOnHub) -> Drawing:
         np.concatenate(
             [np.zeros((0, 3), int), *(corners + k for (_, corners, _), k in zip(bases, counts))]
         ),
-        [line for _, _, some in bases for line in some],
+        [line for _, _, curves in bases for line in curves],
     )
 
 
 def first_contours(group: Group, chord_error: float) -> list[list[Array]]:
     """Where each solid of a group leaves the base: closed curves (k, 3) in part coordinates, the first point repeated."""
     return [
-        [np.concatenate([loop, loop[:1]]) for loop in some]
-        for some in footprints(group, chord_error)
+        [np.concatenate([loop, loop[:1]]) for loop in loops]
+        for loops in footprints(group, chord_error)
     ]
 
 
@@ -100,8 +100,8 @@ def _base(group: Group, contours: list[Array]) -> tuple[Array, Array, list[Array
         length = max(
             float(base.surface.distance(base.inside(body.vertices)).max()) for body in group.bodies
         )
-        way = np.linspace(0.0, length, SIDES + 1)
-        return points, corners, [*lines, base.to_part(base.surface.at(way)[0])]
+        arc_lengths = np.linspace(0.0, length, SIDES + 1)
+        return points, corners, [*lines, base.to_part(base.surface.at(arc_lengths)[0])]
     if isinstance(base.surface, Plane):
         return _plane(base, np.concatenate(contours or [body.vertices for body in group.bodies]))
     low, high = _reach(base, contours or [body.vertices for body in group.bodies])
@@ -123,8 +123,8 @@ def _plane(base: Base, around: Array) -> tuple[Array, Array, list[Array]]:
     """Points, triangles and border of a rectangle of the base about points (n, 3)."""
     flat = base.inside(around)[:, :2]
     low, high = flat.min(axis=0), flat.max(axis=0)
-    more = BEYOND * float((high - low).max())
-    (x0, y0), (x1, y1) = low - more, high + more
+    margin = MARGIN_RATIO * float((high - low).max())
+    (x0, y0), (x1, y1) = low - margin, high + margin
     corners = base.to_part(np.array([[x0, y0, 0.0], [x1, y0, 0.0], [x1, y1, 0.0], [x0, y1, 0.0]]))
     return corners, np.array([[0, 1, 2], [0, 2, 3]]), [np.concatenate([corners, corners[:1]])]
 
@@ -132,9 +132,9 @@ def _plane(base: Base, around: Array) -> tuple[Array, Array, list[Array]]:
 def _reach(base: Base, curves: list[Array]) -> tuple[float, float]:
     along = base.inside(np.concatenate(curves))[:, 2]
     low, high = float(along.min()), float(along.max())
-    more = BEYOND * max(high - low, 0.1 * base.surface.radius)
-    return low - more, high + more if base.surface.is_cylinder else min(
-        high + more, NEARLY * base.surface.height
+    margin = MARGIN_RATIO * max(high - low, 0.1 * base.surface.radius)
+    return low - margin, high + margin if base.surface.is_cylinder else min(
+        high + margin, APEX_RATIO * base.surface.height
     )
 
 

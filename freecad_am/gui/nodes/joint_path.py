@@ -35,12 +35,12 @@ class JointPathNodes:
         self.lost.set(_NOTHING)
         self.legend.hide()
 
-    def set(self, paths: Sequence[BeadPath], values: Array, kind: str, lost: Array) -> None:
+    def set(self, paths: Sequence[BeadPath], values: Array, kind: str, unreachable: Array) -> None:
         """The beads of paths in colours of the values (n,) of their points, of one of the kinds that `by_machine` knows;
         dots where they are lost (n,)."""
         points = np.concatenate([path.bead.points for path in paths])
         colours, scale = by_machine(values, kind)
         self.lines.set(points, [len(path.bead) for path in paths])
         self.lines.paint(colours)
-        self.lost.set(points[lost])
+        self.lost.set(points[unreachable])
         self.legend.show(((), scale), 0)

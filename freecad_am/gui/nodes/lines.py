@@ -136,8 +136,8 @@ def fill(field: Any, values: Any) -> None:
     array = np.ascontiguousarray(values, dtype=_KINDS[type(field)])
     field.setNum(len(array))
     if array.size:
-        first = field.startEditing()
-        ctypes.memmove(int(getattr(first, "this", first)), array.ctypes.data, array.nbytes)
+        buffer = field.startEditing()
+        ctypes.memmove(int(getattr(buffer, "this", buffer)), array.ctypes.data, array.nbytes)
         field.finishEditing()
 
 
@@ -148,7 +148,7 @@ def unshaded() -> Any:
     return model
 
 
-def turned(outline: Any, sides: int = 48) -> Any:
+def revolve(outline: Any, sides: int = 48) -> Any:
     """A surface turned about Z from its outline (n, 2) of (radius, height), outside to the right of its course."""
     outline = np.asarray(outline, dtype=np.float64)
     node, hints = coin.SoSeparator(), coin.SoShapeHints()
@@ -178,7 +178,7 @@ def _strip(ring: Any, start: Any, end: Any, normal: Any) -> Any:
     return node
 
 
-def placed(pose: Any) -> Any:
+def transform_node(pose: Any) -> Any:
     """A transformation node for a (4, 4) pose."""
     node = coin.SoMatrixTransform()
     node.matrix = coin.SbMatrix(*np.asarray(pose, dtype=np.float64).T.ravel().tolist())
@@ -227,13 +227,13 @@ class MeridianNodes:
     def set_layers(self, wall: RevolvedWall, slices: Slices) -> None:
         """The beads of layers, or of some of many."""
         count = len(slices.layer)
-        shown = np.unique(np.linspace(0, count - 1, min(count, MOST_LAYERS)).round().astype(int))
+        indices = np.unique(np.linspace(0, count - 1, min(count, MOST_LAYERS)).round().astype(int))
         angles = np.linspace(
             wall.start, wall.end, max(2, round(SIDES * (wall.end - wall.start) / (2.0 * np.pi)) + 1)
         )
         radius, height = (
-            np.repeat(column[shown], len(angles)) for column in (slices.radius, slices.height)
+            np.repeat(column[indices], len(angles)) for column in (slices.radius, slices.height)
         )
         self.layers.set(
-            wall.points(radius, height, np.tile(angles, len(shown))), [len(angles)] * len(shown)
+            wall.points(radius, height, np.tile(angles, len(indices))), [len(angles)] * len(indices)
         )

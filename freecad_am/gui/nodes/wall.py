@@ -64,10 +64,10 @@ class WallNodes:
     def set_faces(self, source: Any, names: Sequence[str]) -> None:
         """Tint faces of an object, all where none are named; nothing where it has none such now."""
         try:
-            found = drawn(snapshot_of(source), names)
+            mesh = face_mesh(snapshot_of(source), names)
         except InputError:  # the shape is not read yet
-            found = NONE
-        self.faces.set(*found)
+            mesh = NONE
+        self.faces.set(*mesh)
 
 
 def unpickable() -> Any:
@@ -79,19 +79,20 @@ def unpickable() -> Any:
 
 def first_curves(wall: Any) -> list[Array]:
     """The curves in which a wall leaves its substrate, each (k, 3), closed ones with the first point repeated."""
-    first = wall.first
-    if isinstance(first, np.ndarray):
-        return [np.concatenate([first, first[:1]])]
+    curves = wall.first
+    if isinstance(curves, np.ndarray):
+        return [np.concatenate([curves, curves[:1]])]
     return [
-        np.concatenate([one.points, one.points[:1]]) if one.closed else one.points for one in first
+        np.concatenate([curve.points, curve.points[:1]]) if curve.closed else curve.points
+        for curve in curves
     ]
 
 
-def drawn(part: Taken, names: Sequence[str]) -> tuple[Array, Array]:
+def face_mesh(snapshot: Taken, names: Sequence[str]) -> tuple[Array, Array]:
     """Points (n, 3) and triangles (m, 3) of a mesh, or of faces of a shape, all where none are named. NO_FACES."""
-    if part.shape is not None:
-        return triangles_of(part.shape.copy(False, True), names)
-    body = part.body()
+    if snapshot.shape is not None:
+        return triangles_of(snapshot.shape.copy(False, True), names)
+    body = snapshot.body()
     return body.vertices, body.triangles.astype(np.int32)
 
 

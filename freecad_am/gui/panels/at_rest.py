@@ -9,18 +9,18 @@ from ..nodes.cell import Rest
 from ..texts.in_language import tr
 
 
-def stands(rest: Rest) -> str:
+def stands(rest_pose: Rest) -> str:
     """What is told of a machine at rest: its title, and what is nearest to its limit."""
-    if not rest.machine.free:
-        return tr("{} at rest, revolute axes at 0").format(rest.machine.title)
-    if not rest.reached:
+    if not rest_pose.machine.free:
+        return tr("{} at rest, revolute axes at 0").format(rest_pose.machine.title)
+    if not rest_pose.reached:
         text = tr("{} does not reach the part with the nozzle upright: all its axes are drawn at 0")
-        return text.format(rest.machine.title)
-    margin, label = rest.limits.smallest(rest.joints)
-    left, axis = float(np.degrees(margin)), rest.limits.labels[int(label)]
+        return text.format(rest_pose.machine.title)
+    margin, label = rest_pose.limits.smallest(rest_pose.joints)
+    margin_deg, axis = float(np.degrees(margin)), rest_pose.limits.labels[int(label)]
     text = (
         tr("{} with the nozzle upright: {} is {:.0f}° from its limit")
-        if left >= 0.0
+        if margin_deg >= 0.0
         else tr("{} with the nozzle upright: {} is {:.0f}° past its limit")
     )
-    return text.format(rest.machine.title, axis, abs(left))
+    return text.format(rest_pose.machine.title, axis, abs(margin_deg))

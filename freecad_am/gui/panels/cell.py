@@ -29,8 +29,8 @@ from ..cell.proposing import (
     ProposingPanel,
     whole_cell,
 )
-from ..nodes.cell import CellNodes, Scenery, at_the_end, with_machine
-from ..picking.shape_inputs import meant
+from ..nodes.cell import CellNodes, Scenery, at_the_end, machine_scenery
+from ..picking.shape_inputs import job_selection
 from ..texts.in_language import tr, translated
 from ..views.cell import toolpath_of
 from ..views.preview import Aside, Draft
@@ -78,10 +78,10 @@ class CellPanel(ProposingPanel):
     def _follow(self) -> None:
         """Fit the fields to the machine; those of an unknown one stay as they are."""
         with contextlib.suppress(InputError):  # which the preview tells
-            found = whole_cell(self._holds(MACHINE), self._holds(EXTERNAL))
-            if found is not None:
-                self._widget(MACHINE).setEditText(found[0])
-                self._widget(EXTERNAL).setText(found[1])
+            names = whole_cell(self._holds(MACHINE), self._holds(EXTERNAL))
+            if names is not None:
+                self._widget(MACHINE).setEditText(names[0])
+                self._widget(EXTERNAL).setText(names[1])
         name = self.places[MACHINE][0].value
         try:
             machine = machines.load(name, user_machines.folders())
@@ -89,8 +89,8 @@ class CellPanel(ProposingPanel):
             self._tell_of_machine(translated(error.message))
             return
         if self.unknown and self.unknown == self.notes[MACHINE].text():
-            self.tell(MACHINE, "")
-        self._set_setup([one.setup for one in machine.arrangements])
+            self.show_note(MACHINE, "")
+        self._set_setup([arrangement.setup for arrangement in machine.arrangements])
         self._fit(machine)
         self._offer_limits(list(machine.limit_sets))
         self._ask_proposal(name, machine)
@@ -109,7 +109,7 @@ class CellPanel(ProposingPanel):
     def _tell_of_machine(self, text: str) -> None:
         """What is wrong with the machine, until another one is followed."""
         self.unknown = text
-        self.tell(MACHINE, text)
+        self.show_note(MACHINE, text)
 
     def _set_setup(self, possible: list[str]) -> None:
         setup = self._widget(SETUP)
@@ -137,30 +137,30 @@ class CellPanel(ProposingPanel):
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Scenery]]:
         draft.check()
         work, folders = draft.prepare(), user_machines.folders()
-        drawn = with_machine if self.machine_box.isChecked() else at_the_end
+        drawn = machine_scenery if self.machine_box.isChecked() else at_the_end
         toolpath = self._toolpath()
-        read = None if toolpath is None else toolpath.Proxy.reader(toolpath)
+        reader = None if toolpath is None else toolpath.Proxy.reader(toolpath)
 
-        def both() -> tuple[Outcome, Scenery]:
-            made = work()
-            return made, drawn(made.value, None if read is None else read(), folders)
+        def compute() -> tuple[Outcome, Scenery]:
+            outcome = work()
+            return outcome, drawn(outcome.value, None if reader is None else reader(), folders)
 
-        return both
+        return compute
 
     def _toolpath(self) -> Any:
         """The toolpath that is for the cell; for a new one the selected toolpath, or the only one there is."""
         if self.obj is not None:
             return toolpath_of(self.obj)
-        known = [
+        candidates = [
             obj
             for obj in self.document.Objects
             if getattr(stage_of(obj), "kind", "") == "toolpath" and obj.Key
         ]
-        if len(known) > 1:
-            known = [obj for obj in meant(self.document.Name) if obj in known]
-        return known[0] if len(known) == 1 else None
+        if len(candidates) > 1:
+            candidates = [obj for obj in job_selection(self.document.Name) if obj in candidates]
+        return candidates[0] if len(candidates) == 1 else None
 
-    def _draw(self, made: Outcome, drawing: Scenery) -> str:
+    def _draw(self, outcome: Outcome, drawing: Scenery) -> str:
         self.nodes.set(drawing)
         without = suggestions.no_post(
             self.places[MACHINE][0].value, str(self._widget(SETUP).currentData())
@@ -169,12 +169,12 @@ class CellPanel(ProposingPanel):
             filter(None, ("" if drawing.rest is None else at_rest.stands(drawing.rest), without))
         )
 
-    def _placed(self, error: AmError) -> tuple[str, str]:
+    def _locate(self, error: AmError) -> tuple[str, str]:
         """What is wrong with the file of a machine is told under its name."""
         return (
             (MACHINE, translated(error.message))
             if error.code == "BAD_MACHINE"
-            else super()._placed(error)
+            else super()._locate(error)
         )
 
     def _draw_without(self) -> None:

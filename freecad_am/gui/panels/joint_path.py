@@ -76,9 +76,9 @@ class JointPathPanel(PreviewPanel):
 
     def _cell(self) -> Any:
         return next(
-            one
-            for one in self.choices
-            if isinstance(one, shape_inputs.StageChoice) and one.link.kind == "cell"
+            choice
+            for choice in self.choices
+            if isinstance(choice, shape_inputs.StageChoice) and choice.link.kind == "cell"
         )
 
     def _fit(self, *_: Any) -> None:
@@ -91,22 +91,22 @@ class JointPathPanel(PreviewPanel):
                 self.leave_out({_place(name) for name in OF_ROBOTS} | _ENDS)
                 return
             method = self.places[METHOD][0].value
-            others = {name for one, names in _OF_METHODS.items() if one != method for name in names}
+            unused = {name for key, names in _OF_METHODS.items() if key != method for name in names}
             if not externals(cell.Proxy.parameters(cell, CellParameters).external):
-                others.add("external_axes")
-            self.leave_out({_place(name) for name in (*_OF_ROTARY_AXES, *others)})
+                unused.add("external_axes")
+            self.leave_out({_place(name) for name in (*_OF_ROTARY_AXES, *unused)})
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Trial]]:
         job = draft.stage.job(draft.obj)
         toolpath, stale = draft.obj.Toolpath, self._stale_inputs()
 
         def work() -> tuple[Outcome, Trial]:
-            trial = Trial(toolpath, stale, *_tried(job))
+            trial = Trial(toolpath, stale, *_plan_sample(job))
             return Outcome(trial.planned, trial.planned.issues), trial
 
         return work
 
-    def _draw(self, made: Outcome, drawing: Trial) -> str:
+    def _draw(self, outcome: Outcome, drawing: Trial) -> str:
         judgement = drawing.judgement
         kind = self._colouring(judgement)
         values = {MARGIN: judgement.margin, CONDITION: judgement.condition, RATIO: judgement.ratio}[
@@ -116,7 +116,7 @@ class JointPathPanel(PreviewPanel):
         self.aside.put(self.obj, drawing.toolpath)
         return "\n".join(
             [
-                *_found(drawing),
+                *_feasibility_lines(drawing),
                 *_figures(judgement),
                 *(translated(issue.message) for issue in drawing.size),
                 *stale_lines(drawing.stale),
@@ -127,8 +127,8 @@ class JointPathPanel(PreviewPanel):
     def _colouring(self, judgement: Judgement) -> str:
         """What the object's own view tells by its colours, if that is of the machine and known."""
         kind = MARGIN if self.obj is None else self.obj.ViewObject.Colouring
-        known = (MARGIN, RATIO) if judgement.worst_condition is None else (MARGIN, CONDITION, RATIO)
-        return kind if kind in known else MARGIN
+        kinds = (MARGIN, RATIO) if judgement.worst_condition is None else (MARGIN, CONDITION, RATIO)
+        return kind if kind in kinds else MARGIN
 
     def _draw_without(self) -> None:
         self.nodes.clear()
@@ -136,15 +136,17 @@ class JointPathPanel(PreviewPanel):
 
     def _show_own(self, visible: bool) -> None:
         """What else stands back for the preview goes on doing so until the panel closes."""
-        others = [] if visible else [one for one in self.aside.objects if one is not self.obj]
-        self.aside.put(*others, None if visible else self.obj)
+        hidden_objects = (
+            [] if visible else [obj for obj in self.aside.objects if obj is not self.obj]
+        )
+        self.aside.put(*hidden_objects, None if visible else self.obj)
 
 
 def _place(name: str) -> str:
     return f"joints_{name}"
 
 
-def _tried(job: Job) -> tuple[Sampled, JointsOfBeads, Judgement, list[Issue]]:
+def _plan_sample(job: Job) -> tuple[Sampled, JointsOfBeads, Judgement, list[Issue]]:
     """The plan of as many points as are soon planned, with external axes where optimising them, which takes long, begins.
     Raises what planning raises."""
     sample = sample_toolpath(job.toolpath(), MAX_POINTS)
@@ -161,7 +163,7 @@ def _tried(job: Job) -> tuple[Sampled, JointsOfBeads, Judgement, list[Issue]]:
     return sample, planned, judgement, controllers.likely_size_issues(job.toolpath(), cell)
 
 
-def _found(trial: Trial) -> list[str]:
+def _feasibility_lines(trial: Trial) -> list[str]:
     """Whether it can be carried out, as far as that is known, and where not."""
     errors = [issue for issue in trial.planned.issues if issue.level == ERROR]
     if not errors:
@@ -179,9 +181,9 @@ def _found(trial: Trial) -> list[str]:
     return lines
 
 
-def _issue_text(issue: Issue, whole: bool) -> str:
+def _issue_text(issue: Issue, is_complete: bool) -> str:
     """A finding with its place: of some points alone it is the layer, whose beads and points have other numbers."""
-    placed = issue if whole else replace(issue, bead=None, point=None)
+    placed = issue if is_complete else replace(issue, bead=None, point=None)
     return (
         tr("{}: {}").format(translated(placed.where), translated(issue.message))
         if placed.where
@@ -191,7 +193,7 @@ def _issue_text(issue: Issue, whole: bool) -> str:
 
 def _figures(judgement: Judgement) -> list[str]:
     """What is least and most; machines with rotary axes have no condition, and what is out of reach nothing."""
-    found = (
+    figures = (
         (tr("Smallest joint margin: {:.1f} %, of {} in layer {}"), judgement.worst_margin, 100.0),
         (tr("Least condition: {0:.3f}, in layer {2}"), judgement.worst_condition, 1.0),
         (
@@ -202,7 +204,7 @@ def _figures(judgement: Judgement) -> list[str]:
     )
     return [
         text.format(factor * worst.value, worst.label, worst.layer)
-        for text, worst, factor in found
+        for text, worst, factor in figures
         if worst is not None
     ]
 

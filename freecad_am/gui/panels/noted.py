@@ -13,13 +13,13 @@ from ...core.issues import AmError, InputError, values_in
 from ...core.parameters.field import check_value
 from ...objects.fields import rows
 from ...objects.stage import Stage
-from ..colours import PLAIN, WRONG, set_role
+from ..colours import INVALID, PLAIN, set_role
 from ..picking.pick_field import Input
 from ..texts.in_language import translated, translated_error
 from ..widgets import fields
 from ..widgets.fold import Fold, Messages
 from ..widgets.present import present
-from ..widgets.upright import around
+from ..widgets.upright import scroll_areas_of
 
 
 class Noted:
@@ -47,35 +47,38 @@ class Noted:
         self.error.setVisible(bool(text))
         self.messages.to_top()
 
-    def tell(self, place: str, text: str, wrong: bool = True) -> None:
+    def show_note(self, key: str, text: str, wrong: bool = True) -> None:
         """Something about a field, under it; '' for nothing any more."""
-        note = self.notes[place]
-        set_role(note, WRONG if wrong else PLAIN)
+        note = self.notes[key]
+        set_role(note, INVALID if wrong else PLAIN)
         note.setText(text)
         note.setVisible(bool(text))
 
     def tell_error(self, error: AmError) -> None:
         """Under the field it belongs to, which is brought into sight and gets the focus; else at the top."""
-        place, text = self._placed(error)
-        if not place:
+        key, text = self._locate(error)
+        if not key:
             self.say(translated_error(error))
             return
-        self.marked[place] = self._entry(place)
-        self.tell(place, text)
-        widget = self._unfolded(place)
+        self.marked[key] = self._entry(key)
+        self.show_note(key, text)
+        widget = self._unfolded(key)
         widget.setFocus()
-        QtCore.QTimer.singleShot(0, lambda: _bring_into_sight(self.form, self.notes.get(place)))
+        QtCore.QTimer.singleShot(0, lambda: _bring_into_sight(self.form, self.notes.get(key)))
 
-    def _placed(self, error: AmError) -> tuple[str, str]:
+    def _locate(self, error: AmError) -> tuple[str, str]:
         """The place among the notes that an error belongs to, '' for none, and what to say there."""
-        place, names = error.where.replace(".", "_"), self._names()
-        for known, (field, _, _) in self.places.items():
-            if known == place or error.where in [f"{name}.{field.row.name}" for name in names]:
-                return known, translated(error.message)
+        error_key, names = error.where.replace(".", "_"), self._names()
+        for key, (field, _, _) in self.places.items():
+            if key == error_key or error.where in [f"{name}.{field.row.name}" for name in names]:
+                return key, translated(error.message)
         for choice in self.choices:
-            own = choice.link.name if hasattr(choice, "link") else choice.widget.objectName()
-            missing = error.code == "NO_INPUT" and own in values_in(error.message)
-            if missing or error.where in [*choice.places, *(f"{name}.{own}" for name in names)]:
+            input_name = choice.link.name if hasattr(choice, "link") else choice.widget.objectName()
+            missing = error.code == "NO_INPUT" and input_name in values_in(error.message)
+            if missing or error.where in [
+                *choice.places,
+                *(f"{name}.{input_name}" for name in names),
+            ]:
                 return choice.label, translated(error.message)
         return "", translated_error(error)
 
@@ -87,60 +90,60 @@ class Noted:
             *([] if self.obj is None else [self.obj.Label]),
         ]
 
-    def leave_out(self, places: Collection[str], also_entered: bool = False) -> None:
+    def leave_out(self, keys: Collection[str], also_entered: bool = False) -> None:
         """Show all fields but some that mean nothing now; those that hold something all the same only where it is said."""
-        for place, (field, _, fold) in self.places.items():
+        for key, (field, _, fold) in self.places.items():
             default = field.row.outer(
                 field.row.default
             )  # which some fields hold as a text, of nothing too
             empty = {repr(default), repr("" if default is None else str(default))}
-            holds = not also_entered and self._entry(place) not in empty
-            fold.show(field.widget, place not in places or holds)
+            holds = not also_entered and self._entry(key) not in empty
+            fold.show(field.widget, key not in keys or holds)
 
-    def _unfolded(self, place: str) -> Any:
+    def _unfolded(self, key: str) -> Any:
         """The widget of a place, its part of the panel unfolded."""
-        if place in self.places:
-            field, _, fold = self.places[place]
+        if key in self.places:
+            field, _, fold = self.places[key]
             fold.show(field.widget, True)
             fold.heading.setChecked(True)
             return field.widget
         self.heading.heading.setChecked(True)
-        return next(choice.widget for choice in self.choices if choice.label == place)
+        return next(choice.widget for choice in self.choices if choice.label == key)
 
-    def _entry(self, place: str) -> str:
+    def _entry(self, key: str) -> str:
         """What is entered at a place, to be compared."""
         try:
-            if place in self.places:
-                return repr(self.places[place][0].value)
-            chosen = [choice.widget for choice in self.choices if choice.label == place]
-            return repr([line.text() for widget in chosen for line in lines_of(widget)])
+            if key in self.places:
+                return repr(self.places[key][0].value)
+            widgets = [choice.widget for choice in self.choices if choice.label == key]
+            return repr([line.text() for widget in widgets for line in lines_of(widget)])
         except InputError as error:
             return error.message
 
     def judge_entries(self) -> None:
         """Tell under each field what its expression gives or is wrong as typed; an error of OK goes with its entry."""
-        for place, entry in list(self.marked.items()):
-            if self._entry(place) != entry:
-                del self.marked[place]
-                self.tell(place, "")
-        for place, (field, _, _) in self.places.items():
+        for key, entry in list(self.marked.items()):
+            if self._entry(key) != entry:
+                del self.marked[key]
+                self.show_note(key, "")
+        for key, (field, _, _) in self.places.items():
             with contextlib.suppress(ReferenceError):
-                judged = self._judged(field)
+                judged = self._judge_field(field)
                 if judged is not None:
-                    self.tell(place, *judged)
-                    self.remarks[place] = judged[0]
-                elif self.remarks.pop(place, None) == self.notes[place].text():
-                    self.tell(place, "")
+                    self.show_note(key, *judged)
+                    self.remarks[key] = judged[0]
+                elif self.remarks.pop(key, None) == self.notes[key].text():
+                    self.show_note(key, "")
 
-    def _judged(self, field: fields.Field) -> tuple[str, bool] | None:
+    def _judge_field(self, field: fields.Field) -> tuple[str, bool] | None:
         """What the expression in a field gives, or what is wrong with what it holds; None where there is nothing to tell."""
         try:
             value = field.value
             if field.row.form not in rows.FOLLOW:
                 return None
             if rows.is_expression(value):
-                found = self._evaluated(field, value)
-                return f"= {getattr(found, 'UserString', found)}", False
+                result = self._evaluated(field, value)
+                return f"= {getattr(result, 'UserString', result)}", False
             check_value(field.row.spec, field.row.inner(value, field.label), field.label)
         except InputError as error:
             return translated(error.message), True
@@ -149,9 +152,9 @@ class Noted:
     def _evaluated(self, field: fields.Field, value: str) -> Any:
         """An expression's value now, in the unit that a plain entry would have."""
         around = self.obj if self.obj is not None else next(iter(self.document.Objects), None)
-        found = rows.evaluated(value, around, field.label)
-        field.row.inner(found, field.label)  # refuses another dimension
-        return found
+        result = rows.evaluated(value, around, field.label)
+        field.row.inner(result, field.label)  # refuses another dimension
+        return result
 
 
 def lines_of(widget: Any) -> list[Any]:
@@ -162,6 +165,6 @@ def lines_of(widget: Any) -> list[Any]:
 def _bring_into_sight(form: Any, widget: Any) -> None:
     """Scroll the task panel to something in it."""
     with contextlib.suppress(RuntimeError):  # the panel is gone by now
-        for area in around(form):
+        for area in scroll_areas_of(form):
             if widget is not None and area.isVisible():
                 area.ensureWidgetVisible(widget)

@@ -19,7 +19,7 @@ from ...objects.stage_parts import Outcome
 from ...objects.staleness import STALE
 from ...objects.work import hooks
 from ..background.worker import Background, Worker
-from ..colours import PLAIN, WRONG, set_role
+from ..colours import INVALID, PLAIN, set_role
 from ..nodes.wall import WallNodes
 from ..picking import picking
 from ..picking.pick_field import Input, PickField
@@ -72,7 +72,7 @@ class PreviewPanel(StagePanel):
         AmError."""
         raise NotImplementedError
 
-    def _draw(self, made: Outcome, drawing: Any) -> str:
+    def _draw(self, outcome: Outcome, drawing: Any) -> str:
         """Draw what was computed; what to tell about it."""
         raise NotImplementedError
 
@@ -98,9 +98,9 @@ class PreviewPanel(StagePanel):
                 self.shown = now
                 self._renew()
         except ReferenceError:
-            self._gone()
+            self._report_closed()
 
-    def _gone(self) -> None:
+    def _report_closed(self) -> None:
         """The document or the object is no more: say so, before anything else is clicked or typed."""
         self.close()
         with contextlib.suppress(RuntimeError):  # so is the panel
@@ -118,8 +118,8 @@ class PreviewPanel(StagePanel):
 
     def _stages(self) -> list[Any]:
         """The stages that are inputs."""
-        chosen = [choice.value() for choice in self.choices if isinstance(choice, StageChoice)]
-        return [stage for stage in chosen if stage is not None]
+        stages = [choice.value() for choice in self.choices if isinstance(choice, StageChoice)]
+        return [stage for stage in stages if stage is not None]
 
     def _stale_inputs(self) -> tuple[str, ...]:
         """The labels of those that are out of date now."""
@@ -129,10 +129,10 @@ class PreviewPanel(StagePanel):
         """Begin to compute what is entered, in place of what was before."""
         self.background.cancel()
         refused = set(self.marked) if self.shown == self.refused else set()
-        for place in (self.blamed | set(self.marked)) - refused:
+        for key in (self.blamed | set(self.marked)) - refused:
             # what the entry itself is told stays; that may be of the entry before, while the next one is not judged yet
-            if self.remarks.get(place) != self.notes[place].text():
-                self.tell(place, "")
+            if self.remarks.get(key) != self.notes[key].text():
+                self.show_note(key, "")
         self.blamed.clear()
         lacks = self._lacks()
         if lacks:
@@ -156,8 +156,8 @@ class PreviewPanel(StagePanel):
     def _show_result(self, worker: Worker) -> None:
         """Show what was computed, or what is wrong."""
         try:
-            made, drawing = worker.result()
-            self._say(self._draw(made, drawing), has_errors(made.issues))
+            outcome, drawing = worker.result()
+            self._say(self._draw(outcome, drawing), has_errors(outcome.issues))
         except AmError as error:
             self._refuse(error)
         except ReferenceError:
@@ -167,31 +167,31 @@ class PreviewPanel(StagePanel):
             self._draw_without()
 
     def _refuse(self, error: AmError) -> None:
-        place, text = self._placed(error)
-        if place:
+        key, text = self._locate(error)
+        if key:
             self._say(tr("No preview: see the marked field."), False)
-            self._unfolded(place)
-            self.tell(place, text)
-            self.blamed.add(place)
+            self._unfolded(key)
+            self.show_note(key, text)
+            self.blamed.add(key)
         else:
             self._say(translated_error(error), True)
         self._draw_without()
 
     def _values(self) -> dict[str, Any]:
-        found = {}
-        for place, (field, _, _) in self.places.items():
+        values = {}
+        for key, (field, _, _) in self.places.items():
             try:
                 value = field.value
                 if rows.is_expression(value) and field.row.form in rows.FOLLOW:
                     value = self._evaluated(field, value)
-                found[field.row.name] = value
+                values[field.row.name] = value
             except InputError as error:
-                raise InputError(error.code, place, error.message) from None
-        return found
+                raise InputError(error.code, key, error.message) from None
+        return values
 
     def _say(self, text: str, wrong: bool) -> None:
         """Tell about the preview."""
-        set_role(self.state, WRONG if wrong else PLAIN)
+        set_role(self.state, INVALID if wrong else PLAIN)
         self.state.setText(text)
         self.state.setVisible(bool(text))
 
@@ -199,28 +199,28 @@ class PreviewPanel(StagePanel):
 
     def accept(self) -> bool:
         """Make or change the feature; True closes the panel."""
-        done = super().accept()
-        if done:
+        succeeded = super().accept()
+        if succeeded:
             self.close()
-        return done
+        return succeeded
 
     def apply(self) -> bool:
         """Make or change the feature; the preview goes on standing for what it draws."""
-        done = super().apply()
-        if done:
+        succeeded = super().apply()
+        if succeeded:
             self._show_own(False)
-        return done
+        return succeeded
 
     def _carry_out(self) -> bool:
         self.background.cancel()
-        done = super()._carry_out()
+        succeeded = super()._carry_out()
         self.seen = self.shown = (
             None  # what was being previewed is begun again, what was made is another one
         )
-        if not done:
+        if not succeeded:
             with contextlib.suppress(ReferenceError):
                 self.refused = self._entered()
-        return done
+        return succeeded
 
     def reject(self) -> bool:
         """Nothing was done; what was previewed goes."""
@@ -289,7 +289,7 @@ class PickPanel(PreviewPanel):
         """The input that a click can only mean which the one that waits for it does not take."""
         return None
 
-    def _taken(self, field: PickField) -> None:
+    def _on_pick(self, field: PickField) -> None:
         """Something was picked for an input."""
 
     def _refusal(self, field: PickField, pick: picking.Pick) -> str:
@@ -328,9 +328,9 @@ class PickPanel(PreviewPanel):
 
     def _arm(self, field: PickField, on: bool) -> None:
         """The pick button of a field was pressed or released."""
-        for other in self.picks:
-            if on and other is not field:
-                other.pick.setChecked(False)
+        for pick_field in self.picks:
+            if on and pick_field is not field:
+                pick_field.pick.setChecked(False)
         self.armed = field if on else (None if self.armed is field else self.armed)
         field.show()
         if on:
@@ -356,39 +356,37 @@ class PickPanel(PreviewPanel):
         try:
             picks = picking.selected(self.document)
         except ReferenceError:
-            self._gone()
+            self._report_closed()
             return
         for pick in picks:
             following = self._following(field)
             if field.take(pick):
-                self.tell(field.label, "")
+                self.show_note(field.label, "")
             elif following is not None and following.take(pick):
                 field = following
             else:
-                self.tell(field.label, self._refusal(field, pick))
+                self.show_note(field.label, self._refusal(field, pick))
         if picks:
-            self._taken(field)
+            self._on_pick(field)
             Gui.Selection.clearSelection()
             if field.picks and not field.more:
-                for one in self.picks:
-                    one.pick.setChecked(False)
+                for pick_field in self.picks:
+                    pick_field.pick.setChecked(False)
                 self._arm_missing()
 
-    def _placed(self, error: AmError) -> tuple[str, str]:
-        place, text = super()._placed(error)
-        if place:
-            return place, text
+    def _locate(self, error: AmError) -> tuple[str, str]:
+        key, text = super()._locate(error)
+        if key:
+            return key, text
         names = [self.draft, *self._names()]
         named = [(pick.obj.Label, field.label) for field in self.picks for pick in field.picks]
         named += [
-            (f"{name}.{link}", place)
-            for link, place in self._link_places().items()
-            for name in names
+            (f"{name}.{link}", key) for link, key in self._link_places().items() for name in names
         ]
-        for label, place in sorted(named, key=lambda pair: -len(pair[0])):
+        for label, key in sorted(named, key=lambda pair: -len(pair[0])):
             if error.where == label or error.where.startswith(f"{label} "):
                 return (
-                    place,
+                    key,
                     f"{error.where.removeprefix(label)} {translated(error.message)}".strip(),
                 )
         return "", translated_error(error)

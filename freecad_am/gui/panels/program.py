@@ -22,7 +22,7 @@ from ...objects.staleness import UP_TO_DATE
 from ...posts import catalogue
 from ..path import dock
 from ..picking import shape_inputs
-from ..picking.shape_inputs import meant
+from ..picking.shape_inputs import job_selection
 from ..program.listing import listing
 from ..program.preflight_list import PreflightList, summary
 from ..simulation import wording
@@ -31,9 +31,12 @@ from ..views.preview import Draft
 from ..widgets import suggestions
 from .preview import PreviewPanel, stale_lines
 
-FIRST = 40  # lines that are shown: controllers want a head of twenty
+SHOWN_LINES = 40  # lines that are shown: controllers want a head of twenty
 HIGH = 14  # lines that are seen at once, about
-SMALLER, LEAST = 0.85, 6.0  # than the text of the panel, which is narrow, and points at least
+FONT_SCALE, MIN_FONT_PT = (
+    0.85,
+    6.0,
+)  # than the text of the panel, which is narrow, and points at least
 NC = "program_nc_"  # before the names of parameters of five-axis machines
 POST, MOTION, START, START_LAYER = (
     "program_post",
@@ -73,12 +76,12 @@ class ProgramPanel(PreviewPanel):
             None,
         )
         if obj is None:
-            found = suggestions.post_for(self._links()["JointPath"])
-            for name, text in zip((POST, MOTION), found, strict=True):
+            post_and_motion = suggestions.post_for(self._links()["JointPath"])
+            for name, text in zip((POST, MOTION), post_and_motion, strict=True):
                 if text:
                     self.places[name][0].show(text)
             self.name.widget.setText(
-                rows.name_for(_part_label(), found[0] or suggestions.usual_post())
+                rows.name_for(_part_label(), post_and_motion[0] or suggestions.usual_post())
             )
         self._add_text()
         self.places[POST][0].widget.editTextChanged.connect(self._fit_post)
@@ -89,16 +92,16 @@ class ProgramPanel(PreviewPanel):
         post = str(self.places[POST][0].value)
         self.leave_out(
             [
-                place
-                for place in self.places
-                if place.startswith(NC) and not catalogue.reads_nc(post, place.removeprefix(NC))
+                key
+                for key in self.places
+                if key.startswith(NC) and not catalogue.reads_nc(post, key.removeprefix(NC))
             ]
         )
 
     def _add_text(self) -> None:
         self.text = listing("FirstLines")
         font = self.text.font()
-        font.setPointSizeF(max(LEAST, SMALLER * self.form.font().pointSizeF()))
+        font.setPointSizeF(max(MIN_FONT_PT, FONT_SCALE * self.form.font().pointSizeF()))
         self.text.setFont(font)
         self.text.setFixedHeight(HIGH * self.text.fontMetrics().lineSpacing())
         help = tr("The first lines of the program as it would be written")
@@ -112,11 +115,11 @@ class ProgramPanel(PreviewPanel):
         self.preflight.widget.hide()
         self.column.insertWidget(self.column.indexOf(self.text) + 1, self.preflight.widget)
 
-    def _go(self, place: Place) -> None:
+    def _go(self, location: Place) -> None:
         """A promise was clicked: the path is shown up to where it is worst."""
         path = self._links()["JointPath"]
         if path is not None:
-            dock.go_to(path, *place)
+            dock.go_to(path, *location)
 
     def _links(self) -> dict[str, Any]:
         path = next(choice for choice in self.choices if choice is not self.name)
@@ -125,13 +128,13 @@ class ProgramPanel(PreviewPanel):
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Beginning | None]]:
         job, stale = draft.stage.job(draft.obj), self._stale_inputs()
         path = draft.obj.JointPath
-        read = self._read_back(job, path)
-        promised = preflight.prepared(path.Toolpath, path, job.parameters, read)
+        read_back = self._read_back(job, path)
+        promised = preflight.prepared(path.Toolpath, path, job.parameters, read_back)
 
         def work() -> tuple[Outcome, Beginning | None]:
-            return Outcome(Written({}, None)), None if job.parameters.post == "none" else _begun(
-                job, stale, promised
-            )
+            return Outcome(
+                Written({}, None)
+            ), None if job.parameters.post == "none" else _write_beginning(job, stale, promised)
 
         return work
 
@@ -148,7 +151,7 @@ class ProgramPanel(PreviewPanel):
         same = obj.Proxy.parameters(obj, ProgramParameters) == job.parameters
         return preflight.read_back_of(obj) if same else None
 
-    def _draw(self, made: Outcome, drawing: Beginning | None) -> str:
+    def _draw(self, outcome: Outcome, drawing: Beginning | None) -> str:
         if drawing is None:
             self._draw_without()
             return tr("Without a post no file is written.")
@@ -166,27 +169,27 @@ class ProgramPanel(PreviewPanel):
     def _show_own(self, visible: bool) -> None:
         """A program draws nothing."""
 
-    def _placed(self, error: AmError) -> tuple[str, str]:
+    def _locate(self, error: AmError) -> tuple[str, str]:
         """Where a program starts is told under the first of its two fields."""
         return (
             (START_LAYER, translated(error.message))
             if error.where == START
-            else super()._placed(error)
+            else super()._locate(error)
         )
 
 
-def _begun(job: Job, stale: tuple[str, ...], promised: preflight.Work) -> Beginning:
+def _write_beginning(job: Job, stale: tuple[str, ...], promised: preflight.Work) -> Beginning:
     """The program of a joint path. Raises what writing it raises."""
-    made = posted(job)
-    main = catalogue.main_file(made.files)
-    lines = made.files[main].decode("latin-1").splitlines()[:FIRST]
-    times = timeline(made.motion, job.process, [layer.wait for layer in made.toolpath.layers])
+    written = posted(job)
+    main = catalogue.main_file(written.files)
+    lines = written.files[main].decode("latin-1").splitlines()[:SHOWN_LINES]
+    times = timeline(written.motion, job.process, [layer.wait for layer in written.toolpath.layers])
     return Beginning(
         main,
         "\n".join(lines),
-        sum(content.count(b"\n") for content in made.files.values()),
-        len(made.files),
-        totals(made.motion, times, job.process, made.toolpath),
+        sum(content.count(b"\n") for content in written.files.values()),
+        len(written.files),
+        totals(written.motion, times, job.process, written.toolpath),
         job.parameters.dry_run,
         stale,
         promised(),
@@ -208,7 +211,7 @@ def _lines(beginning: Beginning) -> list[str]:
 
 def _part_label() -> str:
     """What a program is called after: the part that is deposited, that of the selected job first."""
-    for obj in [*meant(), *App.ActiveDocument.Objects]:
+    for obj in [*job_selection(), *App.ActiveDocument.Objects]:
         if getattr(getattr(obj, "Proxy", None), "kind", "") == "feature" and obj.Source:
             return str(obj.Source[0].Label)
     return str(App.ActiveDocument.Label)

@@ -26,18 +26,18 @@ from ...objects.staleness import FAILED, INFEASIBLE
 from ...objects.work.progress import Cancelled
 from .. import icons, recorded
 from ..background.worker import Later
-from ..colours import PLAIN, WRONG
+from ..colours import INVALID, PLAIN
 from ..picking.pick_field import Input
 from ..signals import connect
 from ..texts.in_language import marked, tr, translated
-from ..texts.labels import without_key
+from ..texts.labels import escape_mnemonic
 from ..widgets import fields, suggestions
 from ..widgets.fields import Field
 from ..widgets.fold import Fold, Messages
 from ..widgets.upright import scrolls, upright
 from .noted import Noted, lines_of
 
-_GONE = (RuntimeError, ReferenceError, NameError)
+_DELETED_ERRORS = (RuntimeError, ReferenceError, NameError)
 
 
 class Watch:
@@ -64,13 +64,13 @@ class Watch:
 
     def _follow(self) -> None:
         follow = self.follow_undo()
-        with contextlib.suppress(*_GONE):  # it is closed already
+        with contextlib.suppress(*_DELETED_ERRORS):  # it is closed already
             if self.form is not None and follow is not None:
                 follow()
 
     def _close(self) -> None:
         form, self.form = self.form, None
-        with contextlib.suppress(*_GONE):  # it is closed already
+        with contextlib.suppress(*_DELETED_ERRORS):  # it is closed already
             if form is not None and form.window() is not form and Gui.Control.activeDialog():
                 Gui.Control.closeDialog()
 
@@ -82,7 +82,7 @@ class Watch:
 _watches: list[Watch] = []
 
 
-def with_document(panel: Any) -> None:
+def close_with_document(panel: Any) -> None:
     """Close a panel that was just opened when its document is closed."""
     if not _watches:
         _watches.append(Watch())
@@ -102,14 +102,14 @@ MOST_ISSUES = 6
 
 def own_lines(obj: Any) -> list[str]:
     """The status of a stage, its message and its findings."""
-    found = summarised(issues_of(obj))
-    message = [translated(message_of(obj))] if obj.Message and not found else []
+    issues = summarised(issues_of(obj))
+    message = [translated(message_of(obj))] if obj.Message and not issues else []
     lines = [
         tr("{}: {}").format(
             " ".join(filter(None, (translated(issue.level), translated(issue.where)))),
             translated(issue.message),
         )
-        for issue in found
+        for issue in issues
     ]
     return [tr("Status: {}").format(translated(obj.Status)), *message, *_first(lines)]
 
@@ -118,24 +118,32 @@ def lines_of_followers(obj: Any) -> list[str]:
     """Which of the stages that follow failed or cannot be carried out, and why; none that only waits for another one."""
     followers = set(obj.InListRecursive)
     wrong = [
-        one
-        for one in api.stages_of(obj.Document)
-        if one.Status in (FAILED, INFEASIBLE) and (one is obj or one in followers)
+        stage
+        for stage in api.stages_of(obj.Document)
+        if stage.Status in (FAILED, INFEASIBLE) and (stage is obj or stage in followers)
     ]
-    first = [one for one in wrong if one is not obj and not set(one.OutListRecursive) & set(wrong)]
+    causes = [
+        stage
+        for stage in wrong
+        if stage is not obj and not set(stage.OutListRecursive) & set(wrong)
+    ]
     texts = {FAILED: tr("{} failed: {}"), INFEASIBLE: tr("{} is infeasible: {}")}
     return _first(
-        [texts[one.Status].format(one.Label, translated(reason_of(one))) for one in first]
+        [texts[stage.Status].format(stage.Label, translated(reason_of(stage))) for stage in causes]
     )
 
 
 def _first(lines: list[str]) -> list[str]:
     """As many lines as there is room for, and how many more there are."""
-    left = len(lines) - MOST_ISSUES
-    return lines if left <= 0 else [*lines[:MOST_ISSUES], tr("and {} more").format(left)]
+    hidden_count = len(lines) - MOST_ISSUES
+    return (
+        lines
+        if hidden_count <= 0
+        else [*lines[:MOST_ISSUES], tr("and {} more").format(hidden_count)]
+    )
 
 
-LONG = 12  # fields of a section that are not advanced, from which on it is divided
+MIN_FIELDS_TO_DIVIDE = 12  # fields of a section that are not advanced, from which on it is divided
 PARTS = {
     marked("Filling in detail"): (
         "spacing_range_low",
@@ -157,54 +165,58 @@ _TITLES = {key: title for title, keys in PARTS.items() for key in keys}
 
 def titles(rows: Sequence[Row]) -> dict[str, str]:
     """The heading of each field of a section that is put under one, by its key; none of short sections."""
-    own = [row for row in rows if len(row.path) == 1 or not isinstance(row.path[-1], str)]
-    if len([row for row in own if not row.spec.advanced]) < LONG:
+    section_rows = [row for row in rows if len(row.path) == 1 or not isinstance(row.path[-1], str)]
+    if len([row for row in section_rows if not row.spec.advanced]) < MIN_FIELDS_TO_DIVIDE:
         return {}
     return {
-        row.key: _TITLES[row.key] for row in own if row.key in _TITLES and not row.spec.advanced
+        row.key: _TITLES[row.key]
+        for row in section_rows
+        if row.key in _TITLES and not row.spec.advanced
     }
 
 
 def values_of(obj: Any, section: Any) -> dict[str, Any]:
     """Inner values of a section of a stage by row key."""
-    found = {}
+    values = {}
     for row in rows(section.cls):
         try:
-            found[row.key] = row.inner(getattr(obj, row.name), row.name)
+            values[row.key] = row.inner(getattr(obj, row.name), row.name)
         except AmError:  # what cannot be read is replaced by its default
-            found[row.key] = row.default
-    return found
+            values[row.key] = row.default
+    return values
 
 
 def entries(obj: Any, proxy: type[Stage], inputs: dict[str, Any]) -> dict[str, Any]:
     """What the fields of a panel show of an object: parameters by place, in outer units or as the expression that they
     follow, and inputs by label."""
-    found = dict(inputs)
+    shown_values = dict(inputs)
     for section in proxy.sections:
         values = values_of(obj, section)
         for row in rows(section.cls):
-            found[f"{section.prefix}_{row.key}"] = _followed(obj, row) or row.outer(values[row.key])
-    return found
+            shown_values[f"{section.prefix}_{row.key}"] = _expression_of(obj, row) or row.outer(
+                values[row.key]
+            )
+    return shown_values
 
 
 def show_other(
     fields: Iterable[tuple[str, Field]],
     choices: Sequence[Input],
-    before: dict[str, Any],
+    previous: dict[str, Any],
     now: dict[str, Any],
 ) -> None:
     """Show what is another one now than before; what was entered elsewhere stays."""
-    for place, field in fields:
-        if now[place] != before[place]:
-            field.show(now[place])
+    for key, field in fields:
+        if now[key] != previous[key]:
+            field.show(now[key])
             field.applied()
     for choice in choices:
-        if now[choice.label] != before[choice.label]:
+        if now[choice.label] != previous[choice.label]:
             choice.show_stored(now[choice.label])
             choice.applied()
 
 
-def _followed(obj: Any, row: Row) -> str:
+def _expression_of(obj: Any, row: Row) -> str:
     return of(obj, row) if row.form in FOLLOW else ""
 
 
@@ -232,14 +244,14 @@ class StagePanel(Noted):
         self.document = App.ActiveDocument if obj is None else obj.Document
         self.form = QtGui.QWidget()
         self.form.setObjectName(f"RoboticAM_{proxy.__name__}")
-        self.form.setWindowTitle(without_key(title))
+        self.form.setWindowTitle(escape_mnemonic(title))
         self.form.setWindowIcon(QtGui.QIcon(icons.path(self.icon or proxy.kind.replace(" ", "_"))))
         self.column = QtGui.QVBoxLayout(self.form)
         self.column.setContentsMargins(2, 2, 2, 2)
         self.messages = Messages(self.lines)
         self.column.addWidget(self.messages)
-        self.error = self.messages.add("error", WRONG)
-        self.following = self.messages.add("following", WRONG)
+        self.error = self.messages.add("error", INVALID)
+        self.following = self.messages.add("following", INVALID)
         self.findings = self.messages.add(
             "findings", PLAIN
         )  # above all fields: some change what is deposited
@@ -257,7 +269,9 @@ class StagePanel(Noted):
             self.heading = Fold(tr("Inputs"), obj is None)
             for choice in choices:
                 self.notes[choice.label] = self.heading.add(choice.label, choice.widget)
-                choice.tell = functools.partial(type(self).tell, weakref.proxy(self), choice.label)
+                choice.show_note = functools.partial(
+                    type(self).show_note, weakref.proxy(self), choice.label
+                )
             self.column.addWidget(self.heading.widget)
         self.first_inputs = self._inputs()
         # by the name that errors give a parameter: its field, how the panel calls it, where it is
@@ -318,10 +332,12 @@ class StagePanel(Noted):
             if row.key in parted and value != row.default:
                 folds[title].heading.setChecked(True)  # what is changed is seen
             self._mark_driven(field)
-            own = group == section.group
-            heading = field.heading if own or title == group else _in_group(group, field.heading)
+            is_direct = group == section.group
+            heading = (
+                field.heading if is_direct or title == group else _in_group(group, field.heading)
+            )
             self.notes[f"{section.prefix}_{row.key}"] = folds[title].add(heading, field.widget)
-            name = field.label if own else _in_group(group, field.label)
+            name = field.label if is_direct else _in_group(group, field.label)
             self.places[f"{section.prefix}_{row.key}"] = (field, name, folds[title])
         for fold in folds.values():
             self.column.addWidget(fold.widget)
@@ -349,13 +365,15 @@ class StagePanel(Noted):
         if not is_there(self.obj):
             self.say(tr(CLOSED))
             return
-        before, self.known = self.known, self._entries()
-        fields_of = [(place, field) for place, (field, _, _) in self.places.items()]
+        previous, self.known = self.known, self._entries()
+        fields_of = [(name, field) for name, (field, _, _) in self.places.items()]
         with contextlib.suppress(AmError, ReferenceError):  # an input that is gone is told by OK
-            first, shown = self.first_inputs, self._inputs()
-            show_other(fields_of, self.choices, before, self.known)
+            stored_inputs, current_inputs = self.first_inputs, self._inputs()
+            show_other(fields_of, self.choices, previous, self.known)
             self.first_inputs = {
-                key: first[key] if key in first and shown.get(key) == text != first[key] else text
+                key: stored_inputs[key]
+                if key in stored_inputs and current_inputs.get(key) == text != stored_inputs[key]
+                else text
                 for key, text in self._inputs().items()
             }
         self._show_findings()
@@ -392,17 +410,17 @@ class StagePanel(Noted):
 
     def apply(self) -> bool:
         """Make or change the stage and keep the panel open, as that of the stage; a step of undo of its own."""
-        before = set() if self.obj is not None else {obj.Name for obj in self.document.Objects}
+        old_names = set() if self.obj is not None else {obj.Name for obj in self.document.Objects}
         if not self._carry_out():
             return False
         if self.obj is None:
-            made = [
+            new_objects = [
                 obj
                 for obj in self.document.Objects
-                if obj.Name not in before and type(obj.Proxy) is self.proxy
+                if obj.Name not in old_names and type(obj.Proxy) is self.proxy
             ]
-            self.obj = made[-1]
-            self.form.setWindowTitle(without_key(self.obj.Label))
+            self.obj = new_objects[-1]
+            self.form.setWindowTitle(escape_mnemonic(self.obj.Label))
         for field, _, _ in self.places.values():
             field.applied()
         for choice in self.choices:
@@ -415,18 +433,20 @@ class StagePanel(Noted):
     def _carry_out(self) -> bool:
         """Do what is entered, in one step of undo; False where it is refused, which is told."""
         self.say("")
-        for place in self.marked:
-            self.tell(place, "")
+        for key in self.marked:
+            self.show_note(key, "")
         self.marked.clear()
         try:
-            chosen = self._inputs()
+            current_inputs = self._inputs()
             changed = self._changed()
             if self.obj is None:
                 function = self.function or f"make_{self.proxy.kind.replace(' ', '_')}"
-                recorded.make(self.document, function, {**chosen, **changed})
-            elif changed or chosen != self.first_inputs or is_warned(self.obj):
+                recorded.make(self.document, function, {**current_inputs, **changed})
+            elif changed or current_inputs != self.first_inputs or is_warned(self.obj):
                 # what is no longer what was chosen is confirmed by OK, where nothing else was entered
-                inputs = chosen if chosen != self.first_inputs or not changed else {}
+                inputs = (
+                    current_inputs if current_inputs != self.first_inputs or not changed else {}
+                )
                 recorded.change(self.obj, {**inputs, **changed})
         except AmError as error:
             self.tell_error(error)
@@ -440,14 +460,14 @@ class StagePanel(Noted):
 
     def _changed(self) -> dict[str, str]:
         """Arguments of what was changed by keyword. Raises InputError named as a parameter is, not as a field."""
-        found = {}
-        for place, (field, _, _) in self.places.items():
+        arguments = {}
+        for key, (field, _, _) in self.places.items():
             try:
                 if field.changed:
-                    found[field.row.key] = repr(field.value)
+                    arguments[field.row.key] = repr(field.value)
             except InputError as error:
-                raise InputError(error.code, place, error.message) from None
-        return found
+                raise InputError(error.code, key, error.message) from None
+        return arguments
 
     def reject(self) -> bool:
         """Nothing was done since the last Apply, so nothing is taken back."""
@@ -480,4 +500,4 @@ def show(panel: Any) -> None:
         App.Console.PrintWarning(tr("Another task panel is open; close it first.") + "\n")
         return
     Gui.Control.showDialog(panel)
-    with_document(panel)
+    close_with_document(panel)

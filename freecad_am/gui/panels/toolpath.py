@@ -19,7 +19,7 @@ from ..signals import connect
 from ..texts.in_language import tr, translated_error
 from ..widgets.feature_order import FeatureOrder
 from ..widgets.fit_plot import FitPlot, fits_text, speeds_text
-from ..widgets.upright import around
+from ..widgets.upright import scroll_areas_of
 from .stage import StagePanel
 
 MODEL, WIDTH = "process_bead_model", "process_bead_width"
@@ -35,14 +35,14 @@ class ToolpathPanel(StagePanel):
 
     def __init__(self, obj: Any = None) -> None:
         title = tr("Toolpath") if obj is None else obj.Label
-        feature, *others = shape_inputs.of(Toolpath, obj)
+        feature, *other_choices = shape_inputs.of(Toolpath, obj)
         assert isinstance(feature, shape_inputs.StageChoice)
         link = next(link for link in Toolpath.links if link.many)
         present, sequence = (
             (None, BY_FEATURE) if obj is None else (getattr(obj, link.name), obj.Sequence)
         )
         order = FeatureOrder(link, feature, present, sequence)
-        super().__init__(Toolpath, title, [feature, order, *others], obj)
+        super().__init__(Toolpath, title, [feature, order, *other_choices], obj)
         self.plot = FitPlot()
         self.fit = QtGui.QLabel()
         self.fit.setObjectName("BeadModelFit")
@@ -54,33 +54,31 @@ class ToolpathPanel(StagePanel):
         self.choose.setToolTip(tr("Reads measured beads from a file of comma separated values"))
         self.choose.setAutoDefault(False)
         self.choose.clicked.connect(self._choose)
-        for more in (self.fit, self.plot, self.choose):
-            fold.add_below(field.widget, more)
+        for widget in (self.fit, self.plot, self.choose):
+            fold.add_below(field.widget, widget)
         self.later = Later(self.form, self._show_fit)
         field.widget.editTextChanged.connect(lambda *_: self._soon(True))
         width = self.places[WIDTH][0].widget.findChild(QtGui.QLineEdit)
         connect(width, "textChanged(QString)", lambda *_: self._soon(False))
         self._show_fit()
-        scan = next(one for one in others if one.widget.objectName() == "InputScan")
+        scan = next(choice for choice in other_choices if choice.widget.objectName() == "InputScan")
         scan.widget.currentIndexChanged.connect(lambda *_: self._fit_to(scan))
         self._fit_to(scan)
 
     def _fit_to(self, scan: Any) -> None:
         """Leave out what is asked about a scan where there is none."""
         self.leave_out(
-            ()
-            if scan.value() is not None
-            else {place for place in self.places if place.startswith(SCAN)}
+            () if scan.value() is not None else {key for key in self.places if key.startswith(SCAN)}
         )
 
     def _choose(self, *_: Any) -> None:
         """Ask for the file of a calibration table."""
-        first, kinds = (
+        folder, kinds = (
             os.path.dirname(self.document.FileName),
             f"{tr('Tables')} (*.csv);;{tr('All files')} (*)",
         )
         path, _ = QtGui.QFileDialog.getOpenFileName(
-            Gui.getMainWindow(), tr("Calibration table"), first, kinds
+            Gui.getMainWindow(), tr("Calibration table"), folder, kinds
         )
         if path:
             self.places[MODEL][0].widget.setEditText(path)
@@ -118,7 +116,7 @@ class ToolpathPanel(StagePanel):
 
     def _scroll(self) -> None:
         """Bring the fit into sight, once it has its place."""
-        for area in around(self.form):
+        for area in scroll_areas_of(self.form):
             if area.isVisible():
                 area.ensureWidgetVisible(self.fit)
 

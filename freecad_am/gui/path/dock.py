@@ -16,7 +16,7 @@ from ...objects.fields.preferences import in_user_units, quantity_text
 from ..background import redraw
 from ..docks import dock_area
 from ..docks.dock_area import Follower
-from ..picking.shape_inputs import meant
+from ..picking.shape_inputs import job_selection
 from ..preferences import watch
 from ..texts.in_language import tr, translated
 from ..widgets.steady import Scrolled, SteadyText, hold
@@ -348,7 +348,7 @@ class PathDock(Follower):
         paths = _paths()
         offer(form.choice, [path.Label for path in paths], paths.index(obj) if obj in paths else -1)
         if not there:
-            form.facts.tell(
+            form.facts.show_text(
                 tr("There is no path to show yet: make a toolpath or a joint path.")
                 if obj is None
                 else tr("{} is hidden, or has no result.").format(obj.Label)
@@ -366,7 +366,7 @@ class PathDock(Follower):
         row = max(low, (high if count is None else low + count) - 1)
         form.point.set(0, max(high - low - 1, 0), row - low)
         text = "" if view.scale is None or view.scale.title == LAYER else view.scale.text_at(row)
-        form.facts.tell(" · ".join(filter(None, (text, facts(rows, row)))))
+        form.facts.show_text(" · ".join(filter(None, (text, facts(rows, row)))))
 
     def _moved(self, row: Row) -> None:
         view, form = self.view(), self.form
@@ -475,7 +475,7 @@ _dock: PathDock | None = None
 
 def show(obj: Any = None) -> None:
     """Open the dock, of a path, of the selected one or that of the selected job or stage, or else of what is to be seen."""
-    _made().open(obj or next(filter(_is_path, meant()), None))
+    _made().open(obj or next(filter(_is_path, job_selection()), None))
 
 
 def go_to(obj: Any, layer: int, bead: int | None, point: int | None) -> None:

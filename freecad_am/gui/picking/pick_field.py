@@ -72,7 +72,7 @@ class Input:
     widget: Any = None
     places: tuple[str, ...] = ()  # what errors call it, other than by its link
 
-    def tell(self, text: str) -> None:
+    def show_note(self, text: str) -> None:
         """Something about it; the panel shows it under the widget."""
 
     @property
@@ -110,14 +110,14 @@ class PickField(Input):
         toggled: Callable[[PickField, bool], None],
         element: str = "",
         meshes: bool = False,
-        whole: bool = False,
+        allow_whole: bool = False,
     ) -> None:
         """element: what of an object is picked, where it is not the whole; meshes: they may be picked all the same;
         whole: so may an object as a whole in place of its edges."""
         self.link, self.label, self.element = link, label, element
         self.several = link.type_name == _LIST
         self.meshes = meshes or not element
-        self.whole = whole or element != EDGE
+        self.whole = allow_whole or element != EDGE
         self.picks = self._present(present)
         self.explicit = link.required or bool(
             self.picks
@@ -160,16 +160,18 @@ class PickField(Input):
         names = tuple(name for name in pick.names if self.element and name.startswith(self.element))
         if (not self.whole and not names) or (is_mesh(pick.obj) and not self.meshes):
             return False
-        mine = self.picks[0] if self.picks else None
+        current = self.picks[0] if self.picks else None
         if self.several:
-            kept = [one for one in self.picks if one.obj != pick.obj]
-            self.picks = kept if len(kept) < len(self.picks) else [*kept, Pick(pick.obj)]
-        elif mine is not None and mine.names and names:
-            if mine.obj != pick.obj:
+            remaining = [entry for entry in self.picks if entry.obj != pick.obj]
+            self.picks = (
+                remaining if len(remaining) < len(self.picks) else [*remaining, Pick(pick.obj)]
+            )
+        elif current is not None and current.names and names:
+            if current.obj != pick.obj:
                 return False
-            kept_names = tuple(name for name in mine.names if name not in names)
-            new = tuple(name for name in names if name not in mine.names)
-            self.picks = [Pick(mine.obj, kept_names + new)] if kept_names + new else []
+            kept_names = tuple(name for name in current.names if name not in names)
+            new = tuple(name for name in names if name not in current.names)
+            self.picks = [Pick(current.obj, kept_names + new)] if kept_names + new else []
         else:
             self.picks = [Pick(pick.obj, names)]
         self.show()
@@ -193,12 +195,12 @@ class PickField(Input):
         self.text.setToolTip(text or translated(self.link.help))
         if self.pick.isChecked():
             several = tr("click objects") if self.several else tr("click an object")
-            asked = {FACE: tr("click faces or an object"), EDGE: tr("click edges")}.get(
+            prompt = {FACE: tr("click faces or an object"), EDGE: tr("click edges")}.get(
                 self.element, several
             )
         else:
-            asked = tr("pick") if self.link.required else tr("none")
-        self.text.setPlaceholderText(asked)
+            prompt = tr("pick") if self.link.required else tr("none")
+        self.text.setPlaceholderText(prompt)
         self.empty.setEnabled(bool(self.picks))
 
     # ---- for the panel

@@ -30,39 +30,37 @@ class Pick:
 
 def selected(document: Any) -> list[Pick]:
     """What is selected in a document now, in the order of selection; what can be neither wall nor substrate left out."""
-    found: dict[str, Pick] = {}
+    picks: dict[str, Pick] = {}
     for entry in Gui.Selection.getSelectionEx(document.Name, 0):
         for path in entry.SubElementNames or ("",):
             obj, name = nested.clicked(entry.Object, path)
-            obj = _alone(obj)
+            obj = _single_member(obj)
             if usable(obj):
-                before = found.get(obj.Name, Pick(obj)).names
-                found[obj.Name] = Pick(
-                    obj, (*before, name) if name and name not in before else before
-                )
-    return list(found.values())
+                names = picks.get(obj.Name, Pick(obj)).names
+                picks[obj.Name] = Pick(obj, (*names, name) if name and name not in names else names)
+    return list(picks.values())
 
 
 def selected_line(document: Any) -> Pick | None:
     """The first edge, datum line or axis of a sketch that is selected in a document, or a whole object where none is: what
     something may turn about. None where nothing is selected."""
-    whole: Pick | None = None
+    whole_pick: Pick | None = None
     for entry in Gui.Selection.getSelectionEx(document.Name, 0):
         for path in entry.SubElementNames or ("",):
             obj, name = nested.line_of(entry.Object, path)
             pick = Pick(obj, (name,) if name else ())
             if name or obj.TypeId in nested.LINES:
                 return pick
-            whole = whole or pick
-    return whole
+            whole_pick = whole_pick or pick
+    return whole_pick
 
 
-def _alone(obj: Any) -> Any:
+def _single_member(obj: Any) -> Any:
     """What a group holds, where that is one thing with a shape; else the object itself."""
     if not any(obj.isDerivedFrom(kind) for kind in nested.GROUPS):
         return obj
-    held = [one for one in obj.Group if usable(one)]
-    return held[0] if len(held) == 1 else obj
+    members = [member for member in obj.Group if usable(member)]
+    return members[0] if len(members) == 1 else obj
 
 
 def usable(obj: Any) -> bool:
@@ -78,15 +76,15 @@ def is_mesh(obj: Any) -> bool:
     return meshes.is_mesh(obj)
 
 
-def with_faces(pick: Pick) -> Pick:
+def pick_of_faces(pick: Pick) -> Pick:
     """The pick with its faces alone."""
     return Pick(pick.obj, tuple(name for name in pick.names if name.startswith(FACE)))
 
 
-def whole(pick: Pick) -> Pick:
+def expand_pick(pick: Pick) -> Pick:
     """What a click on something to be deposited means: one face of several stands for all of its object, for that is what a
     click in the 3D view selects; several faces are meant themselves."""
-    faces = with_faces(pick)
+    faces = pick_of_faces(pick)
     lone = len(faces.names) == 1 and len(global_shape(pick.obj).Faces) > 1
     return Pick(pick.obj) if lone else faces
 
@@ -98,15 +96,22 @@ def stands(wall: Pick) -> bool:
         return True
     if not is_alone(wall.obj):
         return False
-    shape, names = global_shape(wall.obj), with_faces(wall).names
+    shape, names = global_shape(wall.obj), pick_of_faces(wall).names
     return stand([shape.getElement(name) for name in names] or list(shape.Faces))
 
 
 def is_alone(obj: Any) -> bool:
     """Whether the document of an object has no solid and no mesh but those that it is made of, or that are made of it."""
-    own = {obj.Name, *(one.Name for one in (*obj.OutListRecursive, *obj.InListRecursive))}
-    others = [one for one in obj.Document.Objects if one.Name not in own and stage_of(one) is None]
-    return not any(is_mesh(one) or _has_solids(one) for one in others)
+    related_names = {
+        obj.Name,
+        *(member.Name for member in (*obj.OutListRecursive, *obj.InListRecursive)),
+    }
+    unrelated = [
+        member
+        for member in obj.Document.Objects
+        if member.Name not in related_names and stage_of(member) is None
+    ]
+    return not any(is_mesh(member) or _has_solids(member) for member in unrelated)
 
 
 def _has_solids(obj: Any) -> bool:
@@ -121,7 +126,7 @@ def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
     """
     if len(picks) == 1 and is_mesh(picks[0].obj):
         return picks[0], None, ""
-    picks = [with_faces(pick) for pick in picks]
+    picks = [pick_of_faces(pick) for pick in picks]
     walls = [pick for pick in picks if not is_mesh(pick.obj)]
     faced = [pick for pick in walls if pick.names]
     if len(picks) > 2:
@@ -133,8 +138,8 @@ def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
         )
         return wall, None, text.format(len(picks))
     wall = (faced or walls or [None])[0]
-    others = [pick for pick in picks if pick is not wall]
-    return wall, Pick(others[0].obj) if len(others) == 1 else None, ""
+    substrates = [pick for pick in picks if pick is not wall]
+    return wall, Pick(substrates[0].obj) if len(substrates) == 1 else None, ""
 
 
 def refused(document: Any) -> str:

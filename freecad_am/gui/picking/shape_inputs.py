@@ -21,14 +21,14 @@ from .pick_field import Input, NextClick, pick_button
 _ORDER = ("joint path", "cell", "feature", "toolpath", "program")
 
 
-def meant(document: str = "") -> list[Any]:
+def job_selection(document: str = "") -> list[Any]:
     """The selected objects of a document, by its name, or of the active one, and behind them the other stages of their
     jobs: joint paths, then the others in the order in which they are made."""
-    chosen = selected(document)
-    found = [obj for obj in chosen if not is_group(obj)]
-    for obj in chosen:
-        found += [stage for stage in _job(obj) if stage not in found]
-    return found
+    selection = selected(document)
+    objects = [obj for obj in selection if not is_group(obj)]
+    for obj in selection:
+        objects += [stage for stage in _job(obj) if stage not in objects]
+    return objects
 
 
 def selected(document: str = "") -> list[Any]:
@@ -55,10 +55,13 @@ def _job(obj: Any) -> list[Any]:
         return []
     if group is None:
         return sorted(linked, key=lambda stage: (_rank(stage), -stage.ID))
-    held = sorted(
+    members = sorted(
         stages_in(group), key=lambda stage: (_rank(stage), bool(linked) and stage not in linked)
     )
-    return [*held, *(one for stage in held for one in _leading_to(stage) if one not in held)]
+    return [
+        *members,
+        *(origin for stage in members for origin in _leading_to(stage) if origin not in members),
+    ]
 
 
 def _group_of(stage: Any) -> Any:
@@ -71,17 +74,21 @@ def _line(stage: Any) -> list[Any]:
     planned = getattr(stage, "Planned", None)
     origin = stage if planned is None or stage_of(planned) is None else planned
     lines = [_leading_to(obj) for obj in stage.Document.Objects if stage_of(obj) is not None]
-    return list(dict.fromkeys(one for line in lines if origin in line for one in line))
+    return list(dict.fromkeys(member for line in lines if origin in line for member in line))
 
 
 def _leading_to(stage: Any) -> list[Any]:
     """A stage and those that it is made from. Expressions count for nothing: jobs may share figures."""
-    found = [stage]
-    for obj in found:
+    stages = [stage]
+    for obj in stages:
         inputs = [getattr(obj, link.name) for link in obj.Proxy.links]
-        every = [one for some in inputs for one in (some if isinstance(some, list) else [some])]
-        found += [one for one in every if stage_of(one) is not None and one not in found]
-    return found
+        sources = [
+            source for value in inputs for source in (value if isinstance(value, list) else [value])
+        ]
+        stages += [
+            source for source in sources if stage_of(source) is not None and source not in stages
+        ]
+    return stages
 
 
 def _rank(stage: Any) -> int:
@@ -134,10 +141,14 @@ class ShapeChoice(Input):
 
     def _propose_selected(self) -> None:
         """Take what was selected before the panel was opened, where a click on one face stands for all of it."""
-        found = self._selected()
-        pick = found if found is None or self.link.name == "Axis" else picking.whole(found)
+        selection = self._selected()
+        pick = (
+            selection
+            if selection is None or self.link.name == "Axis"
+            else picking.expand_pick(selection)
+        )
         self._take(pick)
-        if found is not None and pick is not None and found.names and not pick.names:
+        if selection is not None and pick is not None and selection.names and not pick.names:
             self.note = tr("The whole of {} is used; Pick uses the selected faces only.").format(
                 pick.obj.Label
             )
@@ -170,14 +181,14 @@ class ShapeChoice(Input):
         """Nothing is picked."""
         self.present = None
         self._show()
-        self.tell("")
+        self.show_note("")
 
     def _take_selected(self, *_: Any) -> None:
         """Take what is selected, perhaps after the document was closed."""
         try:
             self.take()
         except ReferenceError:
-            self.tell(
+            self.show_note(
                 tr(
                     "The document or object in this panel was deleted; cancel and open the panel "
                     "again."
@@ -188,21 +199,21 @@ class ShapeChoice(Input):
         """Take what is selected now; what cannot be taken is told, and what was taken before stays."""
         self._take(self._selected())
 
-    def _take(self, found: picking.Pick | None) -> None:
-        wrong = "" if found is not None else self._refusal()
-        if found is not None:
-            self.present = (found.obj, list(found.names))
+    def _take(self, pick: picking.Pick | None) -> None:
+        wrong = "" if pick is not None else self._refusal()
+        if pick is not None:
+            self.present = (pick.obj, list(pick.names))
         elif not self.link.required and not Gui.Selection.getSelection(self.document.Name):
             self.present, wrong = None, ""
         self._show()
-        self.tell(wrong)
+        self.show_note(wrong)
 
     def _selected(self) -> picking.Pick | None:
         if self.link.name == "Axis":
             return picking.selected_line(self.document)
         picks = picking.selected(self.document)
         return next(
-            (picking.with_faces(pick) for pick in picks if not picking.is_mesh(pick.obj)), None
+            (picking.pick_of_faces(pick) for pick in picks if not picking.is_mesh(pick.obj)), None
         )
 
     def value(self) -> Any:
@@ -227,11 +238,11 @@ class ShapeChoice(Input):
         self.text.setToolTip(text)
         self._show_state(bool(text))
 
-    def _show_state(self, held: bool) -> None:
+    def _show_state(self, is_set: bool) -> None:
         """Tell what to click while a click is awaited."""
         idle = tr("select") if self.link.required else self.nothing
         self.text.setPlaceholderText(tr("click an object") if self.pick.isChecked() else idle)
-        self.empty.setEnabled(held)
+        self.empty.setEnabled(is_set)
 
     @property
     def missing(self) -> str:
@@ -292,7 +303,7 @@ class ObjectsChoice(ShapeChoice):
         """Take what is selected now."""
         self.objects = [pick.obj for pick in picking.selected(self.document)]
         self._show()
-        self.tell("" if self.objects else picking.refused(self.document))
+        self.show_note("" if self.objects else picking.refused(self.document))
 
     def _show(self) -> None:
         text = ", ".join(obj.Label for obj in self.objects)
@@ -304,7 +315,7 @@ class ObjectsChoice(ShapeChoice):
         """Nothing is picked."""
         self.objects = []
         self._show()
-        self.tell("")
+        self.show_note("")
 
     def value(self) -> Any:
         return self.objects
@@ -339,11 +350,11 @@ class StageChoice(Input):
                 self.widget.addItem(obj.Label, obj.Name)
         if not link.required:
             self.widget.addItem(tr("none"), "")
-        wished = [obj.Name for obj in meant() if obj.Name in names]
-        last = (
+        wished = [obj.Name for obj in job_selection() if obj.Name in names]
+        fallback = (
             [] if link.kind == INSPECTION else names[-1:]
         )  # what is compared elsewhere is an input only if chosen
-        self.proposed = present.Name if present is not None else (wished or last or [""])[0]
+        self.proposed = present.Name if present is not None else (wished or fallback or [""])[0]
         self.widget.setCurrentIndex(max(0, self.widget.findData(self.proposed)))
 
     def show_stored(self, stored: Any) -> None:
@@ -383,8 +394,8 @@ class StageChoice(Input):
         return self.document.getObject(name) if name else None
 
     def arguments(self) -> dict[str, str]:
-        chosen = self.value()
-        return {self.link.key: "None" if chosen is None else recorded.reference(chosen)}
+        stage = self.value()
+        return {self.link.key: "None" if stage is None else recorded.reference(stage)}
 
 
 def _compares_stages(obj: Any) -> bool:
@@ -417,22 +428,22 @@ class NameChoice(Input):
 
 def of(proxy: type[Stage], obj: Any = None) -> list[Input]:
     """The inputs of a stage to be made, or of an existing one."""
-    found: list[Input] = []
+    inputs: list[Input] = []
     for link in proxy.links:
         present = None if obj is None else getattr(obj, link.name)
         if link.kind and link.many:
             continue
         if link.kind:
-            found.append(StageChoice(link, present))
+            inputs.append(StageChoice(link, present))
         elif link.type_name == "App::PropertyLinkList":
-            found.append(ObjectsChoice(link, present))
+            inputs.append(ObjectsChoice(link, present))
         elif link.type_name == "App::PropertyLink":
-            found.append(ObjectChoice(link, present))
+            inputs.append(ObjectChoice(link, present))
         else:
-            found.append(ShapeChoice(link, present, take_now=link.required))
+            inputs.append(ShapeChoice(link, present, take_now=link.required))
     if obj is None:
-        _match(found)
-    return found
+        _match(inputs)
+    return inputs
 
 
 def _match(choices: list[Input]) -> None:

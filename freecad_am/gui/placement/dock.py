@@ -24,7 +24,7 @@ from ...objects.work import progress
 from ...objects.work.progress import Cancelled
 from .. import recorded
 from ..background.worker import Background, Worker
-from ..colours import PLAIN, WRONG, set_role
+from ..colours import INVALID, PLAIN, set_role
 from ..docks import dock_area
 from ..docks.dock_area import Lookout
 from ..preferences import watch
@@ -91,7 +91,7 @@ class Form(QtGui.QWidget):
     def tell(self, text: str, wrong: bool = False) -> None:
         """Say what goes on, or what came of it."""
         self.summary.setText(text)
-        set_role(self.summary, WRONG if wrong else PLAIN)
+        set_role(self.summary, INVALID if wrong else PLAIN)
 
     def tell_colours(self, shown: figures.Coloured | None) -> None:
         """What the colours mean."""

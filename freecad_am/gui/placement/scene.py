@@ -21,7 +21,7 @@ from ...core.toolpath import Toolpath
 from ...core.types import Array
 from ...objects import user_machines
 from ..colours import ramp
-from ..nodes.cell import CellNodes, resting_point, with_machine
+from ..nodes.cell import CellNodes, machine_scenery, resting_point
 from ..nodes.lines import Lines, fill, unshaded
 from ..nodes.wall import unpickable
 from .figures import Coloured
@@ -138,7 +138,7 @@ class Scene:
         self.settings, self.cell, self.joints = settings, cell, joints
         self.rest = placing(cell, joints)
         self.to_view = frames.inverse(self.rest.part)
-        self.machine.set(with_machine(settings, toolpath, folders))
+        self.machine.set(machine_scenery(settings, toolpath, folders))
 
     def seen(self, moves: str, poses: Array) -> Array:
         """(n, 3) where poses (n, 6) of what is moved are in the view."""

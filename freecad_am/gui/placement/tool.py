@@ -10,7 +10,7 @@ import FreeCADGui as Gui
 
 from ...core.issues import AmError
 from ...objects.stage import stage_of
-from ..picking.shape_inputs import job_named, meant
+from ..picking.shape_inputs import job_named, job_selection
 from ..texts.in_language import error_line, tr, translated_error
 from . import dock
 
@@ -20,7 +20,7 @@ KINDS = ("joint path", "toolpath")  # what is placed, the one that tells most fi
 def placement() -> None:
     """Place what is selected, a joint path, a toolpath with a cell, or a program's; where nothing of a job is, the last one
     of the document."""
-    selected = [found for found in map(_path, meant()) if found is not None]
+    selected = [found for found in map(_path, job_selection()) if found is not None]
     if not selected and job_named():
         _say(
             tr(

@@ -19,7 +19,7 @@ from ...plots.source import Source
 from ..background.worker import Background, Later, Worker
 from ..docks import dock_area
 from ..docks.dock_area import Follower
-from ..picking.shape_inputs import meant
+from ..picking.shape_inputs import job_selection
 from ..preferences import watch
 from ..texts.in_language import tr, translated_error
 from ..widgets.steady import Scrolled
@@ -362,4 +362,4 @@ def show(obj: Any = None) -> None:
     global _dock
     if _dock is None:
         _dock = PlotsDock()
-    _dock.open(obj or next(filter(plottable, meant()), None))
+    _dock.open(obj or next(filter(plottable, job_selection()), None))

@@ -10,7 +10,7 @@ from PySide import QtCore, QtGui
 
 from ...core.issues import NOTE, Issue
 from ...core.preflight.promise import Place, Promise
-from ..colours import FAINT, GOOD, WRONG, of
+from ..colours import FAINT, GOOD, INVALID, of
 from ..texts.in_language import sentence, tr, translated
 
 HIGH = 16  # lines that are seen at once, about
@@ -56,7 +56,7 @@ def summary(promises: Sequence[Promise]) -> str:
 
 def _row(one: Promise) -> Any:
     """Two lines: what is promised, and how far it is kept and where. How it was checked is the tip."""
-    mark, colour = {True: ("✓", GOOD), False: ("✗", WRONG), None: ("?", FAINT)}[one.ok]
+    mark, colour = {True: ("✓", GOOD), False: ("✗", INVALID), None: ("?", FAINT)}[one.ok]
     further = [translated(one.figure), "" if one.place is None else _where(one.place)]
     item = QtGui.QListWidgetItem(
         "\n".join(

@@ -23,7 +23,7 @@ from ...objects.results.findings import message_of
 from ...objects.staleness import UP_TO_DATE
 from ...posts.catalogue import Lines, lines_of
 from .. import icons
-from ..colours import FAINT, PLAIN, WRONG, set_role
+from ..colours import FAINT, INVALID, PLAIN, set_role
 from ..path import dock as path_dock
 from ..path import path_view
 from ..simulation import wording
@@ -164,7 +164,7 @@ class ProgramWindow:
             AttributeError,
         ):  # its joint path is gone, or undo has not yet brought all of it back
             self.sums.setText("")
-        set_role(self.state, PLAIN if fits else WRONG)
+        set_role(self.state, PLAIN if fits else INVALID)
         set_role(self.text, PLAIN if fits else FAINT)
         self._show()
 

@@ -15,7 +15,7 @@ from ...core.planning.redundancy import curve as rotation_curve
 from ...core.planning.redundancy.curve import Followed, Sums
 from ...core.types import Array
 from ..background.worker import Background, Worker
-from ..colours import PLAIN, WRONG, of, set_role
+from ..colours import INVALID, PLAIN, of, set_role
 from ..texts.in_language import link_touches, tr
 from ..widgets.steady import Scrolled
 from .draft import Draft
@@ -104,7 +104,7 @@ class Figures(QtGui.QTableWidget):
         ).format(sums.wound)
         self.item(row, 1).setToolTip(wound if sums.wound else "")
         for column, wrong in ((1, sums.lost > 0), (4, sums.ratio > 1.0)):
-            ink = of(WRONG if wrong else PLAIN)
+            ink = of(INVALID if wrong else PLAIN)
             self.item(row, column).setForeground(QtGui.QBrush(ink))
         self.resizeColumnsToContents()
         self.filling = False
@@ -197,13 +197,13 @@ class Form(QtGui.QWidget):
     def tell(self, text: str, wrong: bool = False) -> None:
         """Say how the curve stands, or what goes on."""
         self.verdict.setText(text)
-        set_role(self.verdict, WRONG if wrong else PLAIN)
+        set_role(self.verdict, INVALID if wrong else PLAIN)
 
     def show_joints(self, ranges: list[tuple[str, bool]]) -> None:
         """What each joint does, and whether it goes past a limit."""
         whole = [(text.replace(" ", "&nbsp;"), wrong) for text, wrong in ranges]
         parts = [
-            f'<font color="{of(WRONG).name()}">{text}</font>' if wrong else text
+            f'<font color="{of(INVALID).name()}">{text}</font>' if wrong else text
             for text, wrong in whole
         ]
         self.joints.setText(" &nbsp; ".join(parts))

@@ -10,7 +10,7 @@ import FreeCADGui as Gui
 
 from ...core.issues import AmError
 from ...objects.stage import stage_of
-from ..picking.shape_inputs import job_named, meant
+from ..picking.shape_inputs import job_named, job_selection
 from ..texts.in_language import error_line, tr, translated_error
 from .dock import RedundancyMapDock
 from .draft import source_of
@@ -30,7 +30,7 @@ def show(obj: Any) -> RedundancyMapDock:
 def redundancy_map() -> None:
     """Open the map of the selected joint path, or that of the program or job that is selected; where nothing of a job is,
     of the last one with a result."""
-    selected = [found for found in map(_joint_path, meant()) if found is not None]
+    selected = [found for found in map(_joint_path, job_selection()) if found is not None]
     if not selected and job_named():
         _say(
             tr("{} has no joint path to map; make one first, or select another job.").format(

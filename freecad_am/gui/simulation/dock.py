@@ -153,7 +153,7 @@ class Simulation:
             self.scene.show(
                 moment.row, state.joints, state.position, not bool(state.standing), moment.links
             )
-            redraw.with_fields(self.scene.view)
+            redraw.schedule_redraw(self.scene.view)
         except (RuntimeError, ReferenceError):  # the view was closed
             self.end(tr("its view was closed"))
             return

@@ -11,7 +11,7 @@ from PySide import QtCore, QtGui
 
 from ...core.types import Array, Mask
 from .. import colours, icons
-from ..colours import PLAIN, WRONG, set_role
+from ..colours import INVALID, PLAIN, set_role
 from ..texts.in_language import tr
 from ..widgets.steady import SteadyLabel
 from . import wording
@@ -88,7 +88,7 @@ class JointBars(QtGui.QWidget):
             painter.drawText(QtCore.QRect(at, 0, width, self.row), int(flags), text)
         for axis, label in enumerate(self.names):
             top = (axis + 1) * self.row
-            colour = colours.of(colours.WRONG) if self.bad[axis] else ink
+            colour = colours.of(colours.INVALID) if self.bad[axis] else ink
             painter.setPen(colour)
             shown = self.texts(axis)
             self._text(painter, _PAD, top, name, label, False)
@@ -170,7 +170,7 @@ class Fields(QtGui.QWidget):
                 "stale", tr("This is an earlier plan; recompute the document to update it.")
             )
             stale.setWordWrap(True)
-            set_role(stale, WRONG)
+            set_role(stale, INVALID)
             column.addWidget(stale)
         column.addWidget(self.slider)
         column.addLayout(self._moment())
@@ -256,12 +256,12 @@ class Fields(QtGui.QWidget):
     def mark_play(self) -> None:
         """The button that plays pauses while it does."""
         mark = "pause" if self.player.playing else "play"
-        self.buttons["play"].setIcon(icons.of_player(mark, colours.ink()))
+        self.buttons["play"].setIcon(icons.player_icon(mark, colours.ink()))
 
     def show_icons(self) -> None:
         """The icons of all buttons, in the colour that texts have in the present theme."""
         for name, button in self.buttons.items():
-            button.setIcon(icons.of_player(name, colours.ink()))
+            button.setIcon(icons.player_icon(name, colours.ink()))
         self.mark_play()
 
     def tell(self, moment: Moment) -> None:
@@ -269,8 +269,8 @@ class Fields(QtGui.QWidget):
         self.filling = True
         self.slider.setValue(round(self.player.time / max(self.run.times.total, 1e-9) * STEPS))
         self.filling = False
-        self.labels["clock"].tell(wording.times(self.run, self.player.time))
-        self.labels["place"].tell(wording.place(self.run, moment))
+        self.labels["clock"].show_text(wording.times(self.run, self.player.time))
+        self.labels["place"].show_text(wording.place(self.run, moment))
         self.bars.set(moment.values, moment.margins, moment.ratios, moment.bad)
         speed, kept = wording.speed(moment)
         for name, text, good in (
@@ -283,8 +283,8 @@ class Fields(QtGui.QWidget):
             ("condition", wording.condition(moment), not moment.singular),
         ):
             label = self.labels[name]
-            label.tell(text)
-            set_role(label, PLAIN if good else WRONG)
+            label.show_text(text)
+            set_role(label, PLAIN if good else INVALID)
 
     def tell_finding(self, found: Any) -> None:
         """Tell of a finding, or how many there are."""
@@ -300,7 +300,7 @@ class Fields(QtGui.QWidget):
             )
             text = f"{(self.player.finding or 0) + 1}/{count}: {wording.finding(found, unit)}"
         self.finding.setText(text)
-        set_role(self.finding, WRONG if found is not None else PLAIN)
+        set_role(self.finding, INVALID if found is not None else PLAIN)
 
 
 def _label(name: str, text: str = "") -> Any:

@@ -12,7 +12,7 @@ from ...core.issues import AmError
 from ...objects.stage import stage_of
 from ...objects.work import hooks
 from ...objects.work.progress import Cancelled
-from ..picking.shape_inputs import job_named, meant
+from ..picking.shape_inputs import job_named, job_selection
 from ..texts.in_language import error_line, tr, translated_error
 from . import dock
 from .player import prepared
@@ -23,7 +23,7 @@ KINDS = ("program", "joint path")
 def simulate() -> None:
     """Simulate the selected joint path or program, or that of the job that is selected; where nothing of a job is, the last
     joint path of the document that has a result."""
-    selected = [obj for obj in meant() if _kind(obj) in KINDS]
+    selected = [obj for obj in job_selection() if _kind(obj) in KINDS]
     if not selected and job_named():
         _say(
             tr("{} has no joint path to simulate; make one first, or select another job.").format(

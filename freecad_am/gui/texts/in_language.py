@@ -62,42 +62,42 @@ _KEY = re.compile(
 def _known() -> dict[str, tuple[str, str]]:
     """The group within its panel, '' for none, and the label of each parameter, by its name in job files; of each group
     too, and of each range, which has two fields."""
-    found: dict[str, tuple[str, str]] = {}
+    labels: dict[str, tuple[str, str]] = {}
     for section, cls in _SECTIONS:
         for row in rows(cls):
             steps = [step for step in row.path if isinstance(step, str)]
             if len(steps) < len(row.path):
-                found.setdefault(".".join([section, *steps]), ("", group_of(row)))
+                labels.setdefault(".".join([section, *steps]), ("", group_of(row)))
             else:
                 nested = len(steps) > 1
-                found.setdefault(
+                labels.setdefault(
                     ".".join([section, *steps]), (group_of(row) if nested else "", row.label)
                 )
                 if nested:
-                    found.setdefault(f"{section}.{steps[0]}", ("", group_of(row)))
-    return found
+                    labels.setdefault(f"{section}.{steps[0]}", ("", group_of(row)))
+    return labels
 
 
 @lru_cache(maxsize=1)
 def _choices() -> dict[str, set[str]]:
     """What each parameter that has choices may be, in any family, by its name in job files."""
-    found: dict[str, set[str]] = {}
+    choices: dict[str, set[str]] = {}
     for section, cls in _SECTIONS:
         for row in rows(cls):
             name = ".".join([section, *(step for step in row.path if isinstance(step, str))])
-            found.setdefault(name, set()).update(row.spec.choices, row.spec.words)
-    return found
+            choices.setdefault(name, set()).update(row.spec.choices, row.spec.words)
+    return choices
 
 
 @lru_cache(maxsize=1)
 def _short_names() -> dict[str, str]:
     """The whole name of each parameter whose last part no other section has, by that part."""
-    found: dict[str, list[str]] = {}
+    full_names: dict[str, list[str]] = {}
     for name in _known():
-        found.setdefault(name.rpartition(".")[2], []).append(name)
+        full_names.setdefault(name.rpartition(".")[2], []).append(name)
     return {
         short: names[0]
-        for short, names in found.items()
+        for short, names in full_names.items()
         if len({name.partition(".")[0] for name in names}) == 1 and names[0].count(".") == 1
     }
 
@@ -108,19 +108,19 @@ def as_in_panels(
     """A message with the names that parameters have in panels, translated: “Bead width” for process.bead_width, “Motion:
     joint” for motion: joint, with or without backticks. with_panel: tell whose panel has it, “Bead width” (Toolpath)."""
 
-    def shown(name: str, value: str = "") -> str:
+    def quote_field(name: str, value: str = "") -> str:
         group, label = _known()[name]
-        own = translate(label)
-        field = f"{translate(group)}, {own.lower()}" if group else own
+        field_label = translate(label)
+        field = f"{translate(group)}, {field_label.lower()}" if group else field_label
         panel = f" ({translate(_PANELS[name.partition('.')[0]])})" if with_panel else ""
         return quoted.format(f"{field}: {translate(value)}" if value else field) + panel
 
     def named(match: re.Match[str]) -> str:
-        return shown(match[0]) if _known().get(match[0], ("", ""))[1] else match[0]
+        return quote_field(match[0]) if _known().get(match[0], ("", ""))[1] else match[0]
 
     def paired(match: re.Match[str]) -> str:
         name = match[1] if match[1] in _known() else _short_names().get(match[1])
-        return match[0] if name is None else shown(name, match[2])
+        return match[0] if name is None else quote_field(name, match[2])
 
     def paired_bare(match: re.Match[str]) -> str:
         name = match[1] if match[1] in _known() else _short_names().get(match[1], "")
@@ -181,8 +181,8 @@ def names_first(text: str) -> bool:
     """Whether a text begins with a name, of a part or a file, which is written as it is."""
     if not isinstance(text, Text) or not text.template.startswith("{0}"):
         return False
-    first = text.values[0]
-    return names_first(first) if isinstance(first, Text) else first not in KINDS
+    first_value = text.values[0]
+    return names_first(first_value) if isinstance(first_value, Text) else first_value not in KINDS
 
 
 CONTEXT = "RoboticAM"
@@ -234,8 +234,8 @@ def error_line(error: AmError) -> str:
 def sentence(text: str) -> str:
     """A text that begins small, such as a finding, as a sentence of its own, in the language of the window. One that begins
     with the name of a part or file keeps that as it is."""
-    shown = translated(text)
-    return shown if names_first(text) else shown[:1].upper() + shown[1:]
+    translation = translated(text)
+    return translation if names_first(text) else translation[:1].upper() + translation[1:]
 
 
 def link_touches(link: str, what: str) -> str:

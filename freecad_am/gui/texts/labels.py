@@ -4,6 +4,6 @@
 from __future__ import annotations
 
 
-def without_key(label: str) -> str:
+def escape_mnemonic(label: str) -> str:
     """A label for a menu, title, tab or button, where Qt would take an `&` for the mark of a key."""
     return label.replace("&", "&&")

@@ -185,9 +185,9 @@ def register() -> list[str]:
 
 def _in_order(names: list[str]) -> list[str]:
     """Commands and separators of a toolbar that has these tools."""
-    known = {name for group in GROUPS for name in group}
-    found: list[str] = []
-    for group in (*GROUPS, tuple(name for name in names if name not in known)):
-        there = [PREFIX + name for name in group if name in names]
-        found += ["Separator"] * bool(found and there) + there
-    return found
+    grouped = {name for group in GROUPS for name in group}
+    entries: list[str] = []
+    for group in (*GROUPS, tuple(name for name in names if name not in grouped)):
+        tools = [PREFIX + name for name in group if name in names]
+        entries += ["Separator"] * bool(entries and tools) + tools
+    return entries

@@ -21,14 +21,14 @@ from ...objects.staleness import UP_TO_DATE
 from ...objects.work.progress import Cancelled
 from .. import recorded, registry
 from ..texts.in_language import error_line, tr
-from ..texts.labels import without_key
+from ..texts.labels import escape_mnemonic
 
 Act = Callable[[], Any]
 _NAME = "RoboticAM_Menu"
 _MAKE_NEXT = ("Toolpath", "JointPath", "Program")  # of a stage that fits
 
 
-def of_stage(menu: Any, obj: Any) -> None:
+def add_stage_entries(menu: Any, obj: Any) -> None:
     """What can be done with a stage: edit, renew, follow it to its inputs; more by its kind."""
     from ..program import window
 
@@ -46,7 +46,7 @@ def of_stage(menu: Any, obj: Any) -> None:
     if kind in ("joint path", "program"):
         _add(menu, "Simulate", tr("Simulate…"), lambda: _simulate(obj), bool(obj.Key))
     for tool, text in _next_tools(kind):
-        _of_tool(menu, tool, text, obj, fits if tool in _MAKE_NEXT else bool(obj.Key))
+        _add_tool_entry(menu, tool, text, obj, fits if tool in _MAKE_NEXT else bool(obj.Key))
     if kind in ("toolpath", "joint path", "program"):
         _add(menu, "ExportReport", tr("Export report…"), lambda: _report(obj), bool(obj.Key))
     _add_inputs(menu, obj)
@@ -82,7 +82,7 @@ def _next_tools(kind: str) -> list[tuple[str, str]]:
     }.get(kind, [])
 
 
-def of_job(menu: Any, group: Any) -> None:
+def add_job_entries(menu: Any, group: Any) -> None:
     """What can be done with a whole job."""
     stages = stages_in(group)
     _add(
@@ -95,7 +95,7 @@ def of_job(menu: Any, group: Any) -> None:
     paths = [obj for obj in stages if obj.Proxy.kind == "joint path" and obj.Key]
     _add(menu, "Simulate", tr("Simulate…"), lambda: _simulate(paths[-1]), bool(paths))
     if paths:
-        _of_tool(menu, "Plots", tr("Plots…"), paths[-1], True)
+        _add_tool_entry(menu, "Plots", tr("Plots…"), paths[-1], True)
     _add(menu, "Shown", tr("Show this job only"), lambda: show_alone(group))
 
 
@@ -113,11 +113,13 @@ def renew(obj: Any, force: bool = False) -> None:
 
 def show_alone(group: Any) -> None:
     """Show the last path of a job and its cell, hide those of other stages, and turn the camera to it."""
-    own = stages_in(group)
-    paths = [obj for obj in own if obj.Proxy.kind in ("toolpath", "joint path") and obj.Key]
-    seen = {obj.Name for obj in own if obj.Proxy.kind == "cell"} | {obj.Name for obj in paths[-1:]}
+    stages = stages_in(group)
+    paths = [obj for obj in stages if obj.Proxy.kind in ("toolpath", "joint path") and obj.Key]
+    visible_names = {obj.Name for obj in stages if obj.Proxy.kind == "cell"} | {
+        obj.Name for obj in paths[-1:]
+    }
     for obj in api.stages_of(group.Document):
-        obj.ViewObject.Visibility = obj.Name in seen
+        obj.ViewObject.Visibility = obj.Name in visible_names
     Gui.SendMsgToActiveView("ViewFit")
 
 
@@ -127,7 +129,7 @@ def _renew_all(stages: list[Any]) -> None:
 
 
 def _add(menu: Any, name: str, text: str, act: Act, on: bool = True) -> None:
-    action = menu.addAction(without_key(text))
+    action = menu.addAction(escape_mnemonic(text))
     action.setObjectName(f"{_NAME}{name}")
     action.setEnabled(on)
     action.triggered.connect(lambda *_: act())
@@ -135,19 +137,22 @@ def _add(menu: Any, name: str, text: str, act: Act, on: bool = True) -> None:
 
 def _add_inputs(menu: Any, obj: Any) -> None:
     """An entry for each input, which is selected and shown in the tree."""
-    found: dict[str, Any] = {}
+    inputs: dict[str, Any] = {}
     for link in obj.Proxy.links:
         value = getattr(obj, link.name)
-        for one in (
+        for source in (
             value if isinstance(value, list) else [value[0] if isinstance(value, tuple) else value]
         ):
-            if one is not None:
-                found[one.Name] = one
-    if found:
+            if source is not None:
+                inputs[source.Name] = source
+    if inputs:
         menu.addSeparator()
-    for one in found.values():
+    for source in inputs.values():
         _add(
-            menu, f"Input_{one.Name}", tr("Go to {}").format(one.Label), lambda one=one: go_to(one)
+            menu,
+            f"Input_{source.Name}",
+            tr("Go to {}").format(source.Label),
+            lambda source=source: go_to(source),
         )
 
 
@@ -160,7 +165,7 @@ def go_to(obj: Any) -> None:
         obj.ViewObject.Visibility = True
 
 
-def _of_tool(menu: Any, name: str, text: str, obj: Any, on: bool) -> None:
+def _add_tool_entry(menu: Any, name: str, text: str, obj: Any, on: bool) -> None:
     """An entry that uses a tool of the toolbar on an object; of what needs no more than this, `on` tells."""
     command = Gui.Command.get(f"RoboticAM_{name}")
     _add(
@@ -199,11 +204,11 @@ def _export(obj: Any) -> None:
 
 def _save_cell(obj: Any) -> None:
     """Ask for a file, first one in the folder that New Job offers cells of, and write the cell into it."""
-    first = saved_cells.path_of(os.path.join(saved_cells.own_folder(), obj.Label))
+    default_path = saved_cells.path_of(os.path.join(saved_cells.own_folder(), obj.Label))
     with contextlib.suppress(OSError):  # which is told where the file cannot be written
-        os.makedirs(os.path.dirname(first), exist_ok=True)
+        os.makedirs(os.path.dirname(default_path), exist_ok=True)
     path, _ = QtGui.QFileDialog.getSaveFileName(
-        Gui.getMainWindow(), tr("Save cell"), first, f"{tr('Cells')} {saved_cells.PATTERN}"
+        Gui.getMainWindow(), tr("Save cell"), default_path, f"{tr('Cells')} {saved_cells.PATTERN}"
     )
     if not path:
         return

@@ -15,9 +15,9 @@ from ...core.issues import AmError
 from ...objects.stage import stage_of
 from ...objects.work.progress import Cancelled
 from .. import icons, recorded
-from ..colours import WRONG, set_role
+from ..colours import INVALID, set_role
 from ..panels.stage import CLOSED
-from ..picking.shape_inputs import meant
+from ..picking.shape_inputs import job_selection
 from ..signals import connect
 from ..texts.in_language import tr, translated, translated_error
 from ..widgets.quantity import QuantityField
@@ -45,7 +45,7 @@ class ExportPanel:
         self.error = QtGui.QLabel()
         self.error.setObjectName("error")
         self.error.setWordWrap(True)
-        set_role(self.error, WRONG)
+        set_role(self.error, INVALID)
         self.error.hide()
         self.path = self._combo("Path", tr("The toolpath, joint path or program to export"))
         self.path.addItems([obj.Label for obj in self.paths])
@@ -130,7 +130,7 @@ class ExportPanel:
         self.file_note = QtGui.QLabel()
         self.file_note.setObjectName("FileNote")
         self.file_note.setWordWrap(True)
-        set_role(self.file_note, WRONG)
+        set_role(self.file_note, INVALID)
         self.grid.insertRow(self.grid.getWidgetPosition(self.file_row)[0] + 1, "", self.file_note)
         self._tell_file("")
         connect(self.file, "textChanged(QString)", self._file_anew)
@@ -144,14 +144,14 @@ class ExportPanel:
         """Show the fields of the kind that is chosen, and a file name that fits."""
         kind = self.kind.currentData()
         self._tell_file("")
-        for widget, wanted in (
+        for widget, is_shown in (
             (self.file_row, kind in _FILES),
             (self.rapids, kind in (STEP, DXF)),
             (self.tolerance.box, kind == TRAJECTORY),
             (self.turn.box, kind == TRAJECTORY),
         ):
-            for shown in filter(None, (widget, self.grid.labelForField(widget))):
-                shown.setVisible(wanted)
+            for row_widget in filter(None, (widget, self.grid.labelForField(widget))):
+                row_widget.setVisible(is_shown)
         if kind in _FILES and 0 <= self.path.currentIndex() < len(self.paths):
             typed = os.path.splitext(self.file.text().strip())[0]
             if typed in ("", self.proposed):
@@ -159,13 +159,13 @@ class ExportPanel:
             self.file.setText(typed + _FILES[kind])
 
     def _proposed(self) -> str:
-        kept = App.ParamGet(_PREFERENCES).GetString(_FOLDER, "")
-        folder = kept or os.path.dirname(self.document.FileName) or os.path.expanduser("~")
+        last_folder = App.ParamGet(_PREFERENCES).GetString(_FOLDER, "")
+        folder = last_folder or os.path.dirname(self.document.FileName) or os.path.expanduser("~")
         return os.path.join(folder, self.path.currentText().replace(os.sep, "-"))
 
     def _first(self) -> int:
         """The path that is selected, or that of the job that is, else the last joint path."""
-        for obj in meant(self.document.Name):
+        for obj in job_selection(self.document.Name):
             if obj in self.paths:
                 return self.paths.index(obj)
         joint_paths = [k for k, obj in enumerate(self.paths) if stage_of(obj).kind == "joint path"]
@@ -173,12 +173,14 @@ class ExportPanel:
 
     def _ask(self, *_: Any) -> None:
         ending = _FILES[self.kind.currentData()]
-        chosen = QtGui.QFileDialog.getSaveFileName(
+        file_path = QtGui.QFileDialog.getSaveFileName(
             self.form, tr("Export path"), self.file.text(), f"*{ending}"
         )[0]
-        if chosen:
+        if file_path:
             self.file.setText(
-                chosen if os.path.splitext(chosen)[1].lower() == ending else chosen + ending
+                file_path
+                if os.path.splitext(file_path)[1].lower() == ending
+                else file_path + ending
             )
 
     def say(self, text: str) -> None:
@@ -222,9 +224,9 @@ class ExportPanel:
         return False
 
     def _call(self, kind: str) -> tuple[str, dict[str, str]]:
-        whole = {CSV: "export_waypoints", REPORT: "export_report"}
-        if kind in whole:
-            return whole[kind], {"path": repr(self.file.text().strip())}
+        functions = {CSV: "export_waypoints", REPORT: "export_report"}
+        if kind in functions:
+            return functions[kind], {"path": repr(self.file.text().strip())}
         if kind in _FILES:
             return "export_wires", {
                 "path": repr(self.file.text().strip()),

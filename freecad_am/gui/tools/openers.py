@@ -39,7 +39,7 @@ def opened(path: str) -> Any:
     if is_new:
         Gui.doCommand("App.newDocument()")
     document = App.ActiveDocument
-    before = {obj.Name for obj in document.Objects}
+    old_names = {obj.Name for obj in document.Objects}
     try:
         recorded.make(document, "open_part", {"path": repr(path)})
     except (AmError, Cancelled) as error:
@@ -49,14 +49,14 @@ def opened(path: str) -> Any:
             App.Console.PrintError(error_line(error))
             QtGui.QMessageBox.warning(Gui.getMainWindow(), tr("Open part"), translated_error(error))
         return None
-    part = next(obj for obj in document.Objects if obj.Name not in before)
+    opened_part = next(obj for obj in document.Objects if obj.Name not in old_names)
     Gui.Selection.clearSelection()
-    Gui.Selection.addSelection(document.Name, part.Name)
+    Gui.Selection.addSelection(document.Name, opened_part.Name)
     view = Gui.activeDocument().activeView()
     if is_new and hasattr(view, "viewIsometric"):
         view.viewIsometric()
     Gui.SendMsgToActiveView("ViewFit")
-    return part
+    return opened_part
 
 
 def open_part() -> None:

@@ -78,8 +78,8 @@ def path(doc: Any) -> str:
     """A toolpath or joint path that was computed."""
     if document(doc):
         return document(doc)
-    some = any(obj.Key for kind in ("toolpath", "joint path") for obj in _stages(doc, kind))
-    return "" if some else tr("First make a toolpath: Toolpath….")
+    has_path = any(obj.Key for kind in ("toolpath", "joint path") for obj in _stages(doc, kind))
+    return "" if has_path else tr("First make a toolpath: Toolpath….")
 
 
 def joint_path(doc: Any) -> str:
@@ -99,8 +99,10 @@ def feasible(doc: Any) -> str:
     lacking = joint_path(doc)
     if lacking or any(obj.Status != INFEASIBLE for obj in _stages(doc, "joint path")):
         return lacking
-    last = list(_stages(doc, "joint path"))[-1]
-    return tr("{} is infeasible: {}").format(last.Label, translated(message_of(last)))
+    infeasible_path = list(_stages(doc, "joint path"))[-1]
+    return tr("{} is infeasible: {}").format(
+        infeasible_path.Label, translated(message_of(infeasible_path))
+    )
 
 
 def _stages(doc: Any, kind: str) -> Iterator[Any]:
@@ -114,8 +116,8 @@ def _some(doc: Any, kind: str) -> bool:
     return next(_stages(doc, kind), None) is not None
 
 
-def _any(doc: Any, wanted: Callable[[Any], bool]) -> bool:
-    return any(wanted(obj) for obj in doc.Objects)
+def _any(doc: Any, predicate: Callable[[Any], bool]) -> bool:
+    return any(predicate(obj) for obj in doc.Objects)
 
 
 PAGES = Path(__file__).resolve().parents[3] / "docs" / "tools"
@@ -182,7 +184,7 @@ class HelpWindow:
         self.text = QtGui.QTextBrowser()
         self.text.setObjectName("page")
         self.text.setOpenExternalLinks(True)
-        connect(self.text, "sourceChanged(QUrl)", self._without_empty_headings)
+        connect(self.text, "sourceChanged(QUrl)", self._remove_empty_headings)
         row, column = QtGui.QHBoxLayout(), QtGui.QVBoxLayout(self.window)
         for label, act in (
             (tr("All tools"), lambda: self.show(INDEX)),
@@ -197,7 +199,7 @@ class HelpWindow:
         column.addWidget(self.note)
         column.addWidget(self.text, 1)
 
-    def _without_empty_headings(self, *_: Any) -> None:
+    def _remove_empty_headings(self, *_: Any) -> None:
         """Markdown has a row of headings in every table: those that are empty are left out."""
         for table in self.text.document().rootFrame().childFrames():
             if isinstance(table, QtGui.QTextTable) and table.rows() > 1:
@@ -255,13 +257,13 @@ def _ours(widget: Any) -> tuple[str, str]:
         for name in (str(action.data() or ""), action.objectName()):
             if name.startswith(PREFIX):
                 return name, ""
-    note, one = "", widget
-    while one is not None:
-        said = one.whatsThis()
-        note = note or ("" if said.startswith("file:") else said)
-        if one.objectName().startswith(PREFIX):
-            return one.objectName(), note
-        one = one.parentWidget()
+    note, ancestor = "", widget
+    while ancestor is not None:
+        help_text = ancestor.whatsThis()
+        note = note or ("" if help_text.startswith("file:") else help_text)
+        if ancestor.objectName().startswith(PREFIX):
+            return ancestor.objectName(), note
+        ancestor = ancestor.parentWidget()
     return "", ""
 
 
@@ -276,11 +278,11 @@ _watches: list[Watch] = []
 
 def show(page: str, note: str = "") -> None:
     """Show a page of docs/tools in the window for help, which is made when it is first asked for."""
-    for known in list(_windows):
+    for window in list(_windows):
         with contextlib.suppress(RuntimeError):  # it went with the main window
-            known.show(page, note)
+            window.show(page, note)
             return
-        _windows.remove(known)
+        _windows.remove(window)
     _windows.append(HelpWindow())
     _windows[-1].show(page, note)
 

@@ -62,13 +62,13 @@ def _edit(obj: Any) -> None:
 def _fill_menu_of_stage(menu: Any, obj: Any) -> None:
     from ..tools import context_menu
 
-    context_menu.of_stage(menu, obj)
+    context_menu.add_stage_entries(menu, obj)
 
 
 def _fill_menu_of_job(menu: Any, group: Any) -> None:
     from ..tools import context_menu
 
-    context_menu.of_job(menu, group)
+    context_menu.add_job_entries(menu, group)
 
 
 registry.register(

@@ -41,9 +41,9 @@ class StageView:
                 isinstance(default, tuple)
                 and tuple(vobj.getEnumerationsOfProperty(name)) != default
             ):
-                chosen = getattr(vobj, name)  # of a document of an earlier version
+                old_choice = getattr(vobj, name)  # of a document of an earlier version
                 setattr(vobj, name, list(default))
-                setattr(vobj, name, chosen if chosen in default else default[0])
+                setattr(vobj, name, old_choice if old_choice in default else default[0])
 
     # ---- what a view defines
 
@@ -105,8 +105,8 @@ class StageView:
         if name in ("Key", "ResultLayout", "ResultData") and obj.Key != self.drawn:
             self.refresh()
         elif name == "Status":
-            for shown in (obj, *filter(is_group, obj.InList)):
-                shown.ViewObject.signalChangeIcon()
+            for target in (obj, *filter(is_group, obj.InList)):
+                target.ViewObject.signalChangeIcon()
 
     def onChanged(self, vobj: Any, name: str) -> None:
         """A view property has changed."""
@@ -131,7 +131,7 @@ class StageView:
 
     def getIcon(self) -> str:
         """The icon, with a badge unless all is well."""
-        return icons.with_badge(self.icon, getattr(self.obj, "Status", ""))
+        return icons.badge_path(self.icon, getattr(self.obj, "Status", ""))
 
     def doubleClicked(self, vobj: Any) -> bool:
         """Open the panel."""

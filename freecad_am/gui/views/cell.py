@@ -13,7 +13,7 @@ from ...core.kinematics.cell import mounted
 from ...objects import user_machines
 from ...objects.results.store import Place
 from ...objects.stage import stage_of
-from ..nodes.cell import CellNodes, at_end, with_machine, without_machine
+from ..nodes.cell import CellNodes, at_end, machine_scenery, nozzle_scenery
 from ..path import path_view
 from ..texts.in_language import tr
 from .base import StageView
@@ -47,9 +47,11 @@ class CellView(StageView):
         standing = _standing(obj)
         self.stands_on = "" if standing is None else _key_of(toolpath_of(obj))
         if getattr(obj.ViewObject, "ShowMachine", False):
-            found = _of_toolpath(obj, ())
+            contents = _toolpath_contents(obj, ())
             self.nodes.set(
-                with_machine(value, None if found is None else found[0], user_machines.folders())
+                machine_scenery(
+                    value, None if contents is None else contents[0], user_machines.folders()
+                )
             )
             return
         tip, axis, mount = np.zeros(3), np.array([0.0, 0.0, 1.0]), np.eye(4)
@@ -58,7 +60,7 @@ class CellView(StageView):
             tip, axis = points[-1], tools[-1]
             mount = mounted(value, frame, family)
         self.end = tip, axis
-        self.nodes.set(without_machine(value, *(_reached(obj) or self.end), mount))
+        self.nodes.set(nozzle_scenery(value, *(_end_of_shown_path(obj) or self.end), mount))
 
     def follow_stretch(self, view: path_view.PathView) -> None:
         """The nozzle goes to where a stretch of a path ends that is looked at; the machine at rest stays."""
@@ -101,11 +103,13 @@ def toolpath_of(obj: Any) -> Any:
 
 def _standing(obj: Any) -> Any:
     """Points and tool axes of the last bead, frame and family of the toolpath; what else it has is not read."""
-    last = ("layers", -1, "beads", -1)
-    return _of_toolpath(obj, (*last, "points"), (*last, "tool"), ("frame",), ("family",))
+    last_bead = ("layers", -1, "beads", -1)
+    return _toolpath_contents(
+        obj, (*last_bead, "points"), (*last_bead, "tool"), ("frame",), ("family",)
+    )
 
 
-def _reached(obj: Any) -> Any:
+def _end_of_shown_path(obj: Any) -> Any:
     """Where a stretch ends that is shown of a path for the cell, None where none is."""
     for follower in obj.InList:
         view = getattr(follower.ViewObject, "Proxy", None)
@@ -118,11 +122,11 @@ def _reached(obj: Any) -> Any:
     return None
 
 
-def _of_toolpath(obj: Any, *places: Place) -> Any:
+def _toolpath_contents(obj: Any, *locations: Place) -> Any:
     toolpath = toolpath_of(obj)
     if toolpath is not None:
         with contextlib.suppress(InputError):  # within undo
-            return stage_of(toolpath).parts(toolpath, *places)
+            return stage_of(toolpath).parts(toolpath, *locations)
     return None
 
 

@@ -19,4 +19,4 @@ class CurvesView(StageView):
         root.addChild(self.wall.switch)
 
     def draw(self, obj: Any, value: Any) -> None:
-        self.wall.set_first([one.points for one in value.curves])
+        self.wall.set_first([curve.points for curve in value.curves])

@@ -44,4 +44,4 @@ class FeatureView(StageView):
     def getIcon(self) -> str:
         """That of its family, with a badge unless all is well."""
         family = "wall_on_part" if hasattr(self.obj, "Substrate") else self.icon
-        return icons.with_badge(family, getattr(self.obj, "Status", ""))
+        return icons.badge_path(family, getattr(self.obj, "Status", ""))

@@ -35,7 +35,7 @@ class JobView:
         """That of a job, with a badge unless all is well."""
         statuses = set() if self.obj is None else {stage.Status for stage in stages_in(self.obj)}
         worst = next((status for status in (FAILED, INFEASIBLE, STALE) if status in statuses), "")
-        return icons.with_badge("job", worst)
+        return icons.badge_path("job", worst)
 
     def canDropObject(self, obj: Any) -> bool:
         """Stages alone belong into a job."""

@@ -92,9 +92,9 @@ class JointPathView(PathView):
     def read(self, obj: Any) -> Seen:
         """What of the result is drawn."""
         columns = [("motion", column.name) for column in fields(Course)]
-        read = obj.Proxy.reader(obj)
-        limits, *found = read(("joint_path", "limits"), *columns)
-        return Seen(Course(*found), limits, read)
+        reader = obj.Proxy.reader(obj)
+        limits, *arrays = reader(("joint_path", "limits"), *columns)
+        return Seen(Course(*arrays), limits, reader)
 
     def rows_of(self, obj: Any, value: Seen) -> Rows:
         course, width = value.course, width_of(_linked(obj))
@@ -102,12 +102,12 @@ class JointPathView(PathView):
             _layer_height(obj) if obj.ViewObject.Look == TUBES else None
         )  # lines do without the toolpath
         starts = np.flatnonzero(course.point[self.at] == 0)
-        known = course.width[self.at]
+        bead_widths = course.width[self.at]
         return Rows(
             course.position[self.at],
             np.append(starts, len(self.at)),
             course.layer[self.at[starts]],
-            np.where(np.isfinite(known), known, width),
+            np.where(np.isfinite(bead_widths), bead_widths, width),
             lambda: [path.bead for path in value.read().joint_path.beads],
             lambda: _known_layer_height(obj) if height is None else height,
             lambda index: value.read(("joint_path", "beads", index, "bead"))[0],
@@ -133,10 +133,10 @@ class JointPathView(PathView):
         wrong = motion.deposit & ~self.reachable
         for issue in issues_of(obj):
             if issue.level == ERROR and issue.layer is not None:
-                here = self.at[slice(*np.searchsorted(layers, [issue.layer, issue.layer + 1]))]
+                rows = self.at[slice(*np.searchsorted(layers, [issue.layer, issue.layer + 1]))]
                 for column, index in ((motion.bead, issue.bead), (motion.point, issue.point)):
-                    here = here if index is None else here[column[here] == index]
-                wrong[here] = True
+                    rows = rows if index is None else rows[column[rows] == index]
+                wrong[rows] = True
         self.bad = np.flatnonzero(wrong)
 
     def updateData(self, obj: Any, name: str) -> None:
@@ -146,8 +146,8 @@ class JointPathView(PathView):
             self.find_wrong(obj)
             self.limited(*self.stretch())
 
-    def limited(self, first: int, end: int) -> None:
-        low = 0 if first == 0 else int(self.at[first - 1]) + 1  # with what leads to the first bead
+    def limited(self, start: int, end: int) -> None:
+        low = 0 if start == 0 else int(self.at[start - 1]) + 1  # with what leads to the first bead
         high = len(self.motion) if end >= len(self.at) else int(self.at[max(end - 1, 0)]) + 1
         rapid = self.rapid[(self.rapid >= low) & (self.rapid < high)]
         self.rapids.set(
@@ -168,7 +168,7 @@ class JointPathView(PathView):
             return by_machine(np.where(self.reachable[self.at], condition, np.nan), kind)
         if kind in (MARGIN, RATIO):
             try:
-                return by_machine(_of_machine(obj, self.seen, kind)[self.at], kind)
+                return by_machine(_limit_shares(obj, self.seen, kind)[self.at], kind)
             except InputError as error:
                 return unknown(len(self.at), kind, error.message)
         planned = self.seen.read().joint_path
@@ -207,7 +207,7 @@ def _known_layer_height(obj: Any) -> float:
         return RevolutionParameters().layer_height
 
 
-def _of_machine(obj: Any, seen: Seen, kind: str) -> Array:
+def _limit_shares(obj: Any, value: Seen, kind: str) -> Array:
     """(n,) the smallest share left to a limit, or the largest share used of a joint speed, of all rows. InputError of the
     machine."""
     if obj.Cell is None:
@@ -218,8 +218,8 @@ def _of_machine(obj: Any, seen: Seen, kind: str) -> Array:
     )
     machine = machines.load(settings.machine, folders)
     joints, limits, mechanisms = (
-        seen.course.joints,
-        machine.limits(seen.limits),
+        value.course.joints,
+        machine.limits(value.limits),
         externals(settings.external),
     )
     if mechanisms:
@@ -233,7 +233,7 @@ def _of_machine(obj: Any, seen: Seen, kind: str) -> Array:
         )
     if kind == MARGIN:
         return limits.smallest_share(joints)
-    motion = seen.read().motion
+    motion = value.read().motion
     return from_next(
         motion.deposit,
         motion.point,

@@ -48,11 +48,11 @@ class Draft:
     def reporting(self, work: Callable[[], T]) -> Callable[[], T]:
         """Work of a preview that tells a lack of memory and faults of the geometry kernel as the stage itself does."""
 
-        def within() -> T:
+        def run_guarded() -> T:
             with faults.kernel(self.obj), faults.memory(self.obj.Label):
                 return work()
 
-        return within
+        return run_guarded
 
 
 class Preview:
@@ -83,12 +83,17 @@ class Aside:
 
     def put(self, *objects: Any) -> None:
         """Let these stand back, in place of those before; None is none."""
-        wanted = [obj for obj in objects if obj is not None]
+        new_objects = [obj for obj in objects if obj is not None]
         self._stand_back(
-            False, [obj for obj in self.objects if not any(obj is one for one in wanted)]
+            False,
+            [
+                obj
+                for obj in self.objects
+                if not any(obj is new_object for new_object in new_objects)
+            ],
         )
-        self._stand_back(True, wanted)
-        self.objects = wanted
+        self._stand_back(True, new_objects)
+        self.objects = new_objects
 
     def _stand_back(self, aside: bool, objects: list[Any]) -> None:
         for obj in objects:

@@ -29,8 +29,8 @@ class ToolpathView(PathView):
         self.source_hidden = False
 
     def rows_of(self, obj: Any, value: Any) -> Rows:
-        places = list(value)
-        beads, layers = [bead for _, _, bead in places], [layer for layer, _, _ in places]
+        entries = list(value)
+        beads, layers = [bead for _, _, bead in entries], [layer for layer, _, _ in entries]
         return Rows.of(beads, layers, width_of(obj), lambda: value.layer_height)
 
     def draw(self, obj: Any, value: Any) -> None:

@@ -49,26 +49,26 @@ SIDES = {
 
 def worded(key: str) -> str:
     """What the window calls a key that may be chosen."""
-    parts = key.split("-")
-    if len(parts) == 3 and set(parts) <= set(SIDES):
-        return ", ".join(tr(SIDES[part]) for part in parts)
+    sides = key.split("-")
+    if len(sides) == 3 and set(sides) <= set(SIDES):
+        return ", ".join(tr(SIDES[side]) for side in sides)
     return tr(WORDS[key]) if key in WORDS else translated(key)
 
 
 def machines() -> list[tuple[str, str]]:
     """Id and full name of each machine; two of one name are told apart by their ids."""
-    known = machine.known(user_machines.folders())
-    names = [name for _, name in known]
+    entries = machine.known(user_machines.folders())
+    names = [name for _, name in entries]
     return [
         (
-            one,
-            one
+            machine_id,
+            machine_id
             if name.startswith(machine.REFUSED)
-            else f"{name} ({one})"
+            else f"{name} ({machine_id})"
             if names.count(name) > 1
             else name,
         )
-        for one, name in known
+        for machine_id, name in entries
     ]
 
 
@@ -90,15 +90,15 @@ def offer(combo: Any, pairs: Iterable[tuple[str, str]]) -> None:
 def entered(combo: Any) -> str:
     """The key of what a list that can be typed into shows; what was typed where that is not an entry."""
     text = str(combo.currentText()).strip()
-    at = next((row for row in range(combo.count()) if combo.itemText(row) == text), -1)
-    return str(combo.itemData(at) or text) if at >= 0 else text
+    index = next((row for row in range(combo.count()) if combo.itemText(row) == text), -1)
+    return str(combo.itemData(index) or text) if index >= 0 else text
 
 
 def enter(combo: Any, key: str) -> None:
     """Show a key in a list that can be typed into, in words where it has any; the list then opens there."""
-    at = combo.findData(key)
-    combo.setCurrentIndex(at)
-    combo.setEditText(combo.itemText(at) if at >= 0 else key)
+    index = combo.findData(key)
+    combo.setCurrentIndex(index)
+    combo.setEditText(combo.itemText(index) if index >= 0 else key)
     combo.lineEdit().setCursorPosition(0)
 
 

@@ -24,10 +24,10 @@ class FeatureOrder(Input):
     """The features after the first, which `first` chooses; those selected are added when the panel opens for a new toolpath,
     and by a button. Up on the topmost one makes it the first."""
 
-    def __init__(self, link: Link, first: StageChoice, present: Any, sequence: str) -> None:
-        self.link, self.label, self.first = link, translated(link.label), first
+    def __init__(self, link: Link, first_choice: StageChoice, present: Any, sequence: str) -> None:
+        self.link, self.label, self.first = link, translated(link.label), first_choice
         self.explicit = bool(present)
-        self.document = first.document
+        self.document = first_choice.document
         self.widget = QtGui.QWidget()
         self.widget.setToolTip(translated(link.help))
         column = QtGui.QVBoxLayout(self.widget)
@@ -95,14 +95,18 @@ class FeatureOrder(Input):
 
     def add(self) -> None:
         """Add the features selected, else the next of the document that is not in the list."""
-        known = [self.first.widget.itemData(k) for k in range(self.first.widget.count())]
-        left = [
-            name for name in known if name not in (*self.names(), self.first.widget.currentData())
+        all_names = [self.first.widget.itemData(k) for k in range(self.first.widget.count())]
+        remaining = [
+            name
+            for name in all_names
+            if name not in (*self.names(), self.first.widget.currentData())
         ]
-        wanted = self._selected() or [self.document.getObject(name) for name in left[:1]]
-        for obj in wanted:
+        features = self._selected() or [self.document.getObject(name) for name in remaining[:1]]
+        for obj in features:
             self._put(obj)
-        self.tell("" if wanted else tr("This document has no other feature; create it first."))
+        self.show_note(
+            "" if features else tr("This document has no other feature; create it first.")
+        )
         self._show()
 
     def move(self, by: int) -> None:
@@ -149,12 +153,12 @@ class FeatureOrder(Input):
 
     def _selected(self) -> list[Any]:
         """The features selected, but for the first one."""
-        found = [
+        features = [
             obj
             for obj in selected(self.document.Name)
             if getattr(stage_of(obj), "kind", "") == "feature"
         ]
-        return [obj for obj in found if obj.Name != self.first.widget.currentData()]
+        return [obj for obj in features if obj.Name != self.first.widget.currentData()]
 
     def _put(self, obj: Any) -> None:
         if obj is None or obj.Name in self.names():

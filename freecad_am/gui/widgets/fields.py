@@ -25,7 +25,7 @@ from ...objects.fields.rows import (
     is_expression,
     split,
 )
-from ..colours import PLAIN, WRONG, set_role
+from ..colours import INVALID, PLAIN, set_role
 from ..texts.in_language import tr, translated
 from . import choices
 from .present import present
@@ -38,10 +38,10 @@ class PendantLine:
     def __init__(
         self,
         name: str,
-        read: Callable[[], tuple[Any, ...]],
+        read_pose: Callable[[], tuple[Any, ...]],
         show: Callable[[tuple[float, ...]], None],
     ) -> None:
-        self.name, self.read, self.show = name, read, show
+        self.name, self.read, self.show = name, read_pose, show
         self.put = ""  # what the line shows by itself
         self.choice, self.line = QtGui.QComboBox(), QtGui.QLineEdit()
         self.choice.setObjectName(f"{name}Pendant")
@@ -53,10 +53,10 @@ class PendantLine:
             tr("Type the pose as this controller's pendant shows it, X Y Z in mm first")
         )
         self.line.hide()
-        self.choice.currentIndexChanged.connect(lambda *_: self.tell())
+        self.choice.currentIndexChanged.connect(lambda *_: self.refresh())
         self.line.editingFinished.connect(self.enter)
 
-    def tell(self) -> None:
+    def refresh(self) -> None:
         """Show in the line what the fields hold, as the chosen pendant would."""
         controller = self.choice.currentData()
         self.line.setVisible(bool(controller))
@@ -97,7 +97,7 @@ class PendantLine:
 
     def _wrong(self, text: str) -> None:
         self.line.setToolTip(text)
-        set_role(self.line, WRONG if text else PLAIN)
+        set_role(self.line, INVALID if text else PLAIN)
 
 
 _QUANTITIES = (f.LENGTH, f.ANGLE, f.SPEED, f.TIME)
@@ -106,7 +106,7 @@ _POSE_UNITS = ("mm", "mm", "mm", "deg", "deg", "deg")
 _POSE_NAMES = ("X", "Y", "Z", "RX", "RY", "RZ")
 _PLAIN = re.compile(r"[-+]?(?:\d+|\d*\.\d+)(?:[eE][-+]?\d+)?")
 Texts = Callable[[], list[tuple[str, str]]]
-_LARGEST = 2_147_483_647
+_MAX_INT32 = 2_147_483_647
 
 
 class Field:
@@ -114,14 +114,14 @@ class Field:
     naming the field for what cannot be read; it is a text that starts with `=` for an expression."""
 
     def __init__(
-        self, row: Row, widget: Any, read: Callable[[], Any], show: Callable[[Any], None]
+        self, row: Row, widget: Any, read_value: Callable[[], Any], show: Callable[[Any], None]
     ) -> None:
         self.row = row
         self.widget = widget
-        self.read = read
+        self.read = read_value
         self._show = show
         self.label = translated(row.label)
-        self.shown = read()
+        self.shown = read_value()
         widget.setObjectName(row.name)
         widget.setToolTip(translated(row.spec.help))
 
@@ -150,8 +150,8 @@ class Field:
     @property
     def heading(self) -> str:
         """Its label, with the unit where what is shown has none."""
-        shown = self.row.form in (*_QUANTITIES, f.POSE, MIXED, LENGTH_OR_POSE)
-        unit = self.row.spec.unit or ("" if shown else self.row.unit)
+        shows_unit = self.row.form in (*_QUANTITIES, f.POSE, MIXED, LENGTH_OR_POSE)
+        unit = self.row.spec.unit or ("" if shows_unit else self.row.unit)
         return f"{self.label} ({unit})" if unit else self.label
 
 
@@ -190,40 +190,40 @@ def whats_this(row: Row, section: str) -> str:
 
 
 def _make(row: Row, value: Any, suggestions: Texts | None, expression: str) -> Field:
-    shown = row.outer(value)
+    outer_value = row.outer(value)
     if row.form == f.POSE:
-        return _pose(row, shown)
+        return _pose(row, outer_value)
     if row.form == f.SPEED:
-        return _speed(row, shown, expression)
+        return _speed(row, outer_value, expression)
     if row.form in _QUANTITIES:
-        quantity = QuantityField(shown, row.unit, row.label, expression)
+        quantity = QuantityField(outer_value, row.unit, row.label, expression)
         return Field(row, quantity.box, quantity.read, quantity.show)
     if row.form == f.CHOICE:
-        return _choice(row, shown)
+        return _choice(row, outer_value)
     if row.form == f.FLAG:
         check = QtGui.QCheckBox()
-        check.setChecked(shown)
+        check.setChecked(outer_value)
         return Field(row, check, check.isChecked, check.setChecked)
     if row.form == f.COUNT:
         box = QtGui.QSpinBox()
         box.setRange(
-            -_LARGEST, _LARGEST
+            -_MAX_INT32, _MAX_INT32
         )  # what is out of range is told by the core, not cut off here
-        box.setValue(shown)
+        box.setValue(outer_value)
         return (
             Field(row, box, box.value, box.setValue)
             if not expression
             else _text(row, value, expression)
         )
     if suggestions is not None:
-        return _suggested(row, shown, suggestions())
+        return _suggested(row, outer_value, suggestions())
     return _text(row, value, expression)
 
 
-def _speed(row: Row, shown: float, expression: str) -> Field:
+def _speed(row: Row, value: float, expression: str) -> Field:
     """A speed in the unit that the user prefers; what is read is in mm/s all the same."""
     unit = preferences.preferred_speed_unit()
-    quantity = QuantityField(shown, row.unit, row.label, expression, unit)
+    quantity = QuantityField(value, row.unit, row.label, expression, unit)
     quantity.box.setButtonSymbols(
         QtGui.QAbstractSpinBox.NoButtons
     )  # room for "100 mm/s" in a narrow panel
@@ -237,10 +237,12 @@ def _text(row: Row, value: Any, expression: str = "") -> Field:
     edit = QtGui.QLineEdit()
     numeric = row.spec.kind in (*_NUMBERS, f.POSE) or row.form == TEXT_LIST
 
-    def show(shown: Any) -> None:
-        text = _outer_text(row, shown)
+    def show(outer_value: Any) -> None:
+        text = _outer_text(row, outer_value)
         edit.setText(
-            _with_point(text, ".", _point(edit)) if numeric and not is_expression(text) else text
+            _replace_decimal_point(text, ".", _point(edit))
+            if numeric and not is_expression(text)
+            else text
         )
 
     show(expression or row.outer(value))
@@ -248,14 +250,16 @@ def _text(row: Row, value: Any, expression: str = "") -> Field:
         return Field(
             row,
             edit,
-            lambda: tuple(split(_with_point(str(edit.text()), _point(edit), "."), row.label)),
+            lambda: tuple(
+                split(_replace_decimal_point(str(edit.text()), _point(edit), "."), row.label)
+            ),
             show,
         )
     _add_placeholder(edit, row, row.unit)
 
     def entered() -> str:
         entry = str(edit.text()).strip()
-        return _with_point(entry, _point(edit), ".") if numeric else entry
+        return _replace_decimal_point(entry, _point(edit), ".") if numeric else entry
 
     if row.form == f.NUMBER:
         return Field(row, edit, lambda: _number(entered(), row.label), show)
@@ -264,9 +268,9 @@ def _text(row: Row, value: Any, expression: str = "") -> Field:
 
 def _add_placeholder(edit: Any, row: Row, unit: str) -> None:
     """What an empty line may hold, short enough for a narrow panel: a unit, and words."""
-    wanted = ([unit] if unit else []) + list(row.spec.words)
-    if wanted or row.spec.optional:
-        words = tr(" or ").join(wanted)
+    alternatives = ([unit] if unit else []) + list(row.spec.words)
+    if alternatives or row.spec.optional:
+        words = tr(" or ").join(alternatives)
         none = tr("{} or empty").format(words) if words else tr("(empty: none)")
         edit.setPlaceholderText(none if row.spec.optional else words)
 
@@ -276,33 +280,37 @@ def _quantity_or_word(row: Row, value: Any, expression: str) -> Field:
     line shows, or its placeholder."""
     edit = QtGui.QLineEdit()
     display = preferences.preferred_speed_unit() if row.spec.kind == f.SPEED else ""
-    known: dict[str, Any] = {}
+    last_shown: dict[str, Any] = {}
 
-    def show(shown: Any) -> None:
-        is_number = isinstance(shown, (int, float)) and not isinstance(shown, bool)
-        text, per_bare, unit = field_text(float(shown) if is_number else 0.0, row.unit, display)
-        text = text if is_number else row.outer_text(shown)
-        held = row.outer_text(shown)
+    def show(outer_value: Any) -> None:
+        is_number = isinstance(outer_value, (int, float)) and not isinstance(outer_value, bool)
+        text, per_bare, unit = field_text(
+            float(outer_value) if is_number else 0.0, row.unit, display
+        )
+        text = text if is_number else row.outer_text(outer_value)
+        stored_text = row.outer_text(outer_value)
         if not is_expression(text):
-            text = _with_point(text, ".", _point(edit))
+            text = _replace_decimal_point(text, ".", _point(edit))
         edit.setText(text)
-        known.update(text=str(edit.text()).strip(), held=held, per_bare=per_bare)
+        last_shown.update(text=str(edit.text()).strip(), held=stored_text, per_bare=per_bare)
         _add_placeholder(edit, row, unit)
 
     def read() -> str:
         entry = str(edit.text()).strip()
-        if entry == known["text"]:
-            return str(known["held"])
-        return typed_text(_with_point(entry, _point(edit), "."), row.unit, known["per_bare"])
+        if entry == last_shown["text"]:
+            return str(last_shown["held"])
+        return typed_text(
+            _replace_decimal_point(entry, _point(edit), "."), row.unit, last_shown["per_bare"]
+        )
 
     show(expression or row.outer(value))
     return Field(row, edit, read, show)
 
 
-def _outer_text(row: Row, shown: Any) -> str:
+def _outer_text(row: Row, outer_value: Any) -> str:
     if row.form == TEXT_LIST:
-        return " ".join(shown)
-    return row.outer_text(shown) if row.form in (MIXED, LENGTH_OR_POSE) else f"{shown}"
+        return " ".join(outer_value)
+    return row.outer_text(outer_value) if row.form in (MIXED, LENGTH_OR_POSE) else f"{outer_value}"
 
 
 def _point(edit: Any) -> str:
@@ -310,7 +318,7 @@ def _point(edit: Any) -> str:
     return str(edit.locale().decimalPoint())
 
 
-def _with_point(text: str, old: str, new: str) -> str:
+def _replace_decimal_point(text: str, old: str, new: str) -> str:
     """A text of one number, with its unit or without, or of several with nothing but blanks between, with another decimal
     point; any other text as it is."""
     numbers = re.split(r"[ \t]+", text.strip())  # no-break blanks stand within a number
@@ -334,12 +342,12 @@ def _number(text: str, name: str) -> float | str:
         ) from None
 
 
-def _choice(row: Row, shown: str) -> Field:
+def _choice(row: Row, key: str) -> Field:
     combo = QtGui.QComboBox()
     for choice in row.spec.choices:  # a job file and a macro have the word itself
         combo.addItem(choices.worded(choice), choice)
     choices.shrink(combo)
-    combo.setCurrentIndex(row.spec.choices.index(shown))
+    combo.setCurrentIndex(row.spec.choices.index(key))
     return Field(
         row,
         combo,
@@ -348,23 +356,23 @@ def _choice(row: Row, shown: str) -> Field:
     )
 
 
-def _suggested(row: Row, shown: str, texts: list[tuple[str, str]]) -> Field:
+def _suggested(row: Row, key: str, texts: list[tuple[str, str]]) -> Field:
     combo = QtGui.QComboBox()
     combo.setEditable(True)
     choices.offer(combo, texts)
-    choices.enter(combo, shown)
+    choices.enter(combo, key)
     return Field(
         row, combo, lambda: choices.entered(combo), lambda value: choices.enter(combo, value)
     )
 
 
-def _pose(row: Row, shown: tuple[float, ...]) -> Field:
+def _pose(row: Row, pose: tuple[float, ...]) -> Field:
     widget = QtGui.QWidget()
     grid = QtGui.QGridLayout(widget)
     grid.setContentsMargins(12, 0, 0, 0)
     grid.setColumnStretch(1, 1)
     quantities = []
-    for index, (number, unit, name) in enumerate(zip(shown, _POSE_UNITS, _POSE_NAMES, strict=True)):
+    for index, (number, unit, name) in enumerate(zip(pose, _POSE_UNITS, _POSE_NAMES, strict=True)):
         quantity = QuantityField(number, unit, f"{row.label} {name}")
         quantity.box.setObjectName(f"{row.name}{name}")
         quantity.box.setToolTip(tr("{}: {}").format(name, translated(row.spec.help)))
@@ -380,6 +388,6 @@ def _pose(row: Row, shown: tuple[float, ...]) -> Field:
         return tuple(quantity.read() for quantity in quantities)
 
     line = PendantLine(row.name, read, show)
-    grid.addWidget(line.choice, len(shown), 0, 1, 2)
-    grid.addWidget(line.line, len(shown) + 1, 0, 1, 2)
+    grid.addWidget(line.choice, len(pose), 0, 1, 2)
+    grid.addWidget(line.line, len(pose) + 1, 0, 1, 2)
     return Field(row, widget, read, show)

@@ -27,9 +27,11 @@ class FitPlot(Canvas):
         self.setObjectName("BeadModelPlot")
         self.setMinimumHeight(HEIGHT)
 
-    def set(self, measured: Measured, model: BeadModel, wanted: float | None) -> None:
+    def set(self, measured: Measured, model: BeadModel, target_width: float | None) -> None:
         """Show another fit; `wanted` is a width drawn across, mm."""
-        self.show_picture(in_words(in_units(Picture("fit", "", (fit(measured, model, wanted),)))))
+        self.show_picture(
+            in_words(in_units(Picture("fit", "", (fit(measured, model, target_width),))))
+        )
 
     def sizeHint(self) -> Any:
         """Called by Qt."""
@@ -39,10 +41,10 @@ class FitPlot(Canvas):
 def fits_text(measured: Measured, model: BeadModel) -> str:
     """The fits in words."""
     lines = []
-    for name, found in ((tr("Width"), model.width), (tr("Height"), model.height)):
+    for name, curve in ((tr("Width"), model.width), (tr("Height"), model.height)):
         lines.append(
-            f"{name} = {found.m:.4g} v^(-1/3) {_signed(found.p)}/r {_signed(found.t)} mm, "
-            + tr("v in mm/min; R² {:.4f}, RMSE {:.3f} mm").format(found.r_squared, found.rmse)
+            f"{name} = {curve.m:.4g} v^(-1/3) {_signed(curve.p)}/r {_signed(curve.t)} mm, "
+            + tr("v in mm/min; R² {:.4f}, RMSE {:.3f} mm").format(curve.r_squared, curve.rmse)
         )
     slow, fast = (MINUTE * speed for speed in model.speeds)
     lines.append(
@@ -62,15 +64,15 @@ def fits_text(measured: Measured, model: BeadModel) -> str:
 
 def speeds_text(model: BeadModel, width: float) -> str:
     """What speeds a width asks for, and whether the table has such."""
-    asked = model.speed_for(width, np.array([model.radii[0], np.inf]))
+    solution = model.speed_for(width, np.array([model.radii[0], np.inf]))
     ends = np.select(
-        [asked.too_slow, asked.too_fast],
+        [solution.too_slow, solution.too_fast],
         [tr("{} mm/min (the slowest of the table)"), tr("{} mm/min (the fastest of the table)")],
         "{} mm/min",
     )
     tight, straight = (
         str(end).format(f"{MINUTE * speed:.0f}")
-        for speed, end in zip(asked.speed, ends, strict=True)
+        for speed, end in zip(solution.speed, ends, strict=True)
     )
     return in_user_units(
         tr("{:g} mm wide: {} where straight, {} where r is {:g} mm").format(

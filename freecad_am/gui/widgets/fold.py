@@ -8,7 +8,7 @@ from typing import Any
 
 from PySide import QtCore, QtGui
 
-from ..colours import WRONG, set_role
+from ..colours import INVALID, set_role
 from .present import present
 
 
@@ -206,29 +206,29 @@ class Fold:
         """A row of the form. Returns the note under the widget, hidden, for what is wrong with it."""
         name = Name(label)
         name.setToolTip(widget.toolTip())
-        for one in (widget, *present(widget, QtGui.QWidget), name):
-            if not one.whatsThis():  # of one that is not, Qt asks its parent for help
-                one.setWhatsThis(widget.whatsThis() or one.toolTip() or widget.toolTip())
+        for child in (widget, *present(widget, QtGui.QWidget), name):
+            if not child.whatsThis():  # of one that is not, Qt asks its parent for help
+                child.setWhatsThis(widget.whatsThis() or child.toolTip() or widget.toolTip())
         note = Note()
         note.setObjectName(f"{widget.objectName()}Note")
-        set_role(note, WRONG)
+        set_role(note, INVALID)
         note.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
         note.hide()
-        both = QtGui.QWidget()
-        column = QtGui.QVBoxLayout(both)
+        container = QtGui.QWidget()
+        column = QtGui.QVBoxLayout(container)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(1)
         column.addWidget(widget)
         column.addWidget(note)
         if _is_long(widget):
             self.form.addRow(name)
-            self.form.addRow(both)
+            self.form.addRow(container)
         else:
             if name.sizeHint().width() > self.widest_label:
                 name.setWordWrap(True)
                 name.setFixedWidth(self.widest_label)
-            self.form.addRow(name, both)
-        self.rows[widget.objectName()] = (name, both)
+            self.form.addRow(name, container)
+        self.rows[widget.objectName()] = (name, container)
         return note
 
     def enable(self, widget: Any, on: bool) -> None:
@@ -238,19 +238,20 @@ class Fold:
 
     def show(self, widget: Any, on: bool) -> None:
         """Show the row of a field, or leave it out; a part of the panel that has no row left goes as a whole."""
-        for one in self.rows[widget.objectName()]:
-            one.setVisible(on)
+        for cell in self.rows[widget.objectName()]:
+            cell.setVisible(on)
         self.widget.setVisible(any(not name.isHidden() for name, _ in self.rows.values()))
 
-    def add_below(self, widget: Any, more: Any) -> None:
+    def add_below(self, widget: Any, new_widget: Any) -> None:
         """A row of the whole width right below that of a field."""
-        both = self.rows[widget.objectName()][1]
+        container = self.rows[widget.objectName()][1]
         items = (
             (row, self.form.itemAt(row, QtGui.QFormLayout.FieldRole))
             for row in range(self.form.rowCount())
         )
         self.form.insertRow(
-            next(row for row, item in items if item is not None and item.widget() is both) + 1, more
+            next(row for row, item in items if item is not None and item.widget() is container) + 1,
+            new_widget,
         )
 
     def _show(self, unfolded: bool) -> None:

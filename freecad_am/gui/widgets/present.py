@@ -10,9 +10,9 @@ from typing import Any
 def present(parent: Any, kind: Any) -> list[Any]:
     """The widgets of a kind below another, without those that PySide takes for deleted ones: it finds them by their place in
     memory, where others may have been before (docs/versions.md)."""
-    found = []
-    for one in parent.findChildren(kind):
+    widgets = []
+    for widget in parent.findChildren(kind):
         with contextlib.suppress(RuntimeError):
-            one.objectName()
-            found.append(one)
-    return found
+            widget.objectName()
+            widgets.append(widget)
+    return widgets

@@ -109,7 +109,7 @@ class QuantityField:
     """The field `box` that shows a number in a unit."""
 
     def __init__(
-        self, shown: float, unit: str, name: str, expression: str = "", display: str = ""
+        self, value: float, unit: str, name: str, expression: str = "", display: str = ""
     ) -> None:
         """shown: the number in the unit; expression: what it follows, '' where it follows nothing; display: the unit that
         the field shows, '' for that of FreeCAD's unit scheme."""
@@ -117,9 +117,9 @@ class QuantityField:
         self.dimension = App.Units.Quantity(f"1 {unit}").Unit
         self.box = UnitBox(self)
         self.line = self.box.lineEdit()
-        self.shown: float | str = shown
+        self.shown: float | str = value
         self.known_text = ""
-        self.show(shown)
+        self.show(value)
         if expression:
             self.show(expression)
         self._add_mark()
@@ -150,9 +150,9 @@ class QuantityField:
         letters = text if len(text) <= _MOST_LETTERS else text[-_MOST_LETTERS:]
         style = self.box.style()
         icon = style.pixelMetric(QtGui.QStyle.PM_SmallIconSize) + 6  # as QLineEdit places an action
-        wanted = metrics.horizontalAdvance(letters) + icon + icon // 4 + _LINE_MARGINS
-        wanted += self.box.width_beside_line()
-        self.box.setMinimumWidth(min(max(_LEAST_WIDTH, wanted), self.box.maximumWidth()))
+        width = metrics.horizontalAdvance(letters) + icon + icon // 4 + _LINE_MARGINS
+        width += self.box.width_beside_line()
+        self.box.setMinimumWidth(min(max(_LEAST_WIDTH, width), self.box.maximumWidth()))
 
     def _add_mark(self) -> None:
         self.mark = self.line.addAction(QtGui.QIcon(_UNSET), QtGui.QLineEdit.TrailingPosition)
@@ -257,5 +257,5 @@ class QuantityField:
 class PlainQuantity(QuantityField):
     """The same in its own unit, whatever FreeCAD's unit scheme is."""
 
-    def __init__(self, shown: float, unit: str, name: str, expression: str = "") -> None:
-        super().__init__(shown, unit, name, expression, unit)
+    def __init__(self, value: float, unit: str, name: str, expression: str = "") -> None:
+        super().__init__(value, unit, name, expression, unit)

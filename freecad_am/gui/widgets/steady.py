@@ -50,11 +50,11 @@ class SteadyLabel(QtGui.QLabel):
 
     def reserve_width(self, texts: Iterable[str]) -> None:
         """For these, and for what is shown now."""
-        shown = self.text()
-        sizes = [self._size(text) for text in (*texts, shown)]
+        current = self.text()
+        sizes = [self._size(text) for text in (*texts, current)]
         self.setFixedSize(max(size.width() for size in sizes), max(size.height() for size in sizes))
 
-    def tell(self, text: str) -> None:
+    def show_text(self, text: str) -> None:
         """Show a text; one that is wider than was thought is shown whole too."""
         if text != self.text():
             size = self._size(text)
@@ -77,7 +77,7 @@ class SteadyText(QtGui.QWidget):
         self.label.setAlignment(QtCore.Qt.AlignTop)
         self.setMinimumHeight(lines * self.label.fontMetrics().lineSpacing())
 
-    def tell(self, text: str) -> None:
+    def show_text(self, text: str) -> None:
         """Show a text."""
         self.label.setText(text)
         self._fit()

@@ -65,7 +65,9 @@ def no_post(name: str, setup: str = "") -> str:
     posts, setup = written_by(loaded), setup or loaded.arrangements[0].setup
     if posts is None or writers(loaded, posts, setup):
         return ""
-    if posts and any(writers(loaded, posts, each.setup) for each in loaded.arrangements):
+    if posts and any(
+        writers(loaded, posts, arrangement.setup) for arrangement in loaded.arrangements
+    ):
         return tr(
             "Programs for this controller need the tool on the robot. With the part on the robot "
             "the job is planned, checked and simulated, but no program is written."
@@ -116,9 +118,9 @@ def setup_for(name: str) -> str:
         []
         if posts is None
         else [
-            one.setup
-            for one in loaded.arrangements
-            if one.planned and writers(loaded, posts, one.setup)
+            arrangement.setup
+            for arrangement in loaded.arrangements
+            if arrangement.planned and writers(loaded, posts, arrangement.setup)
         ]
     )
     return [*written, loaded.arrangements[0].setup][0]
@@ -134,13 +136,15 @@ def post_for(path: Any) -> tuple[str, str]:
     ('', '') where those by default will do, or the machine says nothing."""
     if path is None or path.Cell is None:
         return "", ""
-    usual, wanted = ProgramParameters(), usual_post()
+    usual, default_post = ProgramParameters(), usual_post()
     try:
         post, motion = post_of(
-            path.Cell.Proxy.parameters(path.Cell, CellParameters), wanted, user_machines.folders()
+            path.Cell.Proxy.parameters(path.Cell, CellParameters),
+            default_post,
+            user_machines.folders(),
         )
     except InputError:
         return "", ""
     if not post:
         return NO_POST, ""
-    return ("", "") if (post, motion) == (wanted, usual.motion) else (post, motion)
+    return ("", "") if (post, motion) == (default_post, usual.motion) else (post, motion)

@@ -55,14 +55,14 @@ class _Upright(QtCore.QObject):
         if isinstance(event, QtCore.QEvent):
             with contextlib.suppress(RuntimeError):  # what scrolls it is gone
                 if event.type() == QtCore.QEvent.Show and widget is self.parent():
-                    for area in around(widget):
+                    for area in scroll_areas_of(widget):
                         area.widget().installEventFilter(self)
                 elif (
                     event.type() == QtCore.QEvent.Move
                     and widget is not self.parent()
                     and widget.x() < 0
                 ):
-                    for area in around(self.parent()):
+                    for area in scroll_areas_of(self.parent()):
                         area.horizontalScrollBar().setValue(0)
         return False
 
@@ -72,7 +72,7 @@ def upright(form: Any) -> None:
     form.installEventFilter(_Upright(form))
 
 
-def around(form: Any) -> list[Any]:
+def scroll_areas_of(form: Any) -> list[Any]:
     """The areas that a panel is scrolled in."""
     return [
         area for area in present(Gui.getMainWindow(), QtGui.QScrollArea) if area.isAncestorOf(form)

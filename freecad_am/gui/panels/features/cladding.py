@@ -81,43 +81,43 @@ class CladdingPanel(PickPanel):
         }
 
     def _inputs(self) -> dict[str, str]:
-        found = {
+        arguments = {
             "source": recorded.reference(self.faces.picks[0].obj) if self.faces.picks else "None",
             "faces": repr(self._elements()),
             **self.substrate.arguments(),
             **self.fixtures.arguments(),
         }
-        return self._worth_telling(found)
+        return self._worth_telling(arguments)
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, str]]:
         draft.check()
         work = draft.prepare()
         strategy: CladdingParameters = draft.stage.parameters(draft.obj, CladdingParameters)
 
-        def both() -> tuple[Outcome, str]:
-            made = work()
-            sheets = len(made.value.sheets)
-            faces = len(made.value.faces) or sheets
-            found = [
+        def compute() -> tuple[Outcome, str]:
+            outcome = work()
+            sheets = len(outcome.value.sheets)
+            faces = len(outcome.value.faces) or sheets
+            texts = [
                 tr("1 face")
                 if faces == 1
                 else tr("{} faces in 1 sheet").format(faces)
                 if sheets == 1
                 else tr("{} faces in {} sheets").format(faces, sheets),
-                tr("{:.4g} cm² in 1 layer").format(made.value.area / CM2)
+                tr("{:.4g} cm² in 1 layer").format(outcome.value.area / CM2)
                 if strategy.layers == 1
                 else tr("{:.4g} cm² in each of {} layers").format(
-                    made.value.area / CM2, strategy.layers
+                    outcome.value.area / CM2, strategy.layers
                 ),
             ]
-            return made, in_user_units(", ".join(found))
+            return outcome, in_user_units(", ".join(texts))
 
-        return both
+        return compute
 
-    def _draw(self, made: Outcome, drawing: str) -> str:
-        self.nodes.set_first(borders_of(made.value))
-        self.nodes.set_faces(self.faces.picks[0].obj, made.value.faces)
-        return "\n".join([drawing, *(sentence(issue.message) for issue in made.issues)])
+    def _draw(self, outcome: Outcome, drawing: str) -> str:
+        self.nodes.set_first(borders_of(outcome.value))
+        self.nodes.set_faces(self.faces.picks[0].obj, outcome.value.faces)
+        return "\n".join([drawing, *(sentence(issue.message) for issue in outcome.issues)])
 
     def _draw_without(self) -> None:
         self.nodes.set_first([])

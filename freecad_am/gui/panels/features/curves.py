@@ -53,7 +53,9 @@ class CurvesPanel(PickPanel):
         curves, faces, substrate, fixtures = (
             (None, None, None, ()) if obj is None else _present(obj)
         )
-        self.curves = PickField(CURVES, tr("Curves"), curves, self._arm, picking.EDGE, whole=True)
+        self.curves = PickField(
+            CURVES, tr("Curves"), curves, self._arm, picking.EDGE, allow_whole=True
+        )
         self.normals = PickField(NORMALS, tr("Faces"), faces, self._arm, picking.FACE)
         self.substrate = PickField(SUBSTRATE, tr("Substrate"), substrate, self._arm)
         self.fixtures = PickField(FIXTURES, tr("Fixtures"), fixtures, self._arm)
@@ -84,9 +86,14 @@ class CurvesPanel(PickPanel):
 
     def _elements(self) -> list[str]:
         """The names of edges and faces of the source."""
-        own = self.curves.picks[0] if self.curves.picks else picking.Pick(None)
-        faces = [name for pick in self.normals.picks if pick.obj == own.obj for name in pick.names]
-        return [*own.names, *faces]
+        source_pick = self.curves.picks[0] if self.curves.picks else picking.Pick(None)
+        faces = [
+            name
+            for pick in self.normals.picks
+            if pick.obj == source_pick.obj
+            for name in pick.names
+        ]
+        return [*source_pick.names, *faces]
 
     def _links(self) -> dict[str, Any]:
         return {
@@ -96,13 +103,13 @@ class CurvesPanel(PickPanel):
         }
 
     def _inputs(self) -> dict[str, str]:
-        found = {
+        arguments = {
             "source": recorded.reference(self.curves.picks[0].obj) if self.curves.picks else "None",
             "faces": repr(self._elements()),
             **self.substrate.arguments(),
             **self.fixtures.arguments(),
         }
-        return self._worth_telling(found)
+        return self._worth_telling(arguments)
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Any]]:
         draft.check()
@@ -120,14 +127,16 @@ class CurvesPanel(PickPanel):
             "Fixtures": self.fixtures.label,
         }
 
-    def _draw(self, made: Outcome, drawing: Any) -> str:
-        curves = [one.points for one in made.value.curves]
+    def _draw(self, outcome: Outcome, drawing: Any) -> str:
+        curves = [curve.points for curve in outcome.value.curves]
         self.nodes.set_first(curves)
         length = sum(
             float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) for points in curves
         )
         text = tr("{} curves, {:.4g} mm in all").format(len(curves), length)
-        return "\n".join([in_user_units(text), *(sentence(issue.message) for issue in made.issues)])
+        return "\n".join(
+            [in_user_units(text), *(sentence(issue.message) for issue in outcome.issues)]
+        )
 
     def _draw_without(self) -> None:
         self.nodes.set_first([])

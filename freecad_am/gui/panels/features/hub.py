@@ -61,7 +61,7 @@ class HubPanel(PickPanel):
         "Solids",
     )
     nodes: HubNodes
-    kept: tuple[Any, Outcome, Drawing] | None = (
+    cached: tuple[Any, Outcome, Drawing] | None = (
         None  # what was computed last: what of, what, and what is drawn of it
     )
 
@@ -73,8 +73,8 @@ class HubPanel(PickPanel):
         picks = [self.solids, self.hub, self.fixtures]
         title = tr("Solids on hub") if obj is None else obj.Label
         super().__init__(title, picks, obj, HubNodes(pickable=False))
-        for place in _OF_WALLS:
-            field, _, fold = self.places[place]
+        for key in _OF_WALLS:
+            field, _, fold = self.places[key]
             if field.value == field.row.outer(
                 field.row.default
             ):  # what is refused must be put right here
@@ -103,12 +103,12 @@ class HubPanel(PickPanel):
     def _lacking(self) -> PickField | None:
         return None if self.solids.picks else self.solids
 
-    def _taken(self, field: PickField) -> None:
+    def _on_pick(self, field: PickField) -> None:
         """What is picked as hub is not a solid beside others."""
         hub = self.hub.picks[0].obj if self.hub.picks else None
-        others = [pick for pick in self.solids.picks if pick.obj != hub]
-        if others and len(others) < len(self.solids.picks):
-            self.solids.picks = others
+        solid_picks = [pick for pick in self.solids.picks if pick.obj != hub]
+        if solid_picks and len(solid_picks) < len(self.solids.picks):
+            self.solids.picks = solid_picks
             self.solids.show()
 
     def _refusal(self, field: PickField, pick: picking.Pick) -> str:
@@ -139,7 +139,7 @@ class HubPanel(PickPanel):
     def _inputs(self) -> dict[str, str]:
         solids, faces, hub, base_faces = self._roles()
         further = ", ".join(recorded.reference(obj) for obj in solids[1:])
-        found = {
+        arguments = {
             "source": recorded.reference(solids[0]) if solids else "None",
             "faces": repr(list(faces)),
             "further": f"[{further}]",
@@ -147,7 +147,7 @@ class HubPanel(PickPanel):
             "base_faces": repr(list(base_faces)),
             **self.fixtures.arguments(),
         }
-        return self._worth_telling(found)
+        return self._worth_telling(arguments)
 
     # ---- preview
 
@@ -159,21 +159,25 @@ class HubPanel(PickPanel):
         """Computed anew only where solids or hub are others."""
         draft.check()
         key = (self._inputs(), [str(getattr(draft.obj, name)) for name in _SHAPING])
-        kept, work, strategy = self.kept, draft.prepare(), self._strategy()
+        cached, work, strategy = self.cached, draft.prepare(), self._strategy()
 
-        def both() -> tuple[Outcome, Drawing]:
-            _, made, drawn = kept if kept is not None and kept[0] == key else (key, work(), None)
-            size.refuse_absurd(size.solids_size(made.value, strategy), strategy)
-            self.kept = (key, made, drawing(made.value) if drawn is None else drawn)
-            return self.kept[1:]
+        def compute() -> tuple[Outcome, Drawing]:
+            _, outcome, drawn = (
+                cached if cached is not None and cached[0] == key else (key, work(), None)
+            )
+            size.refuse_absurd(size.solids_size(outcome.value, strategy), strategy)
+            self.cached = (key, outcome, drawing(outcome.value) if drawn is None else drawn)
+            return self.cached[1:]
 
-        return both
+        return compute
 
     def _strategy(self) -> DevelopableParameters:
         """What is entered, with the chord error that the deposit is to keep."""
         entered = Draft(self.proxy, self.document, self.draft, self._links(), super()._values())
-        found: DevelopableParameters = entered.stage.parameters(entered.obj, DevelopableParameters)
-        return found
+        strategy: DevelopableParameters = entered.stage.parameters(
+            entered.obj, DevelopableParameters
+        )
+        return strategy
 
     def _link_places(self) -> dict[str, str]:
         return {
@@ -184,15 +188,15 @@ class HubPanel(PickPanel):
             "Fixtures": self.fixtures.label,
         }
 
-    def _placed(self, error: AmError) -> tuple[str, str]:
+    def _locate(self, error: AmError) -> tuple[str, str]:
         if error.code in _NO_BASE:
             return self.hub.label, sentence(error.message)
-        return super()._placed(error)
+        return super()._locate(error)
 
-    def _draw(self, made: Outcome, drawing: Drawing) -> str:
+    def _draw(self, outcome: Outcome, drawing: Drawing) -> str:
         self.nodes.set(drawing)
         return _summary(
-            made, drawing.contours, (*deposit.expected(made.value, self.obj), *made.issues)
+            outcome, drawing.contours, (*deposit.expected(outcome.value, self.obj), *outcome.issues)
         )
 
     def _draw_without(self) -> None:
@@ -212,10 +216,10 @@ def _present(obj: Any) -> tuple[list[Any], Any, list[Any]]:
 
 
 def _summary(
-    made: Outcome, contours: Sequence[Sequence[Sequence[Array]]], findings: Sequence[Issue]
+    outcome: Outcome, contours: Sequence[Sequence[Sequence[Array]]], findings: Sequence[Issue]
 ) -> str:
     lines = []
-    for group, solids in zip(made.value.groups, contours, strict=True):
+    for group, solids in zip(outcome.value.groups, contours, strict=True):
         surface, count = group.base.surface, len(group.bodies)
         if surface.is_cylinder:
             shape = tr("cylinder, R {:.4g} mm").format(surface.radius)
@@ -224,12 +228,14 @@ def _summary(
                 surface.radius, np.degrees(surface.taper)
             )
         length = sum(
-            float(np.linalg.norm(np.diff(one, axis=0), axis=1).sum())
+            float(np.linalg.norm(np.diff(contour, axis=0), axis=1).sum())
             for solid in solids
-            for one in solid
+            for contour in solid
         )
         stands = tr("1 solid on {1} ({2})") if count == 1 else tr("{0} solids on {1} ({2})")
-        first = tr("first layer: {} contours, {:.1f} mm").format(sum(map(len, solids)), length)
+        first_layer = tr("first layer: {} contours, {:.1f} mm").format(
+            sum(map(len, solids)), length
+        )
         stands = stands.format(count, group.base.name, in_user_units(shape))
-        lines.append(f"{stands}; {in_user_units(first)}")
+        lines.append(f"{stands}; {in_user_units(first_layer)}")
     return "\n".join([*lines, *(sentence(issue.message) for issue in findings)])

@@ -31,43 +31,45 @@ class FeaturePanel(PreviewPanel):
         title = tr("Feature") if obj is None else obj.Label
         super().__init__(title, shape_inputs.of(RevolutionFeature, obj), obj, MeridianNodes())
         self.say("")  # what is missing is told where the preview will be
-        self.tell(self.choices[0].label, self.choices[0].note, wrong=False)
+        self.show_note(self.choices[0].label, self.choices[0].note, wrong=False)
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Drawing]]:
         draft.check()
         work, strategy = draft.prepare(), draft.stage.parameters(draft.obj, RevolutionParameters)
 
-        def both() -> tuple[Outcome, Drawing]:
-            made = work()
-            return made, (strategy, *sliced(made.value, strategy))
+        def compute() -> tuple[Outcome, Drawing]:
+            outcome = work()
+            return outcome, (strategy, *sliced(outcome.value, strategy))
 
-        return both
+        return compute
 
-    def _draw(self, made: Outcome, drawing: Drawing) -> str:
+    def _draw(self, outcome: Outcome, drawing: Drawing) -> str:
         strategy, slices, issues = drawing
-        self.nodes.set_wall(made.value)
-        self.nodes.set_layers(made.value, slices)
+        self.nodes.set_wall(outcome.value)
+        self.nodes.set_layers(outcome.value, slices)
         text = (
             tr("About {} turns along {:.4g} mm of wall")
             if strategy.path == "spiral"
             else tr("Layers: {}, along {:.4g} mm of wall")
         )
         count = int(slices.layer.max(initial=-1)) + 1
-        found = (
+        messages = (
             sentence(issue.message)
-            for issue in (*deposit.expected(made.value, self.obj), *made.issues, *issues)
+            for issue in (*deposit.expected(outcome.value, self.obj), *outcome.issues, *issues)
         )
-        return "\n".join([in_user_units(text.format(count, made.value.meridian.length)), *found])
+        return "\n".join(
+            [in_user_units(text.format(count, outcome.value.meridian.length)), *messages]
+        )
 
     def _draw_without(self) -> None:
         self.nodes.clear()
 
-    def _placed(self, error: AmError) -> tuple[str, str]:
+    def _locate(self, error: AmError) -> tuple[str, str]:
         """What is wrong with the shape is told under it."""
         source = self.choices[0]
         if source.present is not None and error.where == source.present[0].Label:
             return source.label, translated(error.message)
-        return super()._placed(error)
+        return super()._locate(error)
 
     def _show_own(self, visible: bool) -> None:
         if self.obj is not None:

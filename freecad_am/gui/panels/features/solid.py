@@ -89,7 +89,7 @@ class SolidPanel(PickPanel):
     nodes: SolidNodes
     leaning: Leaning | None = None  # what of the part leans out, as it is previewed
     lean = -1  # deg that the field of the largest overhang held when the slider followed it
-    kept: tuple[Any, Outcome] | None = None  # the solids read last: what of, and what
+    cached: tuple[Any, Outcome] | None = None  # the solids read last: what of, and what
 
     def __init__(self, obj: Any = None) -> None:
         solids, substrate, guide, start, fixtures = (
@@ -98,7 +98,7 @@ class SolidPanel(PickPanel):
         self.solids = PickField(SOLIDS, tr("Solids"), solids, self._arm)
         self.substrate = PickField(SUBSTRATE, tr("Substrate"), substrate, self._arm)
         self.fixtures = PickField(FIXTURES, tr("Fixtures"), fixtures, self._arm)
-        self.guide = PickField(GUIDE, tr("Guide"), guide, self._arm, picking.EDGE, whole=True)
+        self.guide = PickField(GUIDE, tr("Guide"), guide, self._arm, picking.EDGE, allow_whole=True)
         self.start = PickField(START, tr("Starts on"), start, self._arm, picking.FACE)
         picks = [self.solids, self.substrate, self.guide, self.start, self.fixtures]
         super().__init__(
@@ -173,15 +173,15 @@ class SolidPanel(PickPanel):
 
     def _inputs(self) -> dict[str, str]:
         solids = [recorded.reference(pick.obj) for pick in self.solids.picks]
-        found = {
+        arguments = {
             "source": solids[0] if solids else "None",
             "further": f"[{', '.join(solids[1:])}]",
             **self.substrate.arguments(),
-            "guide": _with_names(self.guide),
-            "start_faces": _with_names(self.start),
+            "guide": _pick_argument(self.guide),
+            "start_faces": _pick_argument(self.start),
             **self.fixtures.arguments(),
         }
-        return self._worth_telling(found)
+        return self._worth_telling(arguments)
 
     def _values(self) -> dict[str, Any]:
         """Entries, but for the chord error, which a picture need not keep; a wrong one stays wrong."""
@@ -190,16 +190,18 @@ class SolidPanel(PickPanel):
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, tuple[Drawing, Leaning, int]]]:
         """Solids are read anew only where they are others."""
         draft.check()
-        kept, work = self.kept, draft.prepare()
+        cached, work = self.cached, draft.prepare()
         strategy: SolidParameters = draft.stage.parameters(draft.obj, SolidParameters)
         guided = strategy.layers == "along"
         key = (self._inputs(), strategy.direction if guided else None, guided)
 
-        def both() -> tuple[Outcome, tuple[Drawing, Leaning, int]]:
-            made = kept[1] if kept is not None and kept[0] == key else work()
-            self.kept = (key, made)
-            bodies = made.value.groups[0].bodies
-            solids = made.value if guided else prepare_stack(bodies, strategy, made.value.label)
+        def compute() -> tuple[Outcome, tuple[Drawing, Leaning, int]]:
+            outcome = cached[1] if cached is not None and cached[0] == key else work()
+            self.cached = (key, outcome)
+            bodies = outcome.value.groups[0].bodies
+            solids = (
+                outcome.value if guided else prepare_stack(bodies, strategy, outcome.value.label)
+            )
             size.refuse_absurd(size.solids_size(solids, strategy), strategy)
             if guided:  # at once what is higher or lower than allowed
                 list(along.slices(solids.groups[0].base, bodies, strategy))
@@ -207,10 +209,14 @@ class SolidPanel(PickPanel):
             lean = find_leaning(
                 bodies, solids.groups[0].base, CONTACT_HEIGHTS * strategy.layer_height, slit
             )
-            asked = round(math.degrees(strategy.max_overhang))
-            return Outcome(solids, solids.issues), (drawing(solids), lean, min(asked, STEEPEST))
+            overhang_deg = round(math.degrees(strategy.max_overhang))
+            return Outcome(solids, solids.issues), (
+                drawing(solids),
+                lean,
+                min(overhang_deg, STEEPEST),
+            )
 
-        return both
+        return compute
 
     def _link_places(self) -> dict[str, str]:
         return {
@@ -222,36 +228,38 @@ class SolidPanel(PickPanel):
             "Fixtures": self.fixtures.label,
         }
 
-    def _placed(self, error: AmError) -> tuple[str, str]:
+    def _locate(self, error: AmError) -> tuple[str, str]:
         if error.where == centre_line.WHERE:
             return self.guide.label, sentence(error.message)
-        return super()._placed(error)
+        return super()._locate(error)
 
-    def _draw(self, made: Outcome, drawn: tuple[Drawing, Leaning, int]) -> str:
-        drawing, self.leaning, asked = drawn
+    def _draw(self, outcome: Outcome, drawn: tuple[Drawing, Leaning, int]) -> str:
+        drawing, self.leaning, overhang_deg = drawn
         self.nodes.set(drawing)
-        if asked != self.lean:  # the slider begins where the field is, and follows it
-            self.lean = asked
-            self.overhang.setValue(asked)
+        if overhang_deg != self.lean:  # the slider begins where the field is, and follows it
+            self.lean = overhang_deg
+            self.overhang.setValue(overhang_deg)
         self._show_overhang()
-        group = made.value.groups[0]
+        group = outcome.value.groups[0]
         height = max(
             float(group.base.surface.distance(group.base.inside(body.vertices)).max())
             for body in group.bodies
         )
-        contours = sum(len(some) for solids in drawing.contours for some in solids)
-        found = (
+        contours = sum(
+            len(solid_contours) for solids in drawing.contours for solid_contours in solids
+        )
+        size_text = (
             tr("1 solid, {:.4g} mm high").format(height)
             if len(group.bodies) == 1
             else (tr("{} solids, {:.4g} mm high").format(len(group.bodies), height))
         )
-        first = (
+        first_layer = (
             tr("first layer: 1 contour")
             if contours == 1
             else tr("first layer: {} contours").format(contours)
         )
-        text = f"{in_user_units(found)}; {first}"
-        return "\n".join([text, *(sentence(issue.message) for issue in made.issues)])
+        text = f"{in_user_units(size_text)}; {first_layer}"
+        return "\n".join([text, *(sentence(issue.message) for issue in outcome.issues)])
 
     def _draw_without(self) -> None:
         self.nodes.set(NOTHING)
@@ -259,7 +267,7 @@ class SolidPanel(PickPanel):
         self._show_overhang()
 
 
-def _with_names(field: PickField) -> str:
+def _pick_argument(field: PickField) -> str:
     """An object with its edges or faces as a macro gives it."""
     if not field.picks:
         return "None"

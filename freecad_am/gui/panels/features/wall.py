@@ -14,7 +14,7 @@ from ....objects.fields.preferences import in_user_units
 from ....objects.shapes.bodies import snapshot_of
 from ....objects.stage_parts import Outcome
 from ....objects.surface_feature import SurfaceFeature
-from ...nodes.wall import WallNodes, drawn, first_curves
+from ...nodes.wall import WallNodes, face_mesh, first_curves
 from ...picking import picking
 from ...picking.pick_field import PickField
 from ...texts.in_language import marked, sentence, tr, translated
@@ -46,16 +46,16 @@ class WallPanel(PickPanel):
         super().__init__(
             tr("Wall on part") if obj is None else obj.Label, picks, obj, WallNodes(pickable=False)
         )
-        self.tell(self._field("Source").label, self.note, wrong=False)
+        self.show_note(self._field("Source").label, self.note, wrong=False)
 
     def _propose(self, picks: list[picking.Pick]) -> str:
         wall, substrate, unclear = picking.proposal(picks)
-        whole = None if wall is None else picking.whole(wall)
-        if wall is not None and whole is not None and wall.names and not whole.names:
+        whole_part = None if wall is None else picking.expand_pick(wall)
+        if wall is not None and whole_part is not None and wall.names and not whole_part.names:
             self.note = tr(
                 "The whole of {} is used; Pick selects single faces, click by click."
             ).format(wall.obj.Label)
-            wall = whole
+            wall = whole_part
         for name, pick in (("Source", wall), ("Substrate", substrate)):
             if pick is not None:
                 self._field(name).take(pick)
@@ -100,20 +100,20 @@ class WallPanel(PickPanel):
         return {field.link.name: field.value() for field in self.picks}
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Any]]:
-        work, part = draft.prepare(), snapshot_of(draft.obj.Source[0])
+        work, snapshot = draft.prepare(), snapshot_of(draft.obj.Source[0])
 
-        def both() -> tuple[Outcome, Any]:
-            made = work()
-            return made, drawn(part, made.value.faces)
+        def compute() -> tuple[Outcome, Any]:
+            outcome = work()
+            return outcome, face_mesh(snapshot, outcome.value.faces)
 
-        return both
+        return compute
 
-    def _draw(self, made: Outcome, drawing: Any) -> str:
-        curves = first_curves(made.value)
+    def _draw(self, outcome: Outcome, drawing: Any) -> str:
+        curves = first_curves(outcome.value)
         self.nodes.set_first(curves)
         self.nodes.faces.show(True)
         self.nodes.faces.set(*drawing)
-        return _summary(curves, (*deposit.expected(made.value, self.obj), *made.issues))
+        return _summary(curves, (*deposit.expected(outcome.value, self.obj), *outcome.issues))
 
     def _draw_without(self) -> None:
         wall = self._field("Source").picks
@@ -129,7 +129,7 @@ def _label(link: Any) -> str:
 
 def _summary(curves: list[Any], issues: tuple[Issue, ...]) -> str:
     lengths = [float(np.linalg.norm(np.diff(curve, axis=0), axis=1).sum()) for curve in curves]
-    parts = [
+    curve_texts = [
         (
             tr("closed, {:.1f} mm")
             if np.allclose(curve[0], curve[-1], atol=1e-9)
@@ -138,4 +138,6 @@ def _summary(curves: list[Any], issues: tuple[Issue, ...]) -> str:
         for curve, length in zip(curves, lengths, strict=True)
     ]
     findings = (sentence(issue.message) for issue in issues)
-    return "\n".join([tr("First layer: {}").format(in_user_units("; ".join(parts))), *findings])
+    return "\n".join(
+        [tr("First layer: {}").format(in_user_units("; ".join(curve_texts))), *findings]
+    )
