@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Copies of this process, made by fork in milliseconds where the system has it."""
+"""Copies of this process, made by fork in milliseconds on systems that support it."""
 
 from __future__ import annotations
 
@@ -13,8 +13,11 @@ FAILED = 1  # exit status of a copy whose work raised
 
 
 def begun(work: Callable[[], object]) -> int:
-    """The number of a copy of this process that has begun with some work. It ends with 0, or FAILED where the work raises,
-    of which it says nothing unless FREECAD_AM_DEBUG is set; at any signal; and with this process."""
+    """Fork a copy of this process to run `work`, and return its process id.
+
+    The copy exits with 0, or with FAILED if the work raises; it prints the error only with
+    FREECAD_AM_DEBUG. It ends at any signal, and together with this process.
+    """
     parent = os.getpid()
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:
@@ -50,7 +53,9 @@ def _carry_out(work: Callable[[], object], parent: int, asked: set[signal.Signal
 
 
 def take_no_signals() -> None:
-    """Every signal ends this process, a fault of memory too: FreeCAD and its kernel would go on with what is broken."""
+    """Let every signal end this process, even a memory fault: FreeCAD and its kernel would go on
+    with corrupt data.
+    """
     for number in (
         signal.SIGINT,
         signal.SIGTERM,
@@ -63,7 +68,9 @@ def take_no_signals() -> None:
 
 
 def end_with(parent: int) -> None:
-    """Have the system end this process when its parent, the process of that number, ends, however that does."""
+    """Have the system end this process when its parent (the process id `parent`) ends for any
+    reason.
+    """
     import ctypes
 
     with contextlib.suppress(OSError, AttributeError):

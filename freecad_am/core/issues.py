@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Findings and errors: what is wrong, where, and what to do about it.
+"""Issues and errors: what is wrong, where, and the remedy.
 
-A finding about a sound job (unreachable point, limit exceeded) is an `Issue` with its place. An input
-that cannot be understood is an `InputError`. Nothing else leaves this package for a user's mistake.
+A problem of a valid job (unreachable point, limit exceeded) is an `Issue` with its place. Unusable
+input is an `InputError`. A user's mistake raises nothing else from this package.
 """
 
 from __future__ import annotations
@@ -20,11 +20,12 @@ MAX_RANGES = 6  # of layers that a merged issue names
 
 
 class Text(str):
-    """A sentence in English that knows how it was made, so that it can be said in another language.
+    """An English sentence with its template and values, for translation.
 
-    `Text("it has {} faces of {:.3g} mm", count, width)` is that sentence to everyone who reads it. `template` has places by
-    number, '{0} faces of {1} mm', and `values` what stands there, as it is written; a value that is a Text keeps its own
-    parts. Without values the text is taken as it stands, braces too.
+    `Text("it has {} faces of {:.3g} mm", count, width)` behaves like the formatted string.
+    `template` has numbered places, '{0} faces of {1} mm', and `values` holds their formatted
+    contents; a value that is a Text keeps its own parts. Without values the text is used unchanged,
+    including braces.
     """
 
     __slots__ = ("template", "values")
@@ -66,7 +67,7 @@ class Text(str):
 
 
 def values_in(text: str) -> Iterator[str]:
-    """What was put into a text, and into those that were put into it; nothing of a plain one."""
+    """Return the values of a text and of the texts among its values; empty for a plain string."""
     for value in getattr(text, "values", ()):
         yield value
         yield from values_in(value)
@@ -74,13 +75,15 @@ def values_in(text: str) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class Word:
-    """A word or part of a sentence that is chosen, such as a plural: of the template, not a value that is put into it."""
+    """A word or part of a sentence that the code selects, such as a plural; part of the template,
+    not a value.
+    """
 
     text: str
 
 
 def _pieces(text: str, values: tuple[object, ...]) -> Iterator[tuple[str, str | None]]:
-    """What stands before each place of a text, and what is put there; None after the last one."""
+    """Yield the text before each place and the value at the place; None after the last one."""
     given = iter(values)
     for literal, place, form, conversion in Formatter().parse(text):
         if place is None:
@@ -110,7 +113,9 @@ def _written(value: object, form: str) -> str:
 
 @dataclass(frozen=True)
 class Issue:
-    """One finding. `layer`, `bead` and `point` count from 0 and are None where the finding has no such place."""
+    """A problem of a job. `layer`, `bead` and `point` count from 0 and are None if they do not
+    apply.
+    """
 
     level: str
     code: str
@@ -125,7 +130,7 @@ class Issue:
 
     @property
     def where(self) -> str:
-        """The place in words, '' when there is none."""
+        """Return the place in words, '' without one."""
         named = (("layer {}", self.layer), ("bead {}", self.bead), ("point {}", self.point))
         known = [(word, index) for word, index in named if index is not None]
         return (
@@ -146,8 +151,9 @@ def summarised(issues: Iterable[Issue]) -> list[Issue]:
     Returns
     -------
     list of Issue
-        In the order of the first of each kind. A merged issue stands at the worst place, which is the one whose message
-        has the largest leading figure, and its message names the count and the layers.
+        In the order of the first of each kind. A merged issue has the worst place, which is the one
+        whose message has the largest leading figure, and its message names the count and the
+        layers.
     """
     kinds: dict[tuple[str, str, str], list[Issue]] = {}
     for issue in issues:
@@ -203,12 +209,15 @@ def has_errors(issues: tuple[Issue, ...] | list[Issue]) -> bool:
 
 
 class AmError(Exception):
-    """Base of all errors raised on purpose. `exit_status` is the status of the headless command."""
+    """Base of the errors that the package raises on purpose.
+
+    `exit_status` is the status of the headless command.
+    """
 
     exit_status = 1
 
     def __init__(self, code: str, where: str, message: str, *values: object) -> None:
-        """values: what is put into the message, see Text."""
+        """Create the error; `values` fill the places of the message, see Text."""
         self.code = code
         self.where = where
         self.message = Text(message, *values) if values else message

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The motion: every point the machine passes, in order, as columns.
 
-Per bead come its rapid rows (retract from the bead before, lifted approach, down onto the start) and then all
-its deposit rows; the first deposit row repeats the place of the last rapid row and takes no time, so that
-a bead's rows are complete. After the last bead the tool is retracted.
+Each bead has its rapid rows (retract from the previous bead, travel, approach onto the start) and
+then its deposit rows. The first deposit row repeats the position of the last rapid row and takes no
+time, so that a bead's rows are complete. After the last bead the tool is retracted.
 
-A rapid is driven straight in the joints and stops at each of its rows; a bead passes through its rows and stops at its end.
-What is straight within a bead, joints or tip, the program decides.
+A rapid is straight in the joints and stops at each row. A bead passes through its rows and stops at
+its end. The program decides whether joints or the tip are straight within a bead.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ MIDDLE, AT_START, AT_END = PHASES = range(3)  # of the segment of a bead that en
 class Motion:
     """Columns of n rows. Points and directions in the part's own frame, mm; joints serial, rad.
 
-    deposit: (n,) bool. layer, bead, point: (n,) int from 0; a rapid row carries the bead it leads to. position,
-    build, tool: (n, 3). speed: (n,) mm/s at the deposition point on the segment that ends at the row. width: (n,) mm,
-    NaN without a bead model. joints: (n, axes) unwrapped along the whole job, NaN where unreachable.
-    duration: (n,) s of the segment that ends at the row. wire: (n,) mm/s of the wire on that segment where it follows the
-    travel speed, else NaN, as when left out. role: (n,) DEPOSIT, RETRACT, TRAVEL or APPROACH; left out, as in documents from
-    before there was one, it is that of one retract and one approach row between beads, and of none where there are too few.
-    bead_class: (n,) place in `parameters.bead_classes.CLASSES` of the class of the bead that the row is of, or leads to;
-    UNKNOWN where left out.
-    phase: (n,) of PHASES. halt: (n,) bool, the rows within beads at which the machine stops, as where it turns back; none
-    where left out.
+    deposit: (n,) bool. layer, bead, point: (n,) int from 0; a rapid row carries the bead it leads
+    to. position, build, tool: (n, 3). speed: (n,) mm/s at the deposition point on the segment that
+    ends at the row. width: (n,) mm, NaN without a bead model. joints: (n, axes) unwrapped along the
+    whole job, NaN where unreachable. duration: (n,) s of the segment that ends at the row. wire:
+    (n,) mm/s of the wire on that segment if it follows the travel speed, else NaN, the default.
+    role: (n,) DEPOSIT, RETRACT, TRAVEL or APPROACH; by default, as in documents of older versions,
+    one retract and one approach row between beads, or none with too few rows. bead_class: (n,)
+    index in `parameters.bead_classes.CLASSES` for the bead that the row belongs or leads to;
+    UNKNOWN by default. phase: (n,) phase, see PHASES. halt: (n,) bool, the rows within beads at
+    which the machine stops, for example to reverse; none by default.
     """
 
     deposit: Mask
@@ -80,7 +80,9 @@ class Motion:
 
     @property
     def moves(self) -> Mask:
-        """(n,) bool: the rows a controller moves to; the first row of a bead repeats where it already stands."""
+        """(n,) bool: the rows a controller moves to; the first row of a bead repeats the present
+        position.
+        """
         return np.asarray(~(self.deposit & (self.point == 0)), dtype=np.bool_)
 
     @cached_property
@@ -99,12 +101,12 @@ class Motion:
 
     @property
     def total_time(self) -> float:
-        """Time of all moves, s; waits and lead times not counted."""
+        """Total time of the moves, s; waits and lead times are not counted."""
         return float(self.duration.sum())
 
 
 def _roles(deposit: Mask) -> Integers:
-    """(n,) what the rows are for, by what stands before and after them."""
+    """Return the roles (n,) of the rows, derived from the rows before and after them."""
     role = np.where(deposit, DEPOSIT, TRAVEL).astype(np.int64)
     edges = np.concatenate([[0], np.flatnonzero(deposit[1:] != deposit[:-1]) + 1, [len(deposit)]])
     for start, end in zip(edges[:-1].tolist(), edges[1:].tolist()):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The program: moves and process events that a post turns into a controller's text.
 
-Joint values are those the controller shows (rad, and mm of axes that slide), poses those of its user frame (mm). A post
-reads this and nothing else; it knows neither part nor kinematics.
+Joint values are controller joint values (rad, and mm of prismatic axes); poses are in the
+controller's user frame (mm). A post needs nothing else: neither part nor kinematics.
 """
 
 from __future__ import annotations
@@ -21,12 +21,13 @@ RETRACT, TRAVEL, APPROACH = "retract", "travel", "approach"
 LINEAR, ROTARY = "linear", "rotary"
 # what runs straight from point to point: the joints, or the tip
 JOINT_MOVE, LINEAR_MOVE = "joint", "linear"
-# Where the machine stands before a program is not known, so its first move has no planned time: share of the axes' largest
-# speeds, and s where a controller is told a time
+# The machine position before a program is unknown, so the first move has no planned time: share of
+# the axes' largest speeds, and s if the controller needs a time
 FIRST_SHARE, FIRST_TIME = 0.1, 10.0
 SHORTEST_RAPID = 0.05  # s that a rapid is planned to take at least, however short its way
-# how far the tip, and how far the tool, of a rapid that is a linear move may be off the way that was looked at, straight in
-# the joints: clearance has that to spare. The way is cut to it when it is planned, and the text is held to it
+# maximum deviation of the tip, and of the tool, on a linear rapid from the checked path, which is
+# straight in the joints; the clearance has this to spare. Planning divides the path to keep within
+# it, and read-back checks the text against it
 OFF_WAY_MM, OFF_WAY_RAD = 0.2, 1e-3
 
 
@@ -34,20 +35,22 @@ OFF_WAY_MM, OFF_WAY_RAD = 0.2, 1e-3
 class Moves:
     """A run of n moves without an event between.
 
-    kind: 'deposit' or 'rapid'. interpolation: what runs straight on every move of the run, 'joint' or 'linear' (the tip).
-    stops: (n,) bool, whether the machine stands still at the end of a move or passes through, rounding the corner as far as
-    `Program.blend` and `NcOptions.tolerance` let it; left out, at every point of a rapid and at the last one of a bead.
-    halt: (n,) bool, those of the stops that are within a bead.
-    role: n words, what each move is for; left out, a rapid of several moves begins with a retract.
-    layer, bead: the bead the moves belong or lead to. joints: (n, axes) controller
-    values, rad, and mm of linear axes. duration: (n,) s of the move that ends at each point, > 0. speed: (n,) mm/s at the
-    deposition point on that move. Only where motion is Cartesian: position (n, 3) mm and rotation (n, 3, 3), seen from the
-    program's origin, of the tool or, with the part on the robot, of the deposition point; and configuration, one
-    (shoulder, elbow, wrist) per point. On a rotary table, which has no rotation about the tool and no configuration:
-    position of the tip, and direction (n, 3), unit vectors from the deposit towards the torch, seen from the program's
-    origin, which turns with the part. flange: (n, 4, 4) its pose in the maker's base frame, mm, only for posts that need it
-    (`Controller.flange`) where the part is on the robot. wire: (n,) mm/s of the wire on that move where the
-    program has to tell it, else None.
+    kind: 'deposit' or 'rapid'. interpolation: the space in which every move is straight, 'joint' or
+    'linear' (the tip). stops: (n,) bool, whether the machine stops at the end of a move or passes
+    through and rounds the corner, within `Program.blend` and `NcOptions.tolerance`; by default it
+    stops at every point of a rapid and at the last one of a bead. halt: (n,) bool, the stops within
+    a bead. role: n words, the purpose of each move; by default a rapid of several moves begins with
+    a retract. layer, bead: the bead that the moves belong or lead to. joints: (n, axes) controller
+    joint values, rad, and mm of linear axes. duration: (n,) s of the move that ends at each point,
+    > 0. speed: (n,) mm/s at the deposition point on that move.
+
+    Only for Cartesian motion: position (n, 3) mm and rotation (n, 3, 3) of the tool in the
+    program's origin or, with the part on the robot, of the deposition point; and configuration, one
+    (shoulder, elbow, wrist) per point. For a five-axis machine, which has no tool rotation and no
+    configuration: position of the tip, and direction (n, 3), unit vectors from the deposit towards
+    the torch, in the program's origin, which turns with the part. flange: (n, 4, 4) its pose in the
+    manufacturer's base frame, mm, only for posts that need it (`Controller.flange`) with the part
+    on the robot. wire: (n,) mm/s of the wire on that move if the program has to set it, else None.
     """
 
     kind: str
@@ -85,9 +88,12 @@ class Moves:
 
 @dataclass(frozen=True)
 class DepositOn:
-    """Switch the deposit on and wait `lead` seconds before moving. wire: mm/s of the wire it begins with, where the program
-    has to tell it. schedule: that the arc instruction names, None where an output switches the deposit. ahead: s before the
-    start is reached at which it is switched, on the move before; None where the machine stands there."""
+    """Switch the deposit on and wait `lead` seconds before moving.
+
+    wire: mm/s of the wire at the start, if the program has to set it. schedule: named by the arc
+    instruction, None if an output switches the deposit. ahead: s before the end of the approach at
+    which the deposit is switched; None if the machine is at standstill.
+    """
 
     lead: float = 0.0
     wire: float | None = None
@@ -97,8 +103,11 @@ class DepositOn:
 
 @dataclass(frozen=True)
 class DepositOff:
-    """Wait `lead` seconds at the end of the bead, then switch the deposit off. schedule: as in `DepositOn`; ahead: the same
-    of the end, on the last move of the bead."""
+    """Wait `lead` seconds at the end of the bead, then switch the deposit off.
+
+    schedule: as in `DepositOn`. ahead: s before the end of the last move of the bead; None as in
+    `DepositOn`.
+    """
 
     lead: float = 0.0
     schedule: int | None = None
@@ -115,7 +124,7 @@ class Schedule:
 
 @dataclass(frozen=True)
 class Weave:
-    """From here the controller swings the torch about the path by its own weave of this number, from 1; 0: no longer."""
+    """Start the controller's weave of this number, from 1; 0 ends it."""
 
     number: int
 
@@ -129,22 +138,24 @@ class LayerStart:
 
 @dataclass(frozen=True)
 class Wait:
-    """Stand still for some seconds."""
+    """Wait for some seconds."""
 
     seconds: float
 
 
 @dataclass(frozen=True)
 class WaitInput:
-    """Stand still until a digital input is on."""
+    """Wait until a digital input is on."""
 
     number: int
 
 
 @dataclass(frozen=True)
 class WaitBelow:
-    """Stand still until the analogue input, from 1, is below a value. layer, bead: what it is waited for, which no other one
-    is."""
+    """Wait until the analogue input, from 1, is below a value.
+
+    layer, bead: the bead that waits; each bead has its own wait.
+    """
 
     number: int
     below: float
@@ -176,13 +187,15 @@ Block = (
 
 @dataclass(frozen=True)
 class NcOptions:
-    """How programs of five-axis machines are written; a post reads what its controller knows.
+    """The options of programs for five-axis machines; a post uses those that its controller
+    supports.
 
-    path_feed: speed of the linear axes wherever they move, in place of the time of each move. compress, smooth: block
-    compressor; rounding, jerk limit and feed forward. tolerance: mm, largest rounding of corners. deposit_on, deposit_off:
-    words that switch the deposit, empty for the numbered output. switch_kinematics: the controller knows a kinematics for
-    axes and one for the tip, and is told which. wire_output: analogue output, from 1, of the wire's speed where moves tell
-    it; wire_gain: its value at 1 m/min.
+    path_feed: whether to give the speed of the linear axes wherever they move, instead of the time
+    of each move. compress, smooth: block compressor; rounding, jerk limit and feed forward.
+    tolerance: mm, largest rounding of corners. deposit_on, deposit_off: words that switch the
+    deposit, empty for the numbered output. switch_kinematics: the controller has one kinematics for
+    axes and one for the tip, and the program selects it. wire_output: analogue output, from 1, for
+    the wire speed if moves give it; wire_gain: its value at 1 m/min.
     """
 
     path_feed: bool = False
@@ -198,27 +211,34 @@ class NcOptions:
 
 @dataclass(frozen=True)
 class Program:
-    """All of a job, in order.
+    """A complete job, in order.
 
-    name: as the user named the job; a post derives its own file names or refuses. machine: title of the machine.
-    continuous: for each axis, whether it turns without limits. remarks: lines a post writes as
-    comments. motion: 'joint' or 'cartesian', whether places are told as joint values or as positions; rapids are joint moves
-    in either. deposit points run at constant speed at the deposition point. blend: percent of the rounding of corners that
-    the controller knows, where moves pass through.
-    max_speed: rad/s of each axis, mm/s of linear ones, infinite where not known. pulses_per_degree: of each axis, and
-    speed_unit of path speeds, of controllers that count so, as far as the machine file says.
-    station, carried: X Y Z mm, RX RY RZ rad. With the part on the robot, of the deposition point in the maker's base frame
-    and of the program's origin on the flange; with the tool on the robot, of the program's origin in the maker's base frame
-    and of the nozzle's tip on the flange. On a rotary table, of the torch's tip with all axes at zero, and of the program's
-    origin on the table's face: the work offset with the rotary axes at zero.
-    axis_names: how the controller writes each axis, such as X Y Z A C; axis_kinds: 'linear' or 'rotary', one each. Both are
-    empty for robots, whose axes go by number. nc: for five-axis machines alone.
-    external_kinds: 'linear' or 'rotary' of each external axis, which are the last ones of all. With rotary ones the
-    part is on the last mechanism, and station is the program's origin on its face; a linear one is a track that carries the
-    robot. unit: what the controller calls the mechanism of the part, or a track alone; first_external: the number there of
-    the first of these axes, from 1. schedule_output: what the numbers of schedules are set on.
-    axis_machines: title of the machine or mechanism that each axis belongs to, whose file tells about it; of_urdf: whether
-    that is a URDF.
+    name: given by the user; a post derives its own file names or rejects it. machine: title of the
+    machine. continuous: for each axis, whether it turns without limits. remarks: lines that a post
+    writes as comments. motion: 'joint' or 'cartesian', whether targets are joint values or
+    positions; rapids are joint moves in either. Deposit points run at constant speed at the
+    deposition point. blend: percent of the controller's corner rounding at points that moves pass
+    through. max_speed: rad/s of each axis, mm/s of linear ones, infinite if unknown.
+    pulses_per_degree: of each axis, and speed_unit of path speeds, for controllers that count in
+    these units, if the machine file has them.
+
+    station, carried: X Y Z mm, RX RY RZ rad. With the part on the robot: the deposition point in
+    the manufacturer's base frame, and the program's origin on the flange. With the tool on the
+    robot: the program's origin in the manufacturer's base frame, and the nozzle's tip on the
+    flange. On a five-axis machine: the torch's tip with all axes at zero, and the program's origin
+    on the face that carries the part: the work offset with the rotary axes at zero.
+
+    axis_names: the controller's name of each axis, such as X Y Z A C; axis_kinds: 'linear' or
+    'rotary', one each. Both are empty for robots, whose axes are numbered. nc: only for five-axis
+    machines.
+
+    external_kinds: 'linear' or 'rotary' for each external axis; these are the last axes. With
+    rotary ones the part is on the last mechanism, and station is the program's origin on its face;
+    a linear one is a track that carries the robot. unit: the controller's name for the mechanism of
+    the part, or for a track without one; first_external: the controller's number, from 1, of the
+    first external axis. schedule_output: the output for schedule numbers. axis_machines: for each
+    axis, the title of the machine or mechanism whose file describes it; of_urdf: whether that file
+    is a URDF.
     """
 
     name: str
@@ -251,12 +271,12 @@ class Program:
 
     @property
     def holds_part(self) -> bool:
-        """Whether the robot holds the part, under a tool that stands."""
+        """Return whether the robot holds the part under a fixed tool."""
         return self.setup == "part-on-robot"
 
     @property
     def own_axes(self) -> int:
-        """How many axes the machine has without those beside it."""
+        """Number of axes of the machine without external axes."""
         return len(self.continuous) - len(self.external_kinds)
 
     @property
@@ -271,7 +291,7 @@ class Program:
 
     @property
     def slides(self) -> Mask:
-        """(axes,) bool: the track among all axes of a robot and those beside it."""
+        """(axes,) bool: the track among all axes of a robot and its external axes."""
         return np.array(
             [*(False,) * self.own_axes, *(kind == LINEAR for kind in self.external_kinds)],
             dtype=np.bool_,
@@ -279,12 +299,12 @@ class Program:
 
     @property
     def moves(self) -> tuple[Moves, ...]:
-        """The moves alone, in order."""
+        """Return only the moves, in order."""
         return tuple(block for block in self.blocks if isinstance(block, Moves))
 
     @property
     def woven(self) -> frozenset[tuple[int, int]]:
-        """Layer and bead of the beads that are laid with a weave."""
+        """Return layer and bead of the beads with a weave."""
         pairs = zip(self.blocks, self.blocks[1:])
         return frozenset(
             (run.layer, run.bead)
@@ -294,10 +314,12 @@ class Program:
 
 
 def slide_feeds(before: Array, joints: Array, duration: Array, kinds: tuple[str, ...]) -> Array:
-    """(n,) mm/s of the linear axes alone on moves that take `duration` (n,) s: V_s = |P1' P2''| V / |P1 P2| of Dai 2020,
-    section 3, for |P1 P2| / V is that time. It is 0 where only rotary axes move: such blocks need an inverse-time feed.
+    """Return the speed (n,) of the linear axes, mm/s, on moves that take `duration` (n,) s: V_s = |P1'
+    P2''| V / |P1 P2| of Dai 2020,
+        section 3, for |P1 P2| / V is that time. It is 0 where only rotary axes move: such blocks need
+        an inverse-time feed.
 
-    before: (axes,) where the first move starts. joints: (n, axes) where the moves end.
+        before: (axes,) where the first move starts. joints: (n, axes) where the moves end.
     """
     linear = np.array([kind == LINEAR for kind in kinds])
     way = np.diff(np.concatenate([before[None], joints])[:, linear], axis=0)

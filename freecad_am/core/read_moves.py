@@ -14,13 +14,14 @@ ARC = (
 
 @dataclass(frozen=True)
 class Event:
-    """What a text does between its moves: before the move `row`, n after the last.
+    """An event of a text between its moves: before the move `row`, n after the last.
 
-    kind and value: 'on' and 'off', number and word of the output, or the schedule that an arc instruction names, and ARC;
-    'schedule', number of the output and what it is set to; 'wait', s; 'input', number; 'below', number and value of
-    an analogue input; 'weave', its number, 0 where it ends; 'call', the program's name; 'layer', its number in a remark.
-    digits: half of the last digit. ahead: s before the end of the move before that it happens, with `digits`; before: mm of
-    the tip's way, in texts that tell these, `digits` too; both None where the machine stands there.
+    kind and value: 'on' and 'off', number and word of the output, or the schedule named by an arc
+    instruction, and ARC; 'schedule', number and value of the output; 'wait', s; 'input', number;
+    'below', number and value of an analogue input; 'weave', its number, 0 at its end; 'call', the
+    program's name; 'layer', its number in a remark. digits: half of the last digit. ahead: s before
+    the end of the previous move, with `digits`; before: mm of the tip's path, with `digits` too, in
+    texts that use a distance; both None at standstill.
     """
 
     row: int
@@ -33,8 +34,11 @@ class Event:
 
 @dataclass(frozen=True, eq=False)
 class Configuration:
-    """What a text says of the arm at each of n positions: flip (n,) bool, joint 5 above zero; up (n,) the elbow; front (n,)
-    the shoulder; turns (n, 3) of axes, the last of them those of the last axis."""
+    """The arm configuration of a text at each of n positions.
+
+    flip: (n,) bool, joint 5 above zero; up: (n,) the elbow; front: (n,) the shoulder; turns: (n, 3)
+    of axes, the last column for the last axis.
+    """
 
     flip: Mask
     up: Mask
@@ -44,7 +48,9 @@ class Configuration:
 
 @dataclass(frozen=True, eq=False)
 class TextLines:
-    """Where n moves stand in a text. files: names; file: (n,) which of them; line: (n,) from 1."""
+    """The locations of n moves in a text. files: names; file: (n,) index into them; line: (n,) from
+    1.
+    """
 
     files: tuple[str, ...]
     file: Index
@@ -57,40 +63,45 @@ class TextLines:
 
 @dataclass(frozen=True, eq=False)
 class ReadMoves:
-    """What a post's reader found in a program's text, all moves in the order of execution.
+    """The moves that a post's reader finds in a program's text, in the order of execution.
 
-    joints: (n, axes) controller values, rad, and mm of linear axes, exactly as many digits as the text has; rows told in
-    Cartesian positions are NaN, None when all are (a row may have both: where an arc is struck the text tells
-    the place again); of texts that give positions and rotary axes, the linear axes alone
-    are NaN. digits: half of the last digit of the joint values, rad, one or (axes,); linear_digits: of linear axes, mm.
-    duration: (n,) s,
-    NaN where the text gives a speed; duration_digits: (n,) s by which its digits may be off, milliseconds and tenths
-    when left out. deposit: (n,) bool, whether the deposit is on during the move that ends at the point.
-    position, rotation, position_digits (mm), rotation_digits (rad): the same for Cartesian texts; direction (n, 3), as
-    in `Moves`, and direction_digits, half of the last digit of its numbers, for texts that tell of no rotation.
-    speed: (n,) mm/s at the deposition point, NaN where the text gives a time or a percentage; speed_digits: mm/s.
-    share: (n,) of the axes' largest speeds that the fastest axis runs at, NaN where the text gives a time or a path
-    speed; share_digits: half of its last digit.
-    shorter_way: (axes,) rotary axes of machine tools that the text sends the shorter way, so that it tells no turns.
-    Where the text holds its own frames: frame (4, 4), in the maker's base frame, is what `position` is seen in;
-    tool (n, 4, 4) on the flange is what is taken there, with the digits of the positions. lever: (n,) how far out a tool
-    stands on another one that carries it. All mm. held: linear moves run straight as what the robot holds sees them, where
-    else they do as seen from the frame.
-    wire: (n,) value of the analogue output that the text sets, during each move, NaN before the first; None in texts that
-    set none. wire_digits: (n,) half of its last digit. wire_output: its number, from 1.
-    linear: (n,) bool, moves whose tip runs straight, where joints do not. stops: (n,) bool, moves at whose end the machine
-    stands still. blend, percent, or rounding, mm: (n,) how far corners are rounded where it does not, if the text says so;
-    rounding is NaN at stops that name none.
-    level: (n,) of the eight by which the controller grades rounded corners, 0 where it stops.
-    blend_radius: (n,) mm about the end of a move in which it may be left for the next one, 0 where it stops, counted on the
-    way of the tool in `tool`. near: (n, axes) rad, joint values that those of a position are to be next to, NaN where the
-    text gives none, with near_digits.
-    events: what happens between the moves, in order. configuration: of positions of robots.
-    user_frame, tool_frame: (n,) numbers of the frame and the tool that a text selects, NaN where it selects none; the frame
-    of moves of bare axes, which count on none, is left out.
-    unit: what a text calls the mechanism that carries the part, and that its positions are seen from, or the track;
-    first_external: the number of the first external axis. Both as in `Program`.
-    lines: where the moves stand, those of a loop all on its line; None of what is not of a text.
+    joints: (n, axes) controller joint values, rad, and mm of linear axes, with exactly the digits
+    of the text; rows with Cartesian positions are NaN, and None replaces an array with only such
+    rows. A row may have both: at an arc start the text repeats the position. In texts with
+    positions and rotary axes, only the linear axes are NaN. digits: half of the last digit of the
+    joint values, rad, one or (axes,); linear_digits: of linear axes, mm.
+
+    duration: (n,) s, NaN if the text gives a speed; duration_digits: (n,) s, its possible rounding
+    error, for milliseconds and tenths by default. deposit: (n,) bool, whether the deposit is on
+    during the move that ends at the point. position, rotation, position_digits (mm),
+    rotation_digits (rad): the same for Cartesian texts; direction (n, 3), as in `Moves`, and
+    direction_digits, half of the last digit of its numbers, for texts without a rotation. speed:
+    (n,) mm/s at the deposition point, NaN if the text gives a time or a percentage; speed_digits:
+    mm/s. share: (n,) of the axes' largest speeds, for the fastest axis, NaN if the text gives a
+    time or a path speed; share_digits: half of its last digit. shorter_way: (axes,) rotary axes of
+    machine tools that the text sends the shorter way, so that it has no turns.
+
+    For texts with their own frames: frame (4, 4), in the manufacturer's base frame, is the frame of
+    `position`; tool (n, 4, 4) on the flange is the frame that moves there, with the digits of the
+    positions. lever: (n,) distance of a tool from another one that carries it. All mm. held: linear
+    moves are straight in the frame of the held part; otherwise they are straight in `frame`.
+
+    wire: (n,) value of the analogue output during each move, NaN before the first; None in texts
+    that do not set it. wire_digits: (n,) half of its last digit. wire_output: its number, from 1.
+    linear: (n,) bool, moves with a straight tip path, as opposed to straight joints. stops: (n,)
+    bool, moves that end at standstill. blend, percent, or rounding, mm: (n,) corner rounding at
+    other points, if the text gives it; rounding is NaN at stops without a value. level: (n,) of the
+    controller's eight levels of corner rounding, 0 at a stop. blend_radius: (n,) mm about the end
+    of a move within which the path may leave it for the next one, 0 at a stop, measured along the
+    path of the tool in `tool`. near: (n, axes) rad, joint values close to which those of a position
+    must be, NaN if the text gives none, with near_digits.
+
+    events: between the moves, in order. configuration: for positions of robots. user_frame,
+    tool_frame: (n,) numbers of the selected frame and tool, NaN without a selection; moves of bare
+    axes do not depend on a frame and have none. unit: the text's name for the mechanism that
+    carries the part and holds the frame of its positions, or for the track; first_external: the
+    number of the first external axis. Both as in `Program`. lines: the locations of the moves, with
+    all moves of a loop on its line; None if they do not come from a text.
     """
 
     joints: Array | None

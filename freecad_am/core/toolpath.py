@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads, layers and the toolpath: what is deposited, in which order, in which direction.
+"""Beads, layers and the toolpath: the deposit with its order and directions.
 
 Frames and units: points in mm and unit vectors in the part's own frame (the coordinates of the part
 file); angles in rad; speeds in mm/s.
@@ -45,19 +45,24 @@ def _frozen(values: Any, shape: tuple[int | None, ...], name: str) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Bead:
-    """One uninterrupted deposit of n points, n >= 2. A closed bead repeats its first point as its last.
+    """One uninterrupted deposit of n points, n >= 2. A closed bead repeats its first point as its
+    last.
 
-    points: (n, 3) mm. build, tool: (n, 3) unit vectors, the build direction and the tool axis (from the deposit towards the
-    tool). parameter: (n,) strictly monotonic, the variable of the layer's polynomial: the unwrapped angle about the axis on
-    parts of revolution, else the arc length, normalised to 2 pi. speed: (n,) mm/s of the segment that ends at the point.
-    width, height: (n,) mm as predicted, or None where no bead model was used. wire_share: mm of wire to a mm of the bead
-    where the wire follows the travel speed, else None. tangents: (n, 2, 3) unit vectors along which the bead arrives at and
-    leaves each point, the same but at corners; None where a strategy does not know them. closing: fills a gap between beads,
-    nearer to them than a layer height. kind: what it is in the filling of its layer: 'contour', 'line', 'zigzag', 'spiral',
-    'centre' (in the middle of contours or thin regions), 'closing' (where other beads left a gap); '' where a strategy has
-    no fillings. ring: how many contours are outside of it. returns: it is the first one of a layer on a solid that has one
-    already. external: (n, k) rad of external axes, once planned. bead_class: of `bead_classes.CLASSES`, or ''. ends:
-    mm of its start, mm/s there, 0: as elsewhere, both of its end, mm of ramps. phase: (n,) PHASES of segments, if planned.
+    points: (n, 3) mm. build, tool: (n, 3) unit vectors, the build direction and the tool axis (from
+    the deposit towards the tool). parameter: (n,) strictly monotonic, the variable of the layer's
+    polynomial: the unwrapped angle about the axis on parts of revolution, else the arc length,
+    normalised to 2 pi. speed: (n,) mm/s of the segment that ends at the point. width, height: (n,)
+    mm as predicted, or None without a bead model. wire_share: mm of wire per mm of bead if the wire
+    follows the travel speed, else None. tangents: (n, 2, 3) unit vectors along which the bead
+    arrives at and leaves each point, equal except at corners; None if a strategy does not provide
+    them. closing: whether it fills a gap between beads, nearer to them than a layer height. kind:
+    its role in the filling of its layer: 'contour', 'line', 'zigzag', 'spiral', 'centre' (in the
+    middle of contours or thin regions), 'closing' (a gap between other beads); '' for strategies
+    without fillings. ring: number of contours outside of the bead. returns: whether it is the first
+    bead of a layer on a solid that already has a layer. external: (n, k) rad of external axes, once
+    planned. bead_class: of `bead_classes.CLASSES`, or ''. ends: mm of its start, mm/s there (0: the
+    speed of the bead), the same two for its end, then mm of both ramps. phase: (n,) PHASES of
+    segments, if planned.
     """
 
     points: Array
@@ -253,7 +258,9 @@ class Bead:
         )
 
     def thinned(self, index: Index) -> Bead:
-        """The bead with some of its points alone, by their numbers, rising, the first and the last among them."""
+        """Return the bead with only these points, given by rising numbers that include the first
+        and the last.
+        """
         return dataclasses.replace(self, **self._rows(index))
 
     def _rows(self, which: slice | Index) -> dict[str, Any]:
@@ -264,9 +271,12 @@ class Bead:
 
 @dataclass(frozen=True)
 class SpeedLaw:
-    """How beads answer to their travel speed v, mm/s. width, height: mm that they gain with each (mm/s)^(-1/3) of v^(-1/3),
-    at one wire feed; of beads with a wire share the section stays instead. slowest: mm/s, below it nothing was measured.
-    acceleration: mm/s^2, what the speed changes by at most."""
+    """How beads respond to their travel speed v, mm/s.
+
+    width, height: mm gained per (mm/s)^(-1/3) of v^(-1/3), at a constant wire feed; beads with a
+    wire share keep their section instead. slowest: mm/s, the lowest measured speed. acceleration:
+    mm/s^2, the maximum change of speed.
+    """
 
     width: float
     height: float
@@ -290,11 +300,12 @@ class SpeedLaw:
 
 @dataclass(frozen=True)
 class Layer:
-    """What is deposited at one index of the slicing: one bead or more, in the order of deposit.
+    """The beads at one index of the slicing, in print order.
 
-    wait: s that the machine stands before the layer, for what lies below to cool. first: nothing of the feature lies below,
-    as where another solid is begun. feature: number of the feature that it is of, where a toolpath has several. A layer in
-    which no bead finds room has none, and keeps its number.
+    wait: pause of the machine before the layer, s, for the deposit below to cool. first: no layer
+    of the feature is below, as at the start of another solid. feature: number of the layer's
+    feature, in a toolpath with several. A layer without room for a bead is empty and keeps its
+    number.
     """
 
     beads: tuple[Bead, ...]
@@ -307,19 +318,23 @@ class Layer:
 class Toolpath:
     """All layers from the platform up.
 
-    frame: (4, 4) pose of the feature frame in part coordinates (interface.md, `mount`). chord_error and
-    layer_height: mm. overlap: how far closed beads run on past their seam, mm. issues: findings made on the way
-    (spacing, tilt-back, clearance). surroundings: bodies in part coordinates that the nozzle is kept clear of. law: what a
-    bead model knows of beads at other speeds than theirs, None without one. bead_width: mm that beads count
-    as wide which do not tell their own width. unsupported: mm of beads that lie over nothing, None where nobody looked.
-    wire_feed: mm/s, None where it is not known. on_part: at how many places it was looked whether they lie on the part, the
-    largest distance of one from it and what is allowed, mm; None where nobody looked. volumes: mm3 of a part that is filled,
-    of what beads leave of it, and of beads beside it; None where it is not known. feature_label: of one of several.
-    features: where several are deposited in one go, what each one's own toolpath says, without layers; the toolpath itself
-    then speaks for the first of them. uneven: (k, 3) number, least and largest height, mm, of layers that are not as
-    high everywhere; None where all are. twice: mm3 of beads, as wide as they are apart, laid over others of their layer;
-    None where it is not known. max_from_vertical: rad, how far the tool axis may be from the vertical of a cell with a
-    positioner. fitted: to a scan, predicted: its deposit against the part; None where nobody asked. retreat: mm, at ends.
+    frame: (4, 4) pose of the feature frame in part coordinates (interface.md, `mount`). chord_error
+    and layer_height: mm. overlap: seam overlap of closed beads, mm. issues: of slicing and strategy
+    (spacing, tilt-back, clearance). surroundings: bodies in part coordinates that the nozzle must
+    not touch. law: the bead model at other speeds, None without one. bead_width: mm, for beads
+    without a width of their own. unsupported: mm of bead without support, None if not checked.
+    wire_feed: mm/s, None if unknown. on_part: number of checked points on the part, their largest
+    distance from it and the allowed one, mm; None if not checked. volumes: mm3 of a filled part, of
+    the volume that beads miss, and of stray beads; None if unknown. feature_label: of one of
+    several.
+
+    features: for several features printed together, the toolpath data of each, without layers; the
+    other fields then describe the first feature. uneven: (k, 3) number, least and largest height,
+    mm, of layers with uneven height; None without any. twice: mm3 of beads, as wide as their
+    spacing, over other beads in their layer; None if unknown. max_from_vertical: rad, maximum angle
+    of the tool axis from the vertical in a cell with a positioner. fitted: the fit to a scan.
+    predicted: the predicted deposit against the part; None if not requested. retreat: mm, at bead
+    ends.
     """
 
     layers: tuple[Layer, ...]
@@ -356,7 +371,9 @@ class Toolpath:
 
     @property
     def deposited(self) -> Toolpath:
-        """The toolpath without layers in which no bead lies, for what compares each layer with the one that carries it."""
+        """Return the toolpath without empty layers, for checks that compare each layer with its
+        supporting layer.
+        """
         if all(layer.beads for layer in self.layers):
             return self
         return dataclasses.replace(
@@ -365,7 +382,9 @@ class Toolpath:
 
     @property
     def parts(self) -> tuple[tuple[Toolpath, Index], ...]:
-        """The toolpath of each feature, and the numbers (n,) of its layers in this one; of one feature this one."""
+        """Return the toolpath of each feature with the numbers (n,) of its layers; for one feature,
+        this toolpath.
+        """
         if not self.features:
             return ((self, np.arange(len(self.layers))),)
         of = np.array([layer.feature for layer in self.layers])
@@ -383,23 +402,27 @@ class Toolpath:
 
     @property
     def filled(self) -> bool:
-        """Whether beads fill solids, most of them inside; else they are walls of one bead."""
+        """Return whether beads fill solids, most of them inside; otherwise they are walls of one
+        bead.
+        """
         return self.family in FILLED
 
     @property
     def bead_count(self) -> int:
-        """Number of beads of all layers."""
+        """Number of beads in all layers."""
         return sum(len(layer.beads) for layer in self.layers)
 
     @property
     def point_count(self) -> int:
-        """Number of deposit points of all beads."""
+        """Number of deposit points in all beads."""
         return sum(len(bead) for _, _, bead in self)
 
     @property
     def widths(self) -> Array:
-        """(n,) mm, how wide beads are at all points in the order of deposit; 0 where nothing is known of it, as in documents
-        of old: they count as lines."""
+        """Return the bead widths (n,) at all points, mm, in print order.
+
+        0 if unknown, as in old documents: such beads count as lines.
+        """
         known = [one.bead_width or 0.0 for one in self.features or (self,)]
         return np.concatenate(
             [
@@ -424,5 +447,5 @@ class Toolpath:
 
     @property
     def length(self) -> float:
-        """Length of all beads, mm."""
+        """Total length of the beads, mm."""
         return float(sum(bead.length for _, _, bead in self))

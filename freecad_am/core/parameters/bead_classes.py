@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Classes of beads, and what of the process is another one for a class: as a job names it, and as its text."""
+"""Bead classes and their process overrides, in the notation of a job and as text."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from . import field as f
 
 NONE = "none"
 WHERE = "process.classes"
-MORE = ";"  # between two of them
+MORE = ";"  # separator of classes
 FIRST_LAYER, CONTOUR, FILL, CLOSING, LINK, WALL = CLASSES = (
     "first_layer",
     "contour",
@@ -33,7 +33,7 @@ START, END = "start", "end"
 
 @dataclass(frozen=True)
 class PhaseParameters:
-    """What differs at an end of every bead, over a length of it."""
+    """The settings that differ at an end of every bead, over a length of the bead."""
 
     length: float = f.parameter(0.0, f.LENGTH, "Length of the bead that it covers.", low=0.0)
     travel_speed: float | None = f.parameter(
@@ -90,7 +90,7 @@ def _phase(name: str) -> Any:
 
 @dataclass(frozen=True)
 class BeadClass:
-    """What beads of a class have of their own; what is None is that of the process, or of the build direction."""
+    """The settings of a bead class; None means the value of the process, or of the build direction."""
 
     travel_speed: float | None = f.parameter(
         None,
@@ -157,7 +157,7 @@ class BeadClass:
     end_ramp: float | None = _phase("ramp")
 
     def own_values(self) -> dict[str, float]:
-        """What it has of its own, by name, in inner units."""
+        """Return the overrides of the class by name, in internal units."""
         return {name: value for name, value in vars(self).items() if value is not None}
 
     def __str__(self) -> str:
@@ -178,7 +178,10 @@ def number_of(name: str) -> int:
 
 
 def made(name: str, values: dict[str, float | int | None], where: str = WHERE) -> BeadClass:
-    """The class of this name with values in inner units. InputError BAD_VALUE naming `where`, the class and the key."""
+    """Build the class of this name from values in internal units.
+
+    Raises InputError BAD_VALUE with `where`, the class and the key.
+    """
     if name not in CLASSES:
         raise f.unknown_choice(where, name, CLASSES)
     for key, value in values.items():
@@ -187,7 +190,7 @@ def made(name: str, values: dict[str, float | int | None], where: str = WHERE) -
 
 
 def text_of(classes: dict[str, BeadClass]) -> str:
-    """The text of classes, those that have something of their own in the usual order; NONE where there are none."""
+    """Return the text of the classes that have overrides, in the usual order; NONE without any."""
     parts = [
         f"{name}: {classes[name]}"
         for name in CLASSES

@@ -12,7 +12,7 @@ from . import field as f
 TURN_ON_WALLS, TURN_ON_HUBS = (
     math.radians(30.0),
     math.radians(3.0),
-)  # rad/mm, what max_turn = auto stands for
+)  # rad/mm, the value of max_turn = auto
 
 
 @dataclass(frozen=True)
@@ -87,11 +87,16 @@ class BuildDirectionParameters:
         self.plane_normal()
 
     def turn(self, auto: float = TURN_ON_WALLS) -> float:
-        """`max_turn`, rad/mm, infinite for inf; for auto that of walls, or the one given."""
+        """Return `max_turn`, rad/mm, infinite for inf; for auto the value for walls, or the given
+        one.
+        """
         return auto if self.max_turn == "auto" else float(self.max_turn)
 
     def plane_normal(self) -> tuple[float, float, float] | None:
-        """`plane` as three numbers, not of unit length; None for auto. InputError BAD_VALUE for what is not a vector."""
+        """Return `plane` as three numbers, not normalised; None for auto.
+
+        Raises InputError BAD_VALUE if it is not a vector.
+        """
         if self.plane == "auto":
             return None
         try:

@@ -149,7 +149,10 @@ class CellParameters:
     )
 
     def upward(self) -> tuple[float, float, float]:
-        """`world_up` as three numbers, not of unit length. InputError BAD_VALUE for what is not a direction."""
+        """Return `world_up` as three numbers, not normalised.
+
+        Raises InputError BAD_VALUE if it is not a direction.
+        """
         return f.direction_of(
             self.world_up, "cell.world_up", "give three numbers such as [0, 0, 1]"
         )

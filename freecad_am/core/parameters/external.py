@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""External axes as a cell names them: which mechanism, where it stands, and what it carries."""
+"""External axes of a cell: the mechanism, its position and its load."""
 
 from __future__ import annotations
 
@@ -14,15 +14,18 @@ Pose = tuple[float, float, float, float, float, float]
 NONE = "none"
 PART, ROBOT = "part", "robot"
 WHERE = "cell.external"
-MORE = ";"  # between two of them
+MORE = ";"  # separator of mechanisms
 _TEXT = re.compile(r"(?P<machine>.+?)\s+at\s+(?P<pose>.+?)\s+carries\s+(?P<carries>\S+)")
 _FORM = "write such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part"
 
 
 @dataclass(frozen=True)
 class External:
-    """A mechanism of one or more external axes. machine: its id, or the path of a machine file. pose: of its base in
-    the world, mm and rad (Bryant). carries: part or robot. Its text has degrees."""
+    """A mechanism with one or more external axes.
+
+    machine: its id, or the path of a machine file. pose: of its base in the world, mm and rad
+    (Bryant). carries: part or robot. Its text has degrees.
+    """
 
     machine: str
     pose: Pose
@@ -44,7 +47,7 @@ class External:
             )
 
     def where(self) -> str:
-        """Where it stands, as its text says it."""
+        """Return the pose in the notation of the text."""
         numbers = (*self.pose[:3], *(math.degrees(angle) for angle in self.pose[3:]))
         return f"at {' '.join(f'{number:.12g}' for number in numbers)}"
 

@@ -27,7 +27,7 @@ RATIO, NUMBER, COUNT, FLAG, CHOICE, TEXT, POSE = (
 ANGLE_RANGE, RATIO_RANGE, TURN_RATE = "angle range", "ratio range", "turn rate"
 GROUP = "group"
 
-# the unit a bare number has outside, and how many of ours one of it makes
+# the outer unit of a bare number, and its size in internal units
 OUTER_UNIT = {
     LENGTH: "mm",
     ANGLE: "deg",
@@ -37,8 +37,8 @@ OUTER_UNIT = {
     RATIO_RANGE: "%",
     TURN_RATE: "deg/mm",
 }
-# mm, and mm/s: what is more is refused wherever it stands. Squares and cubes of it would be no numbers, and at such speeds
-# moves would be over before a controller has begun the next
+# mm, and mm/s: larger values are rejected everywhere. Their squares and cubes would overflow, and
+# at such speeds moves would end before a controller begins the next one
 UPPER_BOUNDS = {LENGTH: 1e9, SPEED: 1e4}
 END_OF = {ANGLE_RANGE: ANGLE, RATIO_RANGE: RATIO}  # what either end of a range is
 TO_INNER = {
@@ -52,12 +52,13 @@ TO_INNER = {
 
 @dataclass(frozen=True)
 class Spec:
-    """What is known of a parameter besides its name and default.
+    """The properties of a parameter besides its name and default.
 
     `low` and `high` are in inner units and belong to the allowed range unless `open_low`.
-    `optional` parameters may be None. `words` are texts allowed in place of a number (such as 'auto').
-    `advanced` parameters are folded away in a panel. `unit` is that of a NUMBER, or of a TEXT of numbers, that has one
-    unit alone: panels tell it. `poses`: a TEXT says where things stand, which may be typed as a pendant shows it.
+    `optional` parameters may be None. `words` are texts allowed in place of a number (such as
+    'auto'). `advanced` parameters are folded away in a panel. `unit` belongs to a NUMBER, or to a
+    TEXT of numbers with one common unit; panels show it. `poses`: the TEXT contains poses, which
+    may be typed in the notation of a pendant.
     """
 
     kind: str
@@ -90,7 +91,10 @@ def spec_of(field: dataclasses.Field[Any]) -> Spec:
 
 
 def direction_of(text: str, where: str, remedy: str) -> tuple[float, float, float]:
-    """Three numbers, not of unit length. InputError BAD_VALUE for what is not a direction."""
+    """Return three numbers, not normalised.
+
+    Raises InputError BAD_VALUE if the text is not a direction.
+    """
     try:
         x, y, z = (float(word) for word in text.replace(",", " ").split())
     except ValueError:
@@ -107,7 +111,7 @@ def outer_text(spec: Spec, value: float) -> str:
 
 
 def check(owner: Any, prefix: str, skip: frozenset[str] = frozenset()) -> None:
-    """Check every field of a parameters dataclass against its `Spec`, but for the names in `skip`.
+    """Check every field of a parameters dataclass against its `Spec`, except the names in `skip`.
 
     Raises InputError 'BAD_VALUE' naming `prefix.field`, the value and the allowed range.
     """
@@ -191,7 +195,7 @@ def _check_number(spec: Spec, value: Any, key: str) -> None:
     if spec.kind == COUNT and (math.isinf(value) or value != int(value)):
         raise InputError("BAD_VALUE", key, "{!r} is not a whole number; give one such as 3", value)
     if spec.high is None and abs(value) > UPPER_BOUNDS.get(spec.kind, math.inf):
-        most = UPPER_BOUNDS[spec.kind]  # which nobody needs to be told of otherwise
+        most = UPPER_BOUNDS[spec.kind]  # no user needs this limit in a message
         spec = dataclasses.replace(spec, high=most, low=-most if spec.low is None else spec.low)
     too_low = spec.low is not None and (value <= spec.low if spec.open_low else value < spec.low)
     if too_low or (spec.high is not None and value > spec.high):
@@ -205,7 +209,7 @@ def _check_number(spec: Spec, value: Any, key: str) -> None:
 
 
 def range_text(spec: Spec) -> str:
-    """The allowed range in outer units, '' where there is none."""
+    """Return the allowed range in outer units, '' without one."""
     parts = []
     if spec.low is not None:
         parts.append(

@@ -11,7 +11,7 @@ from . import field as f
 from .strategy import LAYER_TIME, MEND, LayerParameters
 
 LEAST_BEAD = 2.0  # mm, as short as a bead of usual width is worth a start
-PLANES, GEODESIC = "planes", "geodesic"  # layers that are proposed by themselves
+PLANES, GEODESIC = "planes", "geodesic"  # layers proposed automatically
 OFFSET = "offset"
 
 
@@ -251,7 +251,7 @@ class FilledParameters(LayerParameters):
 
     @property
     def rounds(self) -> float:
-        """How many contours lie round lines and the like; infinity for contours alone."""
+        """Return how many contours surround lines and similar fills; infinity for contours only."""
         return 0 if not self.contour else math.inf if self.walls == "inf" else float(self.walls)
 
     @property
@@ -268,21 +268,26 @@ class FilledParameters(LayerParameters):
 
     @property
     def thick(self) -> int:
-        """So many layers over and under one tell what of it is filled as a whole; 0 where all of it is."""
+        """Return how many layers above and below decide which regions count as solid; 0 to fill all
+        regions.
+        """
         return self.solid_layers if self.fill_density < 1.0 else 0
 
 
 @dataclass(frozen=True)
 class BasedParameters(LayerParameters):
-    """What solids stand on."""
+    """The substrate of solids."""
 
     base: BaseParameters = f.group(BaseParameters, "The cylinder or cone that the solids grow on.")
 
 
 @dataclass(frozen=True)
 class DevelopableParameters(FilledParameters, BasedParameters):
-    """How solids on a cylinder or cone are cut by equidistant ones and filled (Dai 2020, section 2). First what they stand
-    on, as documents have it. mm and rad."""
+    """How to slice solids on a cylinder or cone into equidistant layers and fill them (Dai 2020,
+    section 2).
+
+    The substrate comes first, as in documents. mm and rad.
+    """
 
 
 @dataclass(frozen=True)
@@ -338,7 +343,10 @@ class SolidParameters(FilledParameters):
         self.stacking()
 
     def stacking(self) -> tuple[float, float, float] | None:
-        """`direction` as three numbers, of any length; None for auto. InputError BAD_VALUE for what is not a direction."""
+        """Return `direction` as three numbers of any length; None for auto.
+
+        Raises InputError BAD_VALUE if it is not a direction.
+        """
         if self.direction == "auto":
             return None
         return f.direction_of(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parameters of an inspection: how measured points are read, laid onto what was planned, and judged."""
+"""Parameters of an inspection: how to read, register and evaluate measured points."""
 
 from __future__ import annotations
 

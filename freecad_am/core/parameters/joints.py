@@ -167,10 +167,12 @@ class JointParameters:
 
 
 def given_polynomials(given: tuple[str, ...]) -> dict[tuple[int, int] | None, tuple[float, ...]]:
-    """The polynomials of the parameter `given` by (layer, bead), that of every other bead by None.
+    """Return the polynomials of the parameter `given` by (layer, bead); the polynomial for all
+    other beads by None.
 
-    Their coefficients, the constant first, are in rad and rad per power of the bead's parameter, of which a turn has 2 pi.
-    Raises InputError 'BAD_VALUE' for what cannot be read or is there twice.
+    Their coefficients, the constant first, are in rad and rad per power of the bead's parameter;
+    one turn is 2 pi of the parameter. Raises InputError BAD_VALUE for unreadable or duplicate
+    entries.
     """
     found: dict[tuple[int, int] | None, tuple[float, ...]] = {}
     for entry in given:

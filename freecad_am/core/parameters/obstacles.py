@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What stands in a cell besides part and machine, as a cell names it: files or boxes, and where they are."""
+"""Obstacles of a cell besides part and machine: files or boxes, and their poses."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Size = tuple[float, float, float]
 
 NONE = "none"
 WHERE = "cell.obstacles"
-MORE = ";"  # between two of them
+MORE = ";"  # separator of obstacles
 LARGEST = 1e5  # mm, of a box
 _BOX = re.compile(r"box\s+(?P<size>[-+\d.,eE\s]+)")
 _TEXT = re.compile(r"(?:(?P<name>[^=;]+?)\s+=\s+)?(?P<what>.+?)\s+at\s+(?P<pose>[^;]+)")
@@ -26,9 +26,12 @@ _FORM = (
 
 @dataclass(frozen=True)
 class Obstacle:
-    """One of them. file: its path, '' for a box of `size` mm about its pose's origin. pose: of the file's origin, or of the
-    middle of the box, in the world, which is the maker's base frame, mm and rad (Bryant). Its text has degrees. name: what
-    messages call it."""
+    """An obstacle.
+
+    file: its path, '' for a box of `size` mm about its pose's origin. pose: of the file's origin,
+    or of the middle of the box, in the world, which is the manufacturer's base frame, mm and rad
+    (Bryant). Its text has degrees. name: its name in messages.
+    """
 
     name: str
     pose: Pose
@@ -97,7 +100,7 @@ def obstacles(text: str) -> tuple[Obstacle, ...]:
 
 
 def usual_name(file: str, number: int) -> str:
-    """What the obstacle of this number, from 1, is called that has no name: as its file is, or box and its number."""
+    """Return the default name of an obstacle: from its file, or "box" with its number, from 1."""
     return Path(file).stem.replace("=", "-") if file else f"box {number}"
 
 

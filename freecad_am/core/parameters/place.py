@@ -21,7 +21,7 @@ SIDES = ("x", "y", "z", "rx", "ry", "rz")
 
 @dataclass(frozen=True)
 class PlaceParameters:
-    """A box of poses about that which the cell has, and how they are judged. mm and rad."""
+    """A box of poses about the pose of the cell, and how to rate them. mm and rad."""
 
     moves: str = f.parameter(
         AUTO,
@@ -105,18 +105,20 @@ class PlaceParameters:
             )
 
     def _values(self) -> list[Array]:
-        """What is added to each of the six numbers of a pose."""
+        """Return the offsets for each of the six numbers of a pose."""
         found = []
         for number, name in enumerate(SIDES):
             step = self.step if number < 3 else self.angle_step
             most = math.floor(
                 min(getattr(self, name) / step, MAX_POSES) + 1e-9
-            )  # of more the count alone is asked for
+            )  # for larger boxes, only the count matters
             found.append(step * np.arange(-most, most + 1))
         return found
 
     def changes(self) -> Array:
-        """(P, 6) what is added to the six numbers of a pose, mm and rad; nothing for one of them, in the middle."""
+        """Return the offsets (P, 6) for the six numbers of a pose, mm and rad; the middle one is
+        zero.
+        """
         grids = np.meshgrid(*self._values(), indexing="ij")
         return np.stack([grid.ravel() for grid in grids], axis=1)
 

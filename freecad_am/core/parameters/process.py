@@ -30,7 +30,7 @@ IN_PROCESS = (
     "lead_on",
     "lead_off",
     "weave",
-)  # what of a class stands for a key of the process
+)  # class attributes that replace a key of the process
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ class BetweenLayersParameters:
 
 @dataclass(frozen=True)
 class CoolingParameters:
-    """The sensor that tells how hot a place is that the torch returns to."""
+    """The sensor for the temperature of a place to which the torch returns."""
 
     below: float | None = f.parameter(
         None,
@@ -137,7 +137,7 @@ class CoolingParameters:
 
 @dataclass(frozen=True)
 class MaterialParameters:
-    """What is deposited, and where its figures are from."""
+    """The deposited material and the source of its data."""
 
     name: str | None = f.parameter(
         None, f.TEXT, "Name of the material; copied to the report.", optional=True
@@ -315,7 +315,7 @@ class ProcessParameters:
         return bead_classes.classes(self.classes).get(name, BeadClass())
 
     def for_class(self, name: str) -> ProcessParameters:
-        """The process as beads of a class are laid by."""
+        """Return the process for beads of a class."""
         own = self.of_class(name).own_values()
         mine: dict[str, Any] = {key: value for key, value in own.items() if key in IN_PROCESS}
         for phase in (bead_classes.START, bead_classes.END):
@@ -330,7 +330,7 @@ class ProcessParameters:
 
     @property
     def weaves(self) -> bool:
-        """Whether any bead is laid with a weave of the controller's."""
+        """Return whether any bead uses a weave of the controller."""
         return any(
             (self.weave, *(one.weave for one in bead_classes.classes(self.classes).values()))
         )

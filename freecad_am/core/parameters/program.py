@@ -24,7 +24,7 @@ class StartParameters:
 
 @dataclass(frozen=True)
 class NcParameters:
-    """How programs of five-axis machines are written; each controller takes what it knows."""
+    """The options of programs for five-axis machines; each controller uses those that it supports."""
 
     feed: str = f.parameter(
         "time",
@@ -109,7 +109,7 @@ class AxesParameters:
 
 @dataclass(frozen=True)
 class ScheduleParameters:
-    """How the welder or extruder is told its schedule."""
+    """How to set the schedule of the welder or extruder."""
 
     by: str = f.parameter(
         "output",
@@ -155,7 +155,7 @@ class TriggerParameters:
 
 @dataclass(frozen=True)
 class ProgramParameters:
-    """What is written for the controller."""
+    """The options of the output for the controller."""
 
     post: str = f.parameter("fanuc", f.TEXT, "The controller of the program, or none.")
     motion: str = f.parameter(

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ramps between the speed of a phase at an end of a bead and that of the bead, in steps: a move has one speed."""
+"""Ramps between the speed of a phase at an end of a bead and the bead's speed, in steps: a move has
+one speed.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +18,12 @@ SHORTEST = 0.5  # mm of a step
 
 
 def ramp(length: float, start: float, end: float) -> Array:
-    """The speeds (k,) of k equal parts of `length` mm, between those at its start and its end: that of a steady ramp in the
-    middle of each. None where there is no length, or nothing to change: 0 mm/s is the other one's."""
+    """Return the speeds (k,) of k equal parts of `length` mm, between the speeds at its start and
+    its end.
+
+    Each is the speed of a steady ramp in the middle of the part. Empty if the length is 0 or the
+    speed does not change: a speed of 0 mm/s means that of the other end.
+    """
     if length <= 0.0 or start == end or not start or not end:
         return np.zeros(0)
     change = abs(end - start) / max(start, end)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parameters of fitting layers to a scan of what they are deposited on."""
+"""Parameters to fit layers to a scan of the substrate."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ PREFIX = "substrate"
 
 @dataclass(frozen=True)
 class ScanParameters:
-    """How far what was scanned may be from the plan, and how layers lead back to it."""
+    """Allowed distance of the scanned surface from the plan, and how layers lead back to the plan."""
 
     scan_within: float = f.parameter(
         5.0,

@@ -10,7 +10,7 @@ from ..geometry.curves import gcode, gcode_roles
 from ..issues import InputError
 from . import field as f
 
-LEAST = 0.01  # mm, of parts up to SMALL and of those whose size is not known
+LEAST = 0.01  # mm, for parts up to SMALL and for unknown sizes
 SMALL = 250.0  # mm
 GROWTH = 2e-4  # mm to a mm of size beyond SMALL
 SHARE = 0.01  # of the width of a bead
@@ -18,13 +18,14 @@ BEAD_TO_LAYER = 2.5  # how much wider than high a bead usually is
 
 
 class DefaultLength(float):
-    """A length in mm that nobody has given: the default of a parameter that depends on the part."""
+    """A default length in mm that depends on the part, as opposed to a given length."""
 
 
 def scaled(extent: float, bead: float) -> float:
-    """The chord error, mm, of a part that is `extent` mm long, laid in beads `bead` mm wide.
+    """Return the chord error, mm, for a part `extent` mm long with beads `bead` mm wide.
 
-    It is `LEAST` up to `SMALL`, grows with the part beyond, stays below `SHARE` of the bead, and has one digit.
+    It is `LEAST` up to `SMALL`, grows with the part beyond, stays below `SHARE` of the bead, and
+    has one digit.
     """
     wanted = min(LEAST + GROWTH * (extent - SMALL), SHARE * bead)
     if not LEAST < wanted < math.inf:
@@ -174,7 +175,7 @@ class SurfaceParameters(LayerParameters):
 
 @dataclass(frozen=True)
 class CurvesParameters(LayerParameters):
-    """How curves are laid as beads. mm."""
+    """How to print curves as beads. mm."""
 
     direction: str = f.parameter(
         "0 0 1",
@@ -220,7 +221,10 @@ class CurvesParameters(LayerParameters):
             )
 
     def way(self) -> tuple[float, float, float]:
-        """`direction` as a unit vector. InputError BAD_VALUE for what is not a direction."""
+        """Return `direction` as a unit vector.
+
+        Raises InputError BAD_VALUE if it is not a direction.
+        """
         x, y, z = f.direction_of(
             self.direction, "strategy.direction", "give three numbers such as [0, 0, 1]"
         )

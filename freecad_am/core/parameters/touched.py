@@ -12,14 +12,17 @@ Point = tuple[float, float, float]
 
 NONE = "none"
 WHERE = "cell.touched"
-MORE = ";"  # between two of them
+MORE = ";"  # separator of points
 _FORM = "write such as: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5"
 
 
 @dataclass(frozen=True)
 class Touched:
-    """part: in the coordinates of the part file; robot: of the tip as the controller shows it, in the maker's base frame.
-    mm."""
+    """A touched point.
+
+    part: in the coordinates of the part file. robot: of the tip as the controller shows it, in the
+    manufacturer's base frame. mm.
+    """
 
     part: Point
     robot: Point
