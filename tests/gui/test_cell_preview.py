@@ -406,7 +406,7 @@ def test_a_cell_that_is_changed_keeps_what_was_entered_and_ok_waits_for_the_prop
     before = len(person.console())
     person.press("Ok")  # before anything has followed by itself
     person.panel_closed()
-    line = f"{cell.Label}: Branch is now {' '.join(cell_of('kuka-kr16-2').branch)}. Proposed for KUKA KR 16-2; enter what"
+    line = f"{cell.Label}: Branch is now {' '.join(cell_of('kuka-kr16-2').branch)}. Proposed for KUKA KR 16-2; enter the values"
     person.until(lambda: line in person.console()[before:], "what nobody saw to be told", 5)
     assert "Deposition point is now" not in person.console()[before:]
     proposed, made = cell_of("kuka-kr16-2"), api.result(cell)

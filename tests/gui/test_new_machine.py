@@ -130,7 +130,9 @@ def test_a_fanuc_from_its_urdf_checked_by_its_pendant(person, hand, wizard, tmp_
     assert offer.text() == "Axis 3 is shown relative to the horizontal"
     person.screenshot("machine_4_poses_wrong")
     hand.click(offer)
-    person.until(lambda: "gives all 4 poses" in verdict.text(), "the machine to give its poses")
+    person.until(
+        lambda: "reproduces all 4 poses" in verdict.text(), "the machine to give its poses"
+    )
     person.screenshot("machine_5_poses_right")
     go_on(person, hand, wizard, "NamePage")
     person.type(wizard, "machineTitle", "")
@@ -195,9 +197,7 @@ def test_a_copy_keeps_its_poses_and_a_name_that_is_taken_is_refused(person, hand
     assert "reproduces all" in person.field(wizard, "verdict").text()
     go_on(person, hand, wizard, "NamePage")
     hand.enter(wizard, "machineName", "kuka-kr16-2")
-    assert "there is a machine 'kuka-kr16-2' already" in refused(
-        person, hand, wizard, "FinishButton"
-    )
+    assert "a machine 'kuka-kr16-2' already exists" in refused(person, hand, wizard, "FinishButton")
     hand.enter(wizard, "machineName", "Große Kuka")
     assert refused(person, hand, wizard, "FinishButton").startswith(
         "Name in jobs: 'Große Kuka' cannot be the name"
@@ -235,14 +235,16 @@ def test_figures_with_a_wrong_sign_are_found_out(person, hand, wizard):
     fill(person.field(wizard, "poses"), figures)
     verdict = person.field(wizard, "verdict")
     person.until(lambda: "It would if" in verdict.text(), "the verdict")
-    offer = "J5 counts the other way (sign), and the base frame is moved by 0, 0, 375 mm and turned by 0 deg"
+    offer = "J5 counts the other way (sign), and the base frame is offset by 0, 0, 375 mm and rotated by 0 deg"
     assert person.field(wizard, "suspect0").text() == offer
     hand.click(person.field(wizard, "suspect0"))
-    person.until(lambda: "gives all 4 poses" in verdict.text(), "the machine to give its poses")
+    person.until(
+        lambda: "reproduces all 4 poses" in verdict.text(), "the machine to give its poses"
+    )
     hand.click(wizard.button(person.widgets.QWizard.BackButton))
     assert page(wizard) == "FramesPage" and person.field(wizard, "axes").item(0, 4).text() == "-1"
     hand.click(wizard.button(person.widgets.QWizard.NextButton))
-    assert "gives all 4 poses" in verdict.text()  # they stay
+    assert "reproduces all 4 poses" in verdict.text()  # they stay
 
 
 def test_tables_are_read_and_what_is_no_arm_is_refused_with_the_reason(person, hand, wizard):
@@ -330,7 +332,9 @@ def test_a_machine_tool_from_its_table(person, hand, wizard):
         np.column_stack((values, pose_figures.figures_of(pose_figures.FANUC, poses))),
     )
     verdict = person.field(wizard, "verdict")
-    person.until(lambda: "gives all 4 poses" in verdict.text(), "the machine to give its poses")
+    person.until(
+        lambda: "reproduces all 4 poses" in verdict.text(), "the machine to give its poses"
+    )
     go_on(person, hand, wizard, "NamePage")
     hand.enter(wizard, "machineTitle", "Trunnion")
     hand.enter(wizard, "poseSource", "controller")
@@ -456,7 +460,7 @@ def test_a_positioner_out_of_the_urdf_of_a_whole_cell(person, hand, wizard, tmp_
         np.column_stack((values, pose_figures.figures_of(pose_figures.FANUC, poses))),
     )
     person.until(
-        lambda: "gives all 3 poses" in person.field(wizard, "verdict").text(),
+        lambda: "reproduces all 3 poses" in person.field(wizard, "verdict").text(),
         "the mechanism to give its poses",
     )
     go_on(person, hand, wizard, "NamePage")

@@ -180,7 +180,9 @@ def test_the_preflight_says_what_was_not_checked_and_a_click_goes_to_the_place(
     marks = [line.text()[0] for line in lines]
     kept, broken, unchecked = map(marks.count, "✓✗?")
     assert kept + broken + unchecked == len(marks)
-    assert told(person, panel, f"Preflight: {kept} kept, {broken} broken, {unchecked} not checked")
+    assert told(
+        person, panel, f"Preflight: {kept} passed, {broken} failed, {unchecked} not checked"
+    )
     text = next(line for line in lines if "The text takes the tool" in line.text())
     assert text.text().startswith("✓") and "mm" in text.text()
     speed = next(line for line in lines if "largest speed" in line.text())
