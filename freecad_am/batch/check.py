@@ -56,7 +56,7 @@ class Known(NamedTuple):
 
     cell: CellParameters
     program: ProgramParameters | None
-    clearance: JointParameters
+    joints: JointParameters
     bead: tuple[float, float] | None
 
 
