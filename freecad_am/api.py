@@ -13,10 +13,11 @@
     program = am.make_program(doc, joint_path, name="hemisphere")
     am.export(program, "out")
 
-Parameters are the keys of the job file with `_` for nested keys (`nozzle_half_angle`, `seam_step`): numbers are mm,
-deg, mm/s and s, texts are quantities such as "360 mm/min", poses are six numbers x y z RX RY RZ. Each function is one
-step of undo. Errors are `core.issues.InputError` and `InfeasibleError`; a function that raises leaves nothing behind.
-What a function alone needs is imported when it is called: most of the time of a small job is imports.
+Parameters are the keys of the job file with `_` for nested keys (`nozzle_half_angle`, `seam_step`).
+Numbers are in mm, deg, mm/s and s, texts are quantities such as "360 mm/min", poses are six numbers
+x y z RX RY RZ. Each function is one undo step. Errors are `core.issues.InputError` and
+`InfeasibleError`; a function that raises leaves nothing behind. What a function alone needs is
+imported when it is called: most of the time of a small job is imports.
 """
 
 from __future__ import annotations
@@ -133,10 +134,13 @@ STAGE_KINDS = ("cell", "feature", "toolpath", "joint path", "program", "inspecti
 def make_cell(
     doc: Any, label: str = "Cell", *, parameters: CellParameters | None = None, **values: Any
 ) -> Any:
-    """A cell: machine, set-up, platform and nozzle. `am.make_cell(doc, machine="kuka-kr16-2", nozzle_length=80)`
+    """Make a cell: machine, setup, platform and nozzle.
 
-    A robot other than the default one gets the deposition point and the branch that suit it, as a new job does, unless they
-    are given. external="urdf" takes track and positioner of the URDF that is the machine, and the robot of it.
+    `am.make_cell(doc, machine="kuka-kr16-2", nozzle_length=80)`
+
+    A robot other than the default one gets a suitable deposition point and branch, as a new job
+    does, unless they are given. external="urdf" uses the robot of the machine's URDF with its track
+    and positioner.
     """
     if values.get("external") == urdf_machine.WHOLE_CELL:
         values["machine"], values["external"] = urdf_cell.texts_of_machine(values.get("machine"))
@@ -161,11 +165,13 @@ def make_toolpath(
     fitting: ScanParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Layers and beads of a feature; the cell gives the nozzle to keep clear. `am.make_toolpath(doc, doc.Feature)`
+    """Make the layers and beads of a feature; the cell gives the nozzle to keep clear.
+    `am.make_toolpath(doc, doc.Feature)`
 
-    further: features that are deposited after it in one go, `sequence="feature"` in this order or `sequence="height"` the
-    lowest layer first; `processes` are those of each, where they differ in what a feature has of its own. A list as the
-    feature stands for it and further ones. scan: of `make_scan`, what the first layers are fitted to.
+    further: features to print after it in the same program, `sequence="feature"` in this order or
+    `sequence="height"` with the lowest layer first. processes: the process of each feature, for the
+    settings that differ. `feature` may also be a list with all features. scan: from `make_scan`,
+    the surface that the first layers are fitted to.
     """
     if "bead_width" in values:  # it is meant, even where it is the default
         values.setdefault("fill_width", "bead_width")
@@ -227,8 +233,10 @@ def inspect(
     inspection: InspectionParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Measured points (CSV, TXT, XYZ, ASC; vertices of STL, OBJ, PLY) against a feature, a toolpath, or an object with a
-    shape or mesh: laid onto it, with deviations, sphericity and circularity.
+    """Compare measured points (CSV, TXT, XYZ, ASC; vertices of STL, OBJ, PLY) with a nominal shape.
+
+    `planned` is a feature, a toolpath, or an object with a shape or mesh. The points are registered
+    to it; the result has deviations, sphericity and circularity.
 
     `am.inspect(doc, doc.Feature, "cmm.csv", probe_radius=1.5, tolerance=0.3, heights="15 25 35")`
     """
@@ -263,22 +271,30 @@ def make_all(
     bead_spacing: Any = None,
     platform_diameter: Any = None,
 ) -> tuple[Any, ...]:
-    """All stages of a part at their defaults, in one step and one group: (cell, feature, toolpath, joint path[, program]).
+    """Make all stages of a part at their defaults, in one step and one group: (cell, feature,
+    toolpath, joint path[, program]).
 
-    kind: revolution, surface (a wall of the source's faces on the substrate), developable (source and further solids on
-    the substrate, on its base_faces), solid (source and further solids, in plane layers unless `layers` says others) or
-    curves (edges of the source, named in faces). mend: mm across of the largest hole of a mesh that is closed, 0: the usual
-    one. The program is in the words of `post` where the machine's controller reads them; there is none without a post that
-    writes this set-up, or with an infeasible joint path, and neither with an infeasible toolpath. process: parameters of the
-    toolpath by key. A robot other than the default one gets a deposition point and a branch that suit it, another where the
-    job cannot be done so, and with `setup="tool-on-robot"` a positioner where the torch would lean more than
-    max_from_vertical. `cell`, the path of a saved cell, stands in place of the machine. `layers_otherwise`: those of the
-    feature where its `layers` cannot be carried out. `layer_height` and, of solids and cladding, `bead_spacing` are those of
-    the feature, None for the usual ones; `platform_diameter` None: as large as the first layer needs it.
+    kind: revolution, surface (a wall of the source's faces on the substrate), developable (source
+    and further solids on the substrate, on its base_faces), solid (source and further solids, in
+    plane layers unless `layers` chooses others) or curves (edges of the source, named in faces).
+    mend: diameter, mm, of the largest hole of a mesh to close, 0 for the default. The program is
+    written by `post` if the machine's controller reads its format. No program is made without a
+    post for this setup, or with an infeasible toolpath or joint path. process: parameters of the
+    toolpath by key.
+
+    A robot other than the default one gets a suitable deposition point and branch, and another
+    branch if the job needs it. With `setup="tool-on-robot"` it gets a positioner if the torch would
+    lean more than max_from_vertical. `cell`, the path of a saved cell, replaces the machine.
+    `layers_otherwise` replaces the `layers` of the feature if they are infeasible. `layer_height`
+    and, for solids and cladding, `bead_spacing` belong to the feature, None for the defaults;
+    `platform_diameter` None fits the platform to the first layer.
+
     `am.make_all(doc, doc.Pot, layer_height="2 mm")`
 
-    then: features that are deposited after it, in this order and one program, each by the keys of the first one
-    (`source`, `kind`, `layers`, `faces` ...); they come after the feature in what is returned.
+    then: features to print after it, in this order and in one program, each with the keys of the
+    first one (`source`, `kind`, `layers`, `faces` ...); in the result they follow the feature.
+
+
     `am.make_all(doc, doc.Hub, then=[{"source": doc.Fins, "kind": "developable", "substrate": doc.Hub}])`
     """
     process, then = checked_job(
@@ -412,12 +428,15 @@ def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
 
 @one_thread()
 def place(path: Any, cell: Any = None, *, parameters: Any = None, **values: Any) -> Any:
-    """Where the part of a joint path or a toolpath can stand: poses of a box about that which its cell has, or another one,
-    each with the share of points that the machine serves, the least margin, the time, and how far the arm stays from
-    everything; as `core.placement.place.Placed`. Keys are those of the section `place` of a job. Nothing is changed.
+    """Find poses for the part of a joint path or a toolpath, in its cell or in another one.
 
-    `found = am.place(doc.JointPath, x=300, step=100); am.change(doc.Cell, **found.entries(found.best))`; `found.best` is
-    None where no pose serves.
+    The candidates form a box of poses about the present one. Each has the share of points that the
+    machine serves, the least margin, the time, and the clearance of the arm. The result is a
+    `core.placement.place.Placed`. Keys are those of the job section `place`. The document does not
+    change.
+
+    `found = am.place(doc.JointPath, x=300, step=100); am.change(doc.Cell,
+    **found.entries(found.best))`; `found.best` is None if no pose serves.
     """
     from .objects.checks.placed import change_parameters, placing_of
 
@@ -443,10 +462,12 @@ def issues(obj: Any) -> tuple[Issue, ...]:
 
 
 def stages_of(doc: Any, kind: str = "") -> list[Any]:
-    """The stages of a document, inputs first; all, or those of a kind: `am.stages_of(doc, "program")`
+    """Return the stages of a document, inputs first; all, or those of one kind.
 
-    Those that a FreeCAD without the workbench has saved as plain objects are stages again. InputError BAD_VALUE for a kind
-    that there is not.
+    `am.stages_of(doc, "program")`
+
+    Stages that a FreeCAD without the workbench saved as plain objects become stages again. Raises
+    InputError BAD_VALUE for an unknown kind.
     """
     revive(checked_document(doc))
     if checked_text(kind, "kind") not in ("", *STAGE_KINDS):

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Reads a written program back and drives it through kinematics that planning did not use.
 
-From the text alone: the moves as the controller would carry them out - straight in the joints or in space, with or without a
-stop -, their joint values through the joint-frame chain (not the closed form that planned them) and through PyKDL, compared
-with the planned path at the points and between them; and what happens between the moves. What text and plan assume alike -
-how the pendant counts J3, where the frames are - cannot show here.
+The check only uses the text: the moves as the controller would run them, straight in the joints or
+in space, with or without a stop. It computes their joint values through the joint-frame chain (not
+the closed form of the planner) and through PyKDL, and compares them with the planned path at the
+points and between them. It also checks the events between the moves. Assumptions shared by text and
+plan, such as the pendant's zero of J3 or the position of the frames, cannot show here.
 """
 
 from __future__ import annotations
@@ -34,10 +35,11 @@ WANDERS = "the way between two beads leaves the one that was checked by up to {}
 
 @dataclass(frozen=True)
 class Verification:
-    """What reading back showed. No error among the issues: the program may be delivered.
+    """The result of the read-back. Without an error among the issues, the program may be delivered.
 
-    at_points_mm, between_mm: largest distance from the plan at the points, and between those of a bead. bound_mm:
-    largest distance that the digits of the text explain. solvers: who computed the kinematics.
+    at_points_mm, between_mm: largest distance from the plan at the points, and between the points
+    of a bead. bound_mm: largest distance that the digits of the text explain. solvers: the solvers
+    that computed the kinematics.
     """
 
     issues: tuple[Issue, ...]
@@ -89,7 +91,7 @@ def _verify_joints(
     half = text_path.digits(cell, read)
     path, flange = text_path.joint_path(cell, shown, half)
     second = points.second_opinion(cell, planned, shown, flange)
-    del flange  # of all that is looked at the largest
+    del flange  # the largest over all checks
     issues += points.joint_issues(cell, planned, read, continuous) + points.point_issues(
         planned, path
     )
@@ -107,10 +109,11 @@ def _verify_poses(
     chord_error: float,
     issues: list[Issue],
 ) -> Verification:
-    """Positions of the text against the planned points, and the flange they ask for against the planned joint values.
+    """Check positions of the text against the planned points, and their flange poses against the
+    planned joints.
 
-    A linear move takes the tool it names straight to its target; with the part on the robot that tool is another one
-    at every point, so the way between two of them is looked at too.
+    A linear move takes the selected tool straight to its target. With the part on the robot, this
+    tool is different at every point, so the path between points is checked too.
     """
     joints = np.concatenate([moves.joints for moves in program.moves])
     path, flange = text_path.joint_path(cell, joints, np.zeros(joints.shape[1]))
@@ -125,7 +128,8 @@ def _verify_poses(
     twisted = points.turned_otherwise(asked, flange, poses)
     issues += planned.issue("VERIFY_ROTATION", twisted, "the tool is turned otherwise than planned")
     strayed = 0.0
-    # a tool that stays the same goes straight from point to point, and so does one that stands seen from a part that is held
+    # a constant tool moves straight from point to point; so does a fixed tool in the frame of a
+    # held part
     if read.tool is not None and not read.held and len(planned.ends):
         strayed, off = points.tools_between(cell, planned, asked, tools, poses, chord_error)
         issues += planned.issue("VERIFY_BETWEEN", off, Text(STRAYS, strayed))
@@ -177,7 +181,9 @@ def _concluded(
     second: tuple[list[Issue], tuple[str, ...]],
     issues: list[Issue],
 ) -> Verification:
-    """What is looked at whatever the text is told in, rapids and limits; what the second solver said, and who solved."""
+    """Add the checks of rapids and limits, which every text needs, and the result of the second
+    solver.
+    """
     wandered, turned, off = points.rapids_between(cell, planned, text, path, read.linear)
     issues += planned.issue(
         "VERIFY_BETWEEN", off, Text(WANDERS, format_deviation(wandered), turned)

@@ -126,7 +126,7 @@ def checked_list(values: Any, where: str) -> list[Any]:
 
 
 def checked_target(path: Any, where: str) -> str:
-    """As `checked_path`, of what is to be written: it has a name."""
+    """Return the path of an output file as `checked_path` does; the path must have a file name."""
     text = checked_path(path, where)
     if not text.strip():
         raise InputError(
@@ -154,8 +154,10 @@ def checked_path(path: Any, where: str) -> str:
 def checked_job(
     doc: Any, source: Any, process: Any, then: Any, mend: Any, **texts: Any
 ) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """Process and further features of `make_all`, whose other arguments that are no links are looked at too. InputError
-    BAD_INPUT for any of another kind, by its name."""
+    """Check the process, the further features and the arguments without links of `make_all`.
+
+    Raises InputError BAD_INPUT with the name of an argument of the wrong type.
+    """
     checked_document(doc)
     for key, text in texts.items():
         checked_text(text, key)
@@ -176,7 +178,9 @@ def is_gone(value: Any) -> bool:
 
 
 def named(value: Any) -> str:
-    """What a value is called in a message: objects and documents by their label, which are else told by their address."""
+    """Return the name of a value for a message: objects and documents have a label instead of an
+    address.
+    """
     return (
         safe_repr(value)
         if is_gone(value)
@@ -187,16 +191,17 @@ def named(value: Any) -> str:
 TEXTS = {
     "ProgramName": "name",
     "File": "file",
-}  # properties that stand with links, and what macros call them
+}  # properties next to links, and their names in macros
 
 
 def checked_links(
     doc: Any, links: Sequence[Link], values: dict[str, Any], of: Any = None
 ) -> dict[str, Any]:
-    """Values of links, by their names, as properties take them, and of what stands with them; None as it is. of: the stage
-    whose they will be, where it is there already.
+    """Return the values of links, by name, in the form of properties, with the values that belong
+    to them.
 
-    InputError BAD_INPUT by the key of the link, and that of a path to a face or edge that is not there.
+    None stays None. of: the existing stage of the links, if any. Raises InputError BAD_INPUT with
+    the key of the link, or for a path to a missing face or edge.
     """
     known = {link.name: link for link in links}
     found = dict(values)
@@ -272,12 +277,15 @@ def make_stage(
 
 
 def with_faces(source: Any, faces: Any) -> Any:
-    """A link to an object, or to faces of it; None for no object."""
+    """Return a link to an object, or to its faces; None for no object."""
     return None if source is None else (source, checked_names(faces, "faces"))
 
 
 def owned(owner: Any, names: Any, key: str) -> Any:
-    """A link to faces or edges of an object; None for none. InputError BAD_INPUT for those of nothing."""
+    """Return a link to faces or edges of an object; None for none.
+
+    Raises InputError BAD_INPUT for names without an object.
+    """
     names = checked_names(names, key)
     if names and owner is None:
         raise InputError(
@@ -312,10 +320,11 @@ def in_order(objects: Sequence[Any]) -> list[Any]:
 
 @contextlib.contextmanager
 def one_step(doc: Any, name: str) -> Iterator[None]:
-    """One step of undo, taken back whole when it fails; part of the step that is open, if there is one. In a document that
-    keeps no undo steps, as those without a window, objects that were made in it go.
+    """Run one undo step, which is undone completely on failure; part of an open step, if there is
+    one.
 
-    InputError BAD_INPUT for what is not a document.
+    In a document without undo, such as one without a window, a failure removes the new objects.
+    Raises InputError BAD_INPUT if `doc` is not a document.
     """
     checked_document(doc)
     if App.getActiveTransaction():
@@ -348,7 +357,10 @@ def _without_new_ones(doc: Any) -> Iterator[None]:
 
 
 def _end_step(end: Callable[[], None], abort: bool) -> None:
-    """End a step of one's own. FreeCAD leaves one open in which nothing was changed, and counts what comes next to it."""
+    """End an undo step.
+
+    FreeCAD leaves a step without changes open, and adds the next change to it.
+    """
     end()
     if App.getActiveTransaction():
         App.closeActiveTransaction(abort)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Changes of the macro interface: a stage and all that follows it made anew."""
+"""Changes of the macro interface: change a stage and recompute all stages that follow."""
 
 from __future__ import annotations
 
@@ -27,10 +27,12 @@ from .arguments import (
 
 
 def change(obj: Any, **values: Any) -> Any:
-    """Change parameters or inputs of a stage as its `make_...` takes them, and renew it and what follows; the object.
+    """Change parameters or inputs of a stage as its `make_...` takes them, recompute it and the
+    following stages, and return it.
 
-    `am.change(doc.Feature, layer_height=2)`. An error of what follows is told in its own Status. An error of the stage
-    itself is raised and takes the change back, in documents that keep undo steps (those of the window do).
+    `am.change(doc.Feature, layer_height=2)`. An error of a following stage appears in its own
+    Status. An error of the stage itself is raised and reverts the change, in documents with undo
+    (those with a window).
     """
     proxy = checked_stage(obj)
     with _unmarked_where_refused(obj), one_step(obj.Document, f"Edit {obj.Label}"):

@@ -62,8 +62,11 @@ def make_feature_of(
     parameters: Sequence[Any] = (),
     values: Mapping[str, Any] | None = None,
 ) -> Any:
-    """A feature of any family, by its kind. links: by property name, of which those count that the family has; `StartEdges`
-    and `BaseFaces` are names alone. parameters: dataclasses of its sections; values: single ones by key."""
+    """Make a feature of any family, by its kind.
+
+    links: by property name; the feature uses those of its family. `StartEdges` and `BaseFaces` only
+    contain names. parameters: dataclasses of its sections; values: single ones by key.
+    """
     checked_document(doc)
     proxy = proxy_of(checked_text(kind, "kind"))
     known = {link.name: link.key for link in proxy.links}
@@ -137,11 +140,14 @@ def make_developable_feature(
     build_direction: BuildDirectionParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Solids, or closed meshes, that grow on cylinders and cones of a hub (substrate), on the base_faces of it or on those
-    that they are found to stand on. `am.make_developable_feature(doc, doc.Blades, doc.Spindle, layer_height=2.5)`
+    """Make a feature of solids, or closed meshes, on cylinders and cones of a hub (substrate).
 
-    faces: of the source itself, where hub and solids are one. further: more objects to deposit; fixtures: objects, solids
-    or meshes, that the nozzle must not touch either. `base_radius=60, base_height=200` gives the base by numbers.
+    The solids grow on the hub's base_faces, by default on the faces that they touch.
+    `am.make_developable_feature(doc, doc.Blades, doc.Spindle, layer_height=2.5)`
+
+    faces: of the source itself, if hub and solids are one object. further: more objects to print;
+    fixtures: objects, solids or meshes, that the nozzle must not touch either.
+    `base_radius=60, base_height=200` gives the base by numbers.
     """
     links = {
         "Substrate": substrate,
@@ -175,11 +181,14 @@ def make_solid_feature(
     build_direction: BuildDirectionParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Any solids, or closed meshes, deposited in plane layers. `am.make_solid_feature(doc, doc.Bracket, layer_height=2)`
+    """Make a feature of any solids, or closed meshes, in plane layers.
 
-    further: more objects to deposit; substrate: what they stand on, if not a platform; guide: of layers="along", an
-    object or (object, ["Edge1"]); start_faces: of layers="geodesic" and "offset", names of the source's faces, or (object,
-    ["Face1"]), that the first layer lies on; fixtures: objects, solids or meshes, that the nozzle must not touch either.
+    `am.make_solid_feature(doc, doc.Bracket, layer_height=2)`
+
+    further: more objects to print; substrate: the object below them, if it is not a platform;
+    guide: for layers="along", an object or (object, ["Edge1"]); start_faces: for layers="geodesic"
+    and "offset", names of the source's faces, or (object, ["Face1"]), below the first layer;
+    fixtures: objects, solids or meshes, that the nozzle must not touch either.
     """
     links = {
         "Substrate": substrate,
@@ -211,10 +220,12 @@ def make_curves_feature(
     build_direction: BuildDirectionParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Edges, a wire, a sketch, or a table of points that `open_part` has read, laid as beads as they are.
+    """Make a feature of curves: edges, a wire, a sketch, or a table of points from `open_part`,
+    printed as beads.
 
-    `am.make_curves_feature(doc, doc.Sketch, repeat=3, layer_height=2)`; faces: names of faces whose normals are the
-    directions, and of edges where not all are laid; substrate: what they are laid on.
+    `am.make_curves_feature(doc, doc.Sketch, repeat=3, layer_height=2)`; faces: names of faces whose
+    normals are the directions, and of the edges to print if not all; substrate: the object below
+    the curves.
     """
     return make_feature_of(
         doc,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The scan of a substrate: measured points laid onto it, or left where they are."""
+"""The scan of a substrate: measured points, registered to it or left in their coordinates."""
 
 from __future__ import annotations
 
@@ -26,9 +26,11 @@ from .arguments import (
 
 @one_thread()
 def export(program: Any, folder: str) -> list[str]:
-    """Write the files of a program, or the figures of an inspection, into a folder, which is made; the paths.
+    """Write the files of a program, or the figures of an inspection, into a folder, and return
+    their paths.
 
-    Parts that an earlier, longer program of this name has left there are removed. `am.export(doc.Program, "out")`
+    The folder is created if needed. Parts that an earlier, longer program of this name left there
+    are removed. `am.export(doc.Program, "out")`
     """
     folder = checked_target(folder, "folder")
     kind = checked_stage(program).kind
@@ -125,11 +127,14 @@ def make_trajectory(obj: Any, *, tolerance: float = 0.1, turn: float = 2.0) -> A
 
 
 def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
-    """A part file as an object of the document: STEP, IGES, BREP, an object (Name or Label) of an FCStd file; or a mesh
-    (STL, OBJ, 3MF): solids on a hub, or what a wall grows on or is kept clear of; or a table of points (CSV), G-code of a
-    slicer or a toolpath of AdaOne (.ada3dp), which are laid as beads.
+    """Open a part file as an object of the document. `am.open_part(doc, "cup.step")`
 
-    scale: mm of one unit of an STL or OBJ file, which do not tell it. `am.open_part(doc, "cup.step")`
+    The file is STEP, IGES, BREP, or an object (Name or Label) in an FCStd file. It may also be a
+    mesh (STL, OBJ, 3MF): solids on a hub, the substrate of a wall, or a body that the nozzle must
+    not touch. Tables of points (CSV), G-code of a slicer and toolpaths of AdaOne (.ada3dp) are
+    printed as beads.
+
+    scale: mm per unit of an STL or OBJ file, which has no unit.
     """
     checked_document(doc)
     path = checked_target(path, "path")
@@ -157,10 +162,13 @@ def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
 
 
 def array_element(array: Any, index: int) -> Any:
-    """An element of a link array as an object that stages can be made of, numbered from 0 as in FreeCAD's selection.
+    """Return an element of a link array as an object for stages, numbered from 0 as in FreeCAD's
+    selection.
 
-    It is the element itself where FreeCAD shows elements as objects (`ShowElement`, of Draft `ExpandArray`), else a hidden
-    link to it beside the array. `am.make_solid_feature(doc, am.array_element(doc.Array, 1))`
+    It is the element itself if FreeCAD shows elements as objects (`ShowElement`, of Draft
+    `ExpandArray`), else a hidden link to it next to the array.
+
+    `am.make_solid_feature(doc, am.array_element(doc.Array, 1))`
     """
     from ..objects.shapes.places import object_of
 
@@ -184,12 +192,17 @@ def make_scan(
     pairs: str = "",
     within: float = 5.0,
 ) -> Any:
-    """The points of a file (CSV, TXT, XYZ, ASC; vertices of STL, OBJ, PLY) as an inspection of an object with a shape or
-    mesh, for `make_toolpath(..., scan=...)`. `am.make_scan(doc, doc.Plate, "plate.ply")`
+    """Read the points of a file for `make_toolpath(..., scan=...)`.
 
-    fit: best lays them onto the object, none takes them to be in its coordinates; auto does that where they lie within
-    `within` mm of it as they are. pairs: three or more measured points and where they are on the object, as an inspection
-    has them; with them nothing else is fitted. Raises InputError SCAN_UNIT, SCAN_OTHER, SCAN_AMBIGUOUS.
+    `am.make_scan(doc, doc.Plate, "plate.ply")`
+
+    The file is CSV, TXT, XYZ, ASC, or STL, OBJ, PLY with its vertices. The result is an inspection
+    of an object with a shape or mesh.
+
+    fit: "best" registers the points to the object, "none" uses them in its coordinates; "auto" uses
+    them unchanged if they are within `within` mm of it. pairs: three or more measured points and
+    their positions on the object, as in an inspection; they replace any other fit. Raises
+    InputError SCAN_UNIT, SCAN_OTHER, SCAN_AMBIGUOUS.
     """
     from ..core.inspection import (
         planned,  # what few jobs need

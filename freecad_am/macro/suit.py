@@ -30,8 +30,11 @@ SEARCHES = 3  # for a cell, of a new job whose joint path is infeasible
 
 
 def suit_path(cell: Any, toolpath: Any, path: Any) -> None:
-    """Look for another cell as long as all of an infeasible joint path cannot be planned: each search regards the layers that
-    failed in the cell found before too, as a search plans some layers alone."""
+    """Look for another cell while an infeasible joint path cannot be planned completely.
+
+    A search only plans some layers, so each search adds the layers that failed in the previous
+    cell.
+    """
     failed: set[int] = set()
     for _ in range(SEARCHES):
         failed |= {
@@ -45,9 +48,13 @@ def suit_path(cell: Any, toolpath: Any, path: Any) -> None:
 
 
 def suit(cell: Any, *stages: Any, failed_layers: Collection[int] = ()) -> bool:
-    """Give a cell object the place, branch or positioner in which the job of a toolpath can be done, and renew the toolpath,
-    first of the stages, and what follows; all is as it was where that serves, or nothing was found that does. Whether the
-    cell has changed. failed_layers: places of layers to be regarded beside the usual ones."""
+    """Change a cell object to a pose, branch or positioner with which the job of a toolpath is
+    feasible.
+
+    The toolpath, first of the stages, and all that follows are recomputed. Returns whether the cell
+    has changed: it stays if it is feasible, or if the search has no result. failed_layers: indices
+    of additional layers to check.
+    """
     settings = cell.Proxy.value(cell)
     found = suited_cell.suit_to_toolpath(stages[0], failed_layers)(settings)
     if found != settings:
@@ -77,8 +84,11 @@ def _write(cell: Any, settings: CellParameters, stages: Sequence[Any]) -> None:
 
 
 def proposed_place(cell: Any, values: Mapping[str, Any]) -> None:
-    """Give a cell object of a robot the deposition point, and the branch, that a new job with it has, where the values that
-    it was made of do not tell them. The default robot keeps those of its parameters, which macros count on."""
+    """Set the deposition point and the branch of a robot cell that a new job has, unless `values`
+    set them.
+
+    The default robot keeps those of its parameters, because macros depend on them.
+    """
     settings = cell.Proxy.value(cell)
     asked = ("deposition_point", "touched", "external")
     if settings.machine == CellParameters().machine or any(values.get(key) for key in asked):
@@ -98,8 +108,11 @@ def is_held_apart(cell: Any, toolpath: Any) -> bool:
 
 
 def fit_platform(cell: Any, toolpath: Any) -> None:
-    """Give a cell object a platform that all of the first layer of a toolpath lies on, with the part in its middle where
-    `mount` puts it there; all is as it was where it lies on it, or the toolpath cannot be planned so."""
+    """Give a cell object a platform that supports the whole first layer of a toolpath.
+
+    The part is in its middle if `mount` allows this. Nothing changes if the first layer is on the
+    platform already, or if the toolpath cannot be planned with the new one.
+    """
     if not any(issue.code == OVER_PLATFORM for issue in issues_of(toolpath)):
         return
     settings = cell.Proxy.value(cell)
@@ -142,7 +155,7 @@ def _mounted(cell: Any, features: Sequence[Any], make: Callable[[], Any]) -> Any
 
 
 def _is_above(cell: Any, features: Sequence[Any]) -> bool:
-    """Whether a feature will surely be told to begin above the platform."""
+    """Return whether the check will certainly report that a feature begins above the platform."""
     settings, proxy = cell.Proxy.value(cell), features[0].Proxy
     solid = any(section.cls is SolidParameters for section in proxy.sections)
     if len(features) > 1 or not solid or settings.platform_diameter <= 0.0:
@@ -152,7 +165,9 @@ def _is_above(cell: Any, features: Sequence[Any]) -> bool:
 
 
 def refuse_otherwise(kind: str, layers: str) -> None:
-    """InputError where a feature of this kind has no layers to choose, or these, '' for none, are none of them."""
+    """Raise InputError if a feature of this kind has no choice of layers, or not these layers (''
+    for none).
+    """
     if layers and kind != "solid":
         raise InputError(
             "BAD_VALUE", "layers_otherwise", "it is for kind: solid, not for {}; remove it", kind
@@ -162,8 +177,11 @@ def refuse_otherwise(kind: str, layers: str) -> None:
 
 
 def in_vain(stages: Sequence[Any], otherwise: str) -> bool:
-    """Whether the job of stages, a cell, a feature and what follows, is to be made anew with other layers, '' for none: it
-    cannot be carried out, which is told, and its objects go."""
+    """Return whether to rebuild the job of these stages with other layers ('' for none).
+
+    stages: a cell, a feature and what follows. If the job is infeasible, this is reported and its
+    objects are removed.
+    """
     failed = next((stage for stage in stages if stage.Status == INFEASIBLE), None)
     feature = stages[1]
     if failed is None or not otherwise or feature.Layers == otherwise:

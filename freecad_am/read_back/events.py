@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What happens between the moves of a text - deposit, waits, inputs, calls, layers - against what was planned, in order."""
+"""Compares the events between the moves of a text (deposit, waits, inputs, calls, layers) with the
+planned events.
+"""
 
 from __future__ import annotations
 
@@ -27,14 +29,17 @@ from ..core.read_moves import ARC, Event, ReadMoves
 from ..core.types import Array
 from .text_path import COMPUTED_AXIS, Planned
 
-# s that the digits of a way may amount to: a text that tells it to fewer, or where the tip hardly moves, is not the planned
-# one
+# s; maximum rounding error of a path length as a time: a text with fewer digits, or with a tip that
+# hardly moves, does not match the plan
 MOST_DIGITS = 0.0005
 
 
 def timed(events: Sequence[Event], speed: Array) -> tuple[Event, ...]:
-    """The events, each with a time in place of a way: of the tip, which has such a speed (n,), mm/s, on each move. NaN where
-    it has none."""
+    """Return the events with times instead of path lengths, from the tip speed (n,), mm/s, on each
+    move.
+
+    The time is NaN on a move without a speed.
+    """
     return tuple(
         event if event.before is None else _timed(event, event.before, speed) for event in events
     )
@@ -71,7 +76,7 @@ def _timed(event: Event, distance_before: float, speed: Array) -> Event:
     )
 
 
-# code and message of what is off, and the kinds of events that it is about
+# error code and message, and the kinds of events that they cover
 _FAMILIES = (
     ("VERIFY_DEPOSIT", "the deposit is switched otherwise than planned", ("on", "off")),
     ("VERIFY_SCHEDULE", "the schedule that is sent is not the planned one", ("schedule",)),
@@ -130,7 +135,7 @@ def _compared(
     events: Sequence[Event],
     due: Sequence[Event],
 ) -> list[Issue]:
-    """An error where the events of a text are not those that are due."""
+    """Return an error if the events of a text differ from the expected ones."""
     alike = [_alike(program, event, due_event) for event, due_event in zip(events, due)]
     off = alike.count(False) + abs(len(events) - len(due))
     if not off:
@@ -167,13 +172,13 @@ def _alike(program: Program, event: Event, due: Event) -> bool:
         return event.value == due.value
     *names, value = (float(word) for word in event.value)
     *due_names, due_value = (float(word) for word in due.value)
-    # a wait that is shorter than the last digit is written as one of that
+    # a wait shorter than the last digit is written as one unit of the last digit
     due_value = max(due_value, 2.0 * event.digits) if due.kind == "wait" else due_value
     return names == due_names and abs(value - due_value) <= event.digits + 1e-9
 
 
 def _as_early(event: Event, due: Event) -> bool:
-    """Whether it happens as long ahead of its place, or where the machine stands."""
+    """Return whether an event is equally far ahead of its place, or both are at standstill."""
     if event.ahead is None or due.ahead is None:
         return event.ahead is due.ahead
     return abs(event.ahead - due.ahead) <= event.digits + 1e-9
@@ -200,7 +205,7 @@ def _merge_waits(events: Sequence[Event] | Iterator[Event]) -> list[Event]:
 
 
 def _due(program: Program) -> Iterator[Event]:
-    """What is planned to happen between the moves."""
+    """Return the planned events between the moves."""
     row = 0
     for block in program.blocks:
         if isinstance(block, Moves):

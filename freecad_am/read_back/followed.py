@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The joints by which a machine follows the positions of a text: of all solutions those that the text names, or else those
-next to where the machine stands."""
+"""The joints with which a machine follows the positions of a text.
+
+A solution has the configuration named in the text; without one, it is the solution nearest to the
+previous joints.
+"""
 
 from __future__ import annotations
 
@@ -23,10 +26,12 @@ from .text_path import Path, pieces
 
 
 def by_robot(cell: Cell, text: ReadMoves, flanges: Array) -> Array:
-    """(n, axes) serial joints of a cell with a robot whose flange is at `flanges` (n, 4, 4); NaN where it is not reached.
+    """Return serial joints (n, axes) of a robot cell with its flange at `flanges` (n, 4, 4); NaN
+    out of reach.
 
-    Rows that the text tells in joints have these. Raises InputError NO_CONFIGURATION where it begins with a position and
-    neither names a configuration nor says what it is next to, and the cell leaves it open too.
+    Rows with joint values in the text keep them. Raises InputError NO_CONFIGURATION if the text
+    begins with a position without a configuration or a nearby joint position, and the cell leaves
+    it open too.
     """
     machine, robot_axes = cell.machine, cell.robot.chain.axes
     controller_values = (
@@ -35,7 +40,7 @@ def by_robot(cell: Cell, text: ReadMoves, flanges: Array) -> Array:
     unknown = np.isnan(controller_values[:, :robot_axes]).any(axis=1)
     serial = np.full_like(controller_values, np.nan)
     serial[~unknown] = machine.from_controller(controller_values[~unknown])
-    if cell.external is not None:  # the external axes are told with every position
+    if cell.external is not None:  # every position has values of the external axes
         external = machine.from_controller(
             np.where(np.isnan(controller_values), 0.0, controller_values)
         )[:, robot_axes:]
@@ -124,7 +129,11 @@ def _nearest_turns(cell: Cell, flanges: Array, reference: Array) -> Array:
 
 
 def _as_named(cell: Cell, text: ReadMoves, solutions: Array, words: Index, rows: slice) -> Array:
-    """Of solutions (k, configurations, 6) that bear `words` (k, configurations) those the text names, with its turns."""
+    """Select the solutions (k, configurations, 6) of the configuration named in the text, with its
+    turns.
+
+    words: (k, configurations) the configuration of each solution.
+    """
     configuration = text.configuration
     assert configuration is not None
     names = np.array([opw.branch_name(index) for index in range(8)])[words]
@@ -154,8 +163,12 @@ def _as_named(cell: Cell, text: ReadMoves, solutions: Array, words: Index, rows:
 
 
 def _nearest(solutions: Array, free: Mask, previous: Array) -> Array:
-    """(k, axes) one of the solutions (k, configurations, axes) of each row, next to that of the row before, the first one
-    next to `previous`, turns counted on. free: (k, axes) what stays as it is, whatever the solutions say."""
+    """Return the solutions (k, axes) nearest to the previous row, unwrapped; the first row follows
+    `previous`.
+
+    solutions: (k, configurations, axes). free: (k, axes) values that stay unchanged, whatever the
+    solutions are.
+    """
     first_choice = int(_joint_distance(solutions[0], previous).argmin())
     choices = [first_choice]
     for rows in pieces(np.arange(len(solutions) - 1)):
@@ -168,7 +181,7 @@ def _nearest(solutions: Array, free: Mask, previous: Array) -> Array:
         for successors in nearest.tolist():
             choices.append(successors[choices[-1]])
     joints = np.vstack([previous, solutions[np.arange(len(solutions)), choices]])
-    # what is free takes the value of the last row that had one
+    # a free value repeats that in the last row with a value
     bound = np.vstack([np.ones(len(previous), dtype=bool), ~free])
     last_bound = np.maximum.accumulate(np.where(bound, np.arange(len(joints))[:, None], 0), axis=0)
     joints = np.take_along_axis(joints, last_bound, axis=0)
@@ -178,7 +191,11 @@ def _nearest(solutions: Array, free: Mask, previous: Array) -> Array:
 
 
 def _joint_distance(joints: Array, reference: Array) -> Array:
-    """(...) how far joints (..., axes) are from others, turns left out; infinite where there are none."""
+    """Return the distance (...) of joints (..., axes) from reference joints, apart from whole
+    turns.
+
+    Infinite for missing joints.
+    """
     turned = joints - reference
     distances = np.abs(turned - TURN * np.rint(turned / TURN)).max(axis=-1)
     return np.where(np.isnan(distances), np.inf, distances)
@@ -186,7 +203,7 @@ def _joint_distance(joints: Array, reference: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class DrivenBead:
-    """A bead of a motion, as those who look at collisions ask for it; it tells neither width nor height."""
+    """A bead of a motion in the form that collision checks use, without width and height."""
 
     points: Array
     build: Array
@@ -196,15 +213,17 @@ class DrivenBead:
 
 
 def driven(cell: Cell, program: Program, text: ReadMoves) -> Motion:
-    """The rows that a text makes the machine pass, in part coordinates, joints NaN where a position is not reached.
+    """Return the rows of a motion along a text, in part coordinates; joints are NaN for unreachable
+    positions.
 
-    program: what it is told of the cell, its moves left out. Build directions are tool axes, widths are not known. Raises
-    InputError NO_CONFIGURATION where a text does not say by which configuration of the arm it begins.
+    program: its cell data; its moves are not used. Build directions are tool axes; widths are
+    unknown. Raises InputError NO_CONFIGURATION if a text does not give the arm configuration at its
+    start.
     """
     path, serial = _driven(cell, program, text)
     seconds = _durations(cell, text, path.position, serial)
     starts = _starts(text)
-    # the first row of a bead repeats where the machine stands
+    # the first row of a bead repeats the present position
     inserted = np.maximum(starts - 1, 0)
     rows = np.insert(np.arange(len(text.deposit)), starts, inserted)
     fresh = np.insert(np.zeros(len(text.deposit), dtype=bool), starts, True)
@@ -271,8 +290,11 @@ def _in_turns(controller_values: Array, continuous: Mask) -> Array:
 
 
 def _durations(cell: Cell, text: ReadMoves, position: Array, serial: Array) -> Array:
-    """(n,) s of each move as the text says it: by a time, a speed of the tip, or a share of the axes' largest speeds; 0 of
-    the first one, which begins wherever the machine stands."""
+    """Return the duration (n,) of each move from the text, s.
+
+    The text gives a time, a speed of the tip, or a share of the axes' largest speeds. The first
+    move has 0, as its start is unknown.
+    """
     step_lengths = np.linalg.norm(np.diff(position, axis=0, prepend=position[:1]), axis=1)
     turned = np.abs(np.diff(cell.machine.to_controller(serial), axis=0, prepend=np.nan))
     with np.errstate(invalid="ignore"):
@@ -282,7 +304,7 @@ def _durations(cell: Cell, text: ReadMoves, position: Array, serial: Array) -> A
         by_speed = np.divide(
             step_lengths, text.speed, out=np.full(len(step_lengths), np.nan), where=text.speed > 0.0
         )
-        # a speed of the tip says nothing where the tip stands still
+        # a tip speed has no meaning while the tip does not move
         seconds = np.where(
             np.isnan(seconds),
             np.maximum(by_speed, np.where(step_lengths > 0.0, 0.0, quickest)),
@@ -296,7 +318,7 @@ def _durations(cell: Cell, text: ReadMoves, position: Array, serial: Array) -> A
 
 
 def _starts(text: ReadMoves) -> Index:
-    """The moves that are the first ones of beads: with which the deposit begins, or begins anew."""
+    """Return the first moves of beads: those at which the deposit begins or restarts."""
     begins = np.diff(text.deposit, prepend=False) & text.deposit
     on = [event.row for event in text.events if event.kind == "on" and event.row < len(begins)]
     begins[on] |= text.deposit[on]
@@ -304,7 +326,7 @@ def _starts(text: ReadMoves) -> Index:
 
 
 def _layers(events: tuple[Event, ...], starts: Index) -> Integers:
-    """(beads,) the layer of each bead that begins with the moves `starts`, as remarks tell it; 0 where none does."""
+    """Return the layers (beads,) at the moves `starts` from remarks; 0 without a remark."""
     layers = [(event.row, int(float(event.value[0]))) for event in events if event.kind == "layer"]
     if not layers:
         return np.zeros(len(starts), dtype=np.int64)
@@ -319,7 +341,7 @@ def _places(deposit: Mask, fresh: Mask, layers: Integers) -> tuple[Integers, ...
     if not len(layers):
         nowhere = np.zeros(len(deposit), dtype=np.int64)
         return nowhere, nowhere, np.arange(len(deposit))
-    # beads are counted anew in each layer
+    # bead numbers restart in each layer
     numbers = np.zeros(len(layers), dtype=np.int64)
     for layer in np.unique(layers):
         same = layers == layer

@@ -28,15 +28,19 @@ from .text_path import (
     tip_bounds,
 )
 
-# of the way between two points, where the path is looked at
+# shares of the step between two points at which the path is checked
 BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
 
 
 def rapids_between(
     cell: Cell, planned: Planned, text: Joints, path: Path, linear: Mask
 ) -> tuple[float, float, Mask]:
-    """Largest distance of the tip, mm, and of its direction, deg, from where it was looked at on rapids, and the moves (n,) that leave that way by more than
-    the digits explain: as the text says them, the joints straight or (linear) the tip."""
+    """Return the largest deviation of the tip, mm, and of its direction, deg, from the checked
+    rapids.
+
+    Also returns the moves (n,) that deviate by more than the digits explain. The text decides
+    whether the joints or (linear) the tip are straight.
+    """
     off, ends = np.zeros(len(planned.deposit), dtype=bool), planned.rapids
     if not len(ends):
         return 0.0, 0.0, off
@@ -48,8 +52,9 @@ def rapids_between(
     distances = np.linalg.norm(np.where(along, straight_tip, driven_tip) - tip, axis=1)
     tilted = np.linalg.norm(np.where(along, straight_tool, driven_tool) - tool, axis=1)
     bound, tool_bound = tip_bounds(cell, looked_at, _between(text.reach, ends))
-    # what runs straight where joints were looked at is refused elsewhere, unless it was planned so
-    # near a singularity digits may explain more than the clearance of rapids has to spare; then the text is none
+    # a linear rapid is rejected off a path checked in the joints, unless it was planned as linear.
+    # Near a singularity, digits may explain more than the clearance of rapids can spare; then the
+    # text is rejected
     allowed = np.where(along[:, 0], OFF_WAY_MM, np.minimum(bound, OFF_WAY_MM))
     wrong = ~(
         (distances <= allowed) & (tilted <= np.maximum(tool_bound, OFF_WAY_RAD * along[:, 0]))
@@ -59,7 +64,9 @@ def rapids_between(
 
 
 def _between(rows: Array, ends: Index) -> Array:
-    """(len(ends) * len(BETWEEN), ...) what lies on the straight way to the rows `ends` from those before."""
+    """Return the points (len(ends) * len(BETWEEN), ...) on the straight lines that end at the rows
+    `ends`.
+    """
     step = (rows[ends] - rows[ends - 1])[:, None]
     between: Array = (rows[ends - 1, None] + BETWEEN[:, None] * step).reshape(-1, rows.shape[1])
     return between
@@ -95,14 +102,19 @@ def beads_between(
 
 
 def _larger_at_ends(values: Array, ends: Index) -> Array:
-    """(len(ends),) the larger of what is told of the row `ends` and of the one before; NaN where one is."""
+    """Return the larger of the values (len(ends),) at the row `ends` and at the row before; NaN if
+    one is NaN.
+    """
     return np.maximum(values[ends - 1], values[ends])
 
 
 def _bow(cell: Cell, serial: Array, ends: Index) -> Array:
-    """(len(ends),) mm by how much the tip leaves its chord at most while joints run straight to the rows `ends`: an eighth
-    of its second derivative, in which each turn acts on each other one over a lever no longer than the whole chain, and
-    twice on what slides."""
+    """Return the maximum distance (len(ends),) of the tip from its chord on straight joint moves to
+    the rows `ends`, mm.
+
+    It is an eighth of the second derivative of the tip. In it, each rotation acts on every other
+    one over a lever of at most the chain length, and twice on prismatic axes.
+    """
     chain, slides = cell.machine.chain, cell.machine.chain.sliding
     links = [*chain.origins, chain.flange, cell.carried, cell.station]
     lever = (
@@ -135,8 +147,11 @@ def tools_between(
 def _off_segments(
     planned: Planned, ends: Index, tips: Array, path: Path, chord_error: float
 ) -> tuple[float, Mask]:
-    """Largest distance of tips (len(ends) * len(BETWEEN), 3) from the planned segments that end at the rows `ends`,
-    and which of these (len(ends),) leave theirs by more than the chord error and the digits of their two points."""
+    """Return the largest distance of tips (len(ends) * len(BETWEEN), 3) from the planned segments.
+
+    The segments end at the rows `ends`. Also returns which (len(ends),) exceed the chord error and
+    the digits of both end points.
+    """
     tips = tips.reshape(len(ends), len(BETWEEN), 3)
     start, step = planned.position[ends - 1], planned.position[ends] - planned.position[ends - 1]
     offsets = tips - start[:, None]
@@ -170,7 +185,7 @@ def _straight(start: Array, end: Array) -> Array:
     )
 
 
-ROW_STRIDE = 8  # of a long text so many-th row is driven through PyKDL
+ROW_STRIDE = 8  # stride of the rows that PyKDL computes in a long text
 THIRDS = np.array([0.0, 2.0, 4.0]) * np.pi / 3.0
 GRID_TO_ALL = (
     5.0 / 3.0
@@ -200,7 +215,7 @@ def joint_issues(cell: Cell, planned: Planned, text: ReadMoves, continuous: Mask
 
 
 def limit_issues(cell: Cell, planned: Planned, text: Joints) -> list[Issue]:
-    """Whether the joints that a text asks for are within the limits of the cell, but for its digits."""
+    """Return issues if the joints of a text exceed the limits of the cell by more than its digits."""
     limits, wrong = cell.limits, np.zeros(len(text.serial), dtype=bool)
     worst, label = -np.inf, 0
     for rows in pieces(np.arange(len(text.serial))):
@@ -240,8 +255,10 @@ def point_issues(planned: Planned, path: Path) -> list[Issue]:
 def twice_issues(
     cell: Cell, planned: Planned, program: Program, text: ReadMoves, flange: Array
 ) -> list[Issue]:
-    """Positions that a text tells beside the joint values of a row, as where an arc is struck, against the planned point and
-    flange (n, 4, 4)."""
+    """Check positions that a text repeats with the joint values of a row, as at an arc start.
+
+    They must match the planned point and flange (n, 4, 4).
+    """
     if text.position is None or text.joints is None:
         return []
     twice = np.isfinite(text.joints).all(axis=1) & np.isfinite(text.position).all(axis=1)
@@ -267,8 +284,10 @@ def turned_otherwise(text_flanges: Array, flange: Array, path: Path) -> Mask:
 def second_opinion(
     cell: Cell, planned: Planned, controller_values: Array, flange: Array
 ) -> tuple[list[Issue], tuple[str, ...]]:
-    """The same joint values through PyKDL, where it is installed: all of them, or of a long text some and joint values of
-    every kind (docs/decisions/0022)."""
+    """Return the result of PyKDL for the same joint values, if it is installed.
+
+    Long texts use some rows and joint values of every kind (docs/decisions/0022).
+    """
     if not kdl_chain.available():
         message = "PyKDL is not installed; the program was checked by one solver only"
         return [Issue(NOTE, "VERIFY_ONE_SOLVER", message)], ("chain",)
@@ -276,7 +295,7 @@ def second_opinion(
     grid = grid_of(cell.machine.chain, planned.joints)
     long = len(controller_values) > ROW_STRIDE * len(grid)
     if long:
-        # what differs by so much on the grid may differ by as much again for each turning axis elsewhere
+        # a difference on the grid may double with each rotary axis elsewhere
         share = GRID_TO_ALL ** -np.count_nonzero(~cell.machine.chain.sliding)
         wrong |= _differ(arm.forward(grid), cell.machine.chain.forward(grid), share).any()
     for rows in pieces(np.arange(0, len(controller_values), ROW_STRIDE if long else 1)):
@@ -288,7 +307,9 @@ def second_opinion(
 
 
 def _differ(poses: Array, reference: Array, share: float = 1.0) -> Mask:
-    """(n,) whether poses (n, 4, 4) of two solvers differ by more than a share of what rounding explains."""
+    """Return whether (n,) poses (n, 4, 4) of two solvers differ by more than a share of the
+    rounding error.
+    """
     differences = poses - reference
     differing: Mask = lengths(differences[:, :3, 3]) > share * COMPUTED_MM
     differing |= np.abs(differences[:, :3, :3]).max(axis=(1, 2)) > share * COMPUTED_AXIS

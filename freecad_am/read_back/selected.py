@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a text counts on that it does not tell: frames and tools by their numbers, and programs of the controller."""
+"""Settings that a text uses without containing them: numbers of frames and tools, and programs of
+the controller.
+"""
 
 from __future__ import annotations
 
@@ -18,13 +20,13 @@ from .events import timed
 
 
 class Finding(NamedTuple):
-    """An issue, and the row of the motion that it is about; None where it is about no row."""
+    """An issue and its motion row, None without a row."""
 
     issue: Issue
     row: int | None
 
     def line(self, motion: Motion, text: ReadMoves) -> tuple[str, int] | None:
-        """File and line, from 1, of the move to the row, the motion being what the text drives; None where it is unknown."""
+        """Return file and line, from 1, of the move to a row of the text's motion; None if unknown."""
         if self.row is None or text.lines is None:
             return None
         # the first row of a bead repeats the end of the move before
@@ -49,14 +51,15 @@ def error_at(code: str, message: Text, motion: Motion, row: int) -> Finding:
 def selection_findings(
     motion: Motion, text: ReadMoves, expected: tuple[int, int] | None
 ) -> list[Finding]:
-    """FRAME_NUMBER where a text selects several frames or tools, of which only one is known, or others than a job; and
-    OTHER_PROGRAM for each program that it calls and that was not given.
+    """Return FRAME_NUMBER if a text selects several frames or tools, or others than the job.
+
+    Only one frame and tool are known. Adds OTHER_PROGRAM for each called program that was not given.
 
     Parameters
     ----------
     motion
-        What the text drives.
-    read
+        The motion of the text.
+    text
         The moves of the text.
     expected
         Numbers of the frame and of the tool of a job, None without one.
@@ -124,7 +127,7 @@ def _finding_at(level: str, code: str, message: Text, motion: Motion, row: int) 
     return Finding(Issue(level, code, message, *bead_point), row)
 
 
-# s that a time in a text may be longer than that of its move: both are rounded to milliseconds
+# s; tolerance of a time in a text beyond the time of its move: both are rounded to milliseconds
 MOST_LONGER = 0.002
 
 
@@ -163,12 +166,14 @@ def _findings(motion: Motion, text: ReadMoves) -> Iterator[Finding]:
 
 
 def _finding(code: str, message: Text, motion: Motion, rows: Index, move: int) -> Finding:
-    """An error at a move; at the last one for what follows it."""
+    """Return an error at a move; at the last move for an event after it."""
     return error_at(code, message, motion, int(rows[min(move, len(rows) - 1)]))
 
 
 def _time_of_its_move(event: Event, seconds: Array) -> float | None:
-    """s of the move that an event is on, where it comes before that begins. How long the first move takes nobody knows."""
+    """Return the duration of the move of an early event, s. The duration of the first move is
+    unknown.
+    """
     move = event.row - 1
     if (
         event.ahead is None
@@ -183,8 +188,11 @@ ROUNDED = 0.1  # mm that digits of a program, and joints between its points, may
 
 
 def into_platform(motion: Motion, cell: Cell) -> list[Finding]:
-    """INTO_PLATFORM with the lowest place, where the nozzle's tip is below the platform, within its edge, while it deposits.
-    motion: what the text drives; what is not reached is not looked at."""
+    """Return INTO_PLATFORM with the lowest place, if the tip deposits below the platform within its
+    edge.
+
+    motion: that of the text; unreachable rows are not checked.
+    """
     rows = np.flatnonzero(motion.deposit & motion.reachable)
     to_platform = frames.inverse(cell.mount)
     points = motion.position[rows] @ to_platform[:3, :3].T + to_platform[:3, 3]

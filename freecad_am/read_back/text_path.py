@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where a text takes the tip, and the joints it asks for, with the error its digits allow.
+"""The path of the tip and the joints of a text, with the error that its digits allow.
 
-From its joint values by the joint-frame chain - not the closed form that planned them - or from its positions, for which
-joint values are solved by the chain's Jacobian beside the planned ones.
+The joint-frame chain computes it from the joint values, independent of the closed form of the
+planner. For texts with positions, the chain's Jacobian near the planned joints gives the joint
+values.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from ..core.types import Array, Index, Mask
 
 # what rounding in the computation itself may amount to: mm, and of unit vectors
 COMPUTED_MM, COMPUTED_AXIS = 1e-6, 1e-9
-PIECE = 4096  # moves that are looked at together: the poses of all of them at once would take all memory
+PIECE = 4096  # moves in one batch: the poses of a whole program would take too much memory
 
 
 class Planned:
@@ -34,7 +35,7 @@ class Planned:
         self.position, self.tool = motion.position[rows], motion.tool[rows]
         self.duration, self.speed = motion.duration[rows], motion.speed[rows]
         self.stops, self.halt = motion.stops[rows], motion.halt[rows]
-        # moves that begin where another one ended: of beads, and of rapids
+        # moves that begin at the end of another move, of beads and of rapids
         moved = np.arange(len(rows)) > 0
         self.ends, self.rapids = (
             np.flatnonzero(self.deposit & moved),
@@ -42,7 +43,9 @@ class Planned:
         )
 
     def issue(self, code: str, wrong: Mask, message: str) -> list[Issue]:
-        """An error at the first wrong move, none when there is none; the message says how many there are."""
+        """Return an error at the first wrong move, none without one; the message gives their
+        number.
+        """
         if not wrong.any():
             return []
         count, first_row = int(wrong.sum()), int(np.argmax(wrong))
@@ -56,7 +59,9 @@ class Planned:
         ]
 
     def place(self, move: int) -> tuple[int, int, int]:
-        """Layer, bead and point of a move; of the last one for what follows it."""
+        """Return layer, bead and point of a move; for an event after the end, those of the last
+        move.
+        """
         row = self.rows[min(move, len(self.rows) - 1)]
         layer, bead, point = (
             int(column[row]) for column in (self.motion.layer, self.motion.bead, self.motion.point)
@@ -65,7 +70,7 @@ class Planned:
 
 
 def pieces(rows: Index) -> list[Index]:
-    """Rows (n,) in pieces that are looked at one after the other."""
+    """Yield the rows (n,) in batches."""
     return [rows[start : start + PIECE] for start in range(0, len(rows), PIECE)]
 
 
@@ -88,8 +93,11 @@ class Joints:
 
 
 def given_by_position(cell: Cell, joints: Array) -> Mask:
-    """(n, axes) the axis values that a text may leave to the controller to find from a Cartesian position: a robot's own
-    ones, and those that slide of a machine with rotary axes. The rotary ones show in the direction of its tool."""
+    """Return the axis values (n, axes) that the controller may derive from a Cartesian position.
+
+    These are a robot's own axes, and the prismatic axes of a five-axis machine. Its rotary axes
+    follow from the direction of the tool.
+    """
     robot_axes = (
         np.arange(joints.shape[1]) < cell.robot.chain.axes
     )  # a position says nothing of the external axes
@@ -98,8 +106,11 @@ def given_by_position(cell: Cell, joints: Array) -> Mask:
 
 
 def shorter_way(cell: Cell, program: Program, text: ReadMoves) -> Mask:
-    """(axes,) the axes that the controller takes the shorter way: those of robots that turn without end. Rotary axes of
-    machine tools count their turns, unless the text says otherwise."""
+    """Return the axes (axes,) that the controller turns the shorter way: the continuous axes of
+    robots.
+
+    Rotary axes of machine tools count their turns, unless the text states otherwise.
+    """
     shorter = not cell.arrangement.named_axes if text.shorter_way is None else text.shorter_way
     return np.array(program.continuous) & shorter
 
@@ -133,11 +144,15 @@ def tip_bounds(cell: Cell, serial: Array, reach: Array) -> tuple[Array, Array]:
 def _bounds(
     cell: Cell, joint_frames: JointFrames, matrix: Array, half: Array
 ) -> tuple[Array, Array]:
-    """Bounds of tip and tool to first order where matrix @ joints are off by `half` (n, axes), or (1, axes) of all: the sum
-    of the lengths of the Jacobian's columns; what the second order adds is at most that times the sum of the angles."""
+    """Return first-order bounds of tip and tool if matrix @ joints is off by `half`, (n, axes) or
+    (1, axes).
+
+    The bound sums the lengths of the Jacobian's columns. The second order adds at most this sum
+    times the sum of the angles.
+    """
     slides = cell.machine.chain.sliding
     to_serial = np.linalg.inv(matrix)
-    # one row per joint and entry, each of all poses
+    # one row per joint and entry, each for all poses
     direction, origin = (
         joint_frames.directions.transpose(1, 2, 0),
         joint_frames.origins.transpose(1, 2, 0),
@@ -167,11 +182,13 @@ def text_joints(
     path: Path,
     flanges: Array | None,
 ) -> Joints:
-    """The joints that a text asks for: its values `controller_values` (n, axes), as the controller counts them, off by `half` (axes,).
-    Where it has none (NaN) they bring flange or tip to its positions, by one step of Newton from serial joints `reference`
-    (n, axes).
+    """Return the joints of a text from its values `controller_values` (n, axes), with errors `half`
+    (axes,).
 
-    flanges: (n, 4, 4) flange poses of the text, None where it tells of tip and direction alone.
+    Where a value is missing (NaN), one Newton step from serial joints `reference` (n, axes) moves
+    flange or tip to the position in the text.
+
+    flanges: (n, 4, 4) flange poses of the text, None if it only has tips and directions.
     """
     machine = cell.machine
     reference_values = machine.to_controller(reference)
@@ -203,8 +220,11 @@ _LEVER = 300.0
 def _to_flange(
     cell: Cell, serial: Array, path: Path, flanges: Array, rows: Index
 ) -> tuple[Array, Array, Array]:
-    """Of the flange: how joints move it (n, 6, axes), how far it is from where it is asked to be (n, 6), and by how much
-    that may be off (n, 6); mm, and radians times the lever."""
+    """Return the Jacobian of the flange (n, 6, axes), its distance from the target and the error
+    bound (n, 6).
+
+    Units are mm, and radians times the lever.
+    """
     joint_frames = cell.machine.chain.frames(serial)
     slides = cell.machine.chain.sliding[:, None]
     position = joint_frames.flange[:, :3, 3]
@@ -215,7 +235,7 @@ def _to_flange(
     )
     turned = np.where(slides, 0.0, joint_frames.directions) * _LEVER
     turn = flanges[:, :3, :3] @ np.swapaxes(joint_frames.flange[:, :3, :3], 1, 2)
-    # the angles are those of digits: their sines are as good
+    # the angles have the size of digits, so their sines are accurate enough
     about = 0.5 * np.stack(
         [
             turn[:, 2, 1] - turn[:, 1, 2],
@@ -251,8 +271,10 @@ def _to_tip(cell: Cell, serial: Array, path: Path, rows: Index) -> tuple[Array, 
 
 
 def text_tips(cell: Cell, program: Program, text: ReadMoves) -> Path:
-    """Tips and tool axes of a text in part coordinates, by its positions and its directions, or else its rotary axes; of
-    the rows it tells in axes, by these."""
+    """Return tips and tool axes of a text in part coordinates.
+
+    They come from its positions and its directions or rotary axes; rows with axis values use these.
+    """
     assert text.position is not None and program.carried is not None
     in_part = cell.mount @ frames.inverse(cell.carried) @ frames.bryant(program.carried)
     position = text.position @ in_part[:3, :3].T + in_part[:3, 3]
@@ -264,13 +286,13 @@ def text_tips(cell: Cell, program: Program, text: ReadMoves) -> Path:
         tool_bound = (
             np.sqrt(3.0) * text.direction_digits / np.maximum(length, 1e-300) + COMPUTED_AXIS
         )
-    elif text.joints is not None:  # where the linear axes stand does not turn the tool
+    elif text.joints is not None:  # the linear axes do not turn the tool
         path_in_axes, _ = joint_path(
             cell, np.where(cell.machine.chain.sliding, 0.0, text.joints), digits(cell, text)
         )
         tool, tool_bound = path_in_axes.tool, path_in_axes.tool_bound
     if text.joints is not None:
-        rows = np.isfinite(text.joints).all(axis=1)  # told in axes
+        rows = np.isfinite(text.joints).all(axis=1)  # rows with axis values
         path, _ = joint_path(cell, text.joints[rows], digits(cell, text))
         position[rows], tool[rows], bound[rows], tool_bound[rows] = (
             path.position,
@@ -282,8 +304,11 @@ def text_tips(cell: Cell, program: Program, text: ReadMoves) -> Path:
 
 
 def text_path(cell: Cell, program: Program, text: ReadMoves) -> tuple[Path, Array, Array]:
-    """The path of a text with positions, the flange poses and the tools (n, 4, 4) on the flange it asks for; of rows told in
-    joint values by these."""
+    """Return the path of a text with positions, its flange poses and its tools (n, 4, 4) on the
+    flange.
+
+    Rows with joint values use these.
+    """
     path, flanges, tools = positions_path(cell, program, text)
     if text.joints is not None:
         rows = np.isfinite(text.joints).all(axis=1)
@@ -298,11 +323,11 @@ def text_path(cell: Cell, program: Program, text: ReadMoves) -> tuple[Path, Arra
 
 
 def positions_path(cell: Cell, program: Program, text: ReadMoves) -> tuple[Path, Array, Array]:
-    """The same by its positions alone, NaN where it tells none.
+    """Return the same by positions only, NaN in rows without one.
 
-    Texts without frames of their own count on the user frame that the program tells of. Every frame is off by half a
-    digit: its origin by at most sqrt(3) of it, its rotation by three angles; a frame that does not turn the target about
-    itself has no lever.
+    Texts without frames of their own use the user frame of the program. Every frame is off by half
+    a digit: its origin by at most sqrt(3) times that, its rotation by three angles; a frame that
+    does not turn the target about itself has no lever.
     """
     assert text.position is not None and text.rotation is not None
     count, lever = 1, np.zeros(len(text.position))

@@ -21,10 +21,10 @@ STILL = 2e-5
 
 
 def time_issues(cell: Cell, planned: Planned, text: ReadMoves) -> list[Issue]:
-    """Times against the planned speed: each move to what its digits allow, and each bead as a whole.
+    """Compare times with the planned speed: each move within its digits, and each bead as a whole.
 
-    The first move of all starts from a place the program does not know: it goes at its own share of the axes' speeds, or
-    takes its own time.
+    The first move starts from an unknown position: it uses its own share of the axes' speeds, or
+    its own time.
     """
     timed = np.arange(len(text.duration)) > 0
     step = np.linalg.norm(np.diff(planned.position, axis=0, prepend=planned.position[:1]), axis=1)
@@ -85,7 +85,9 @@ def time_issues(cell: Cell, planned: Planned, text: ReadMoves) -> list[Issue]:
 
 
 def owed(expected: Array) -> Array:
-    """(n,) s that moves of `expected` (n,) s may be shorter because others beside them want less than a millisecond."""
+    """Return how much shorter (n,) moves of `expected` (n,) s may be, s, as their neighbours take
+    less than a millisecond.
+    """
     debt = np.zeros((2, len(expected) + 1))
     for row, seconds in zip(debt, (expected, expected[::-1])):
         row[1:] = np.cumsum(MILLISECOND - np.minimum(np.nan_to_num(seconds), TENTH))
@@ -96,9 +98,12 @@ def owed(expected: Array) -> Array:
 def _share_times(
     cell: Cell, planned: Planned, text: ReadMoves, share: Array, expected: Array
 ) -> tuple[Array, Array, Mask]:
-    """(n,) s of moves in which the fastest axis runs at a share of its largest speed, what the digits allow, and which
-    may take another time than is wanted, being too short to tell or no longer at the least share there is; from the joint
-    values of the text, where it has them."""
+    """Return the times (n,) of moves with the fastest axis at a share of its largest speed, their
+    tolerance, and exceptions.
+
+    The joint values of the text give the times, if it has them. The exceptions may take another
+    time: they are too short to express, or already use the least share.
+    """
     controller_values = cell.machine.to_controller(planned.joints)
     if text.joints is not None:
         controller_values = np.where(np.isnan(text.joints), controller_values, text.joints)
@@ -121,9 +126,9 @@ def _share_times(
 THOUSANDTH = 0.0011
 # of rounded corners, where a controller grades them
 LEVELS = 8
-# of the shorter way beside a point, the largest blend radius there
+# of the shorter segment at a point, the largest blend radius there
 BLEND_SHARE = 0.4
-# rad: where an axis stands this near to half a turn, either number of turns is right
+# rad: near half a turn, within this angle, either number of turns is right
 HALF_TURN = np.radians(0.001)
 
 
@@ -183,8 +188,11 @@ def _rounded_otherwise(cell: Cell, planned: Planned, program: Program, text: Rea
 
 
 def _blended_otherwise(cell: Cell, planned: Planned, program: Program, text: ReadMoves) -> Mask:
-    """The same of a text with blend radii: in percent of BLEND_SHARE of the shorter way that the text's tool goes beside the
-    point, so that those of neighbours never meet."""
+    """Check a text with blend radii in the same way.
+
+    The radius is in percent of BLEND_SHARE of the shorter segment at the point, along the path of
+    the text's tool, so that neighbouring blends never meet.
+    """
     assert text.blend_radius is not None and text.tool is not None
     tip = np.empty_like(planned.position)
     for rows in pieces(np.arange(len(tip))):

@@ -16,8 +16,11 @@ from ..points import Points
 
 
 def along_beads(arm: SerialArm, flange: Array, branch: int, points: Points) -> Array:
-    """Joints (R, T, axes) for flange poses (R, T, 4, 4), followed from the first point of each bead, which has the least
-    singular solution. NaN where none bears the words."""
+    """Return joints (R, T, axes) for flange poses (R, T, 4, 4), followed from the first point of
+    each bead.
+
+    The first point takes the least singular solution. NaN if no solution has the configuration.
+    """
     found, several = _bearing(arm, flange, branch)
     joints: Array = found[0]
     if not several:
