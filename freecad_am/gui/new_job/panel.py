@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of a new job: what is selected, how that is understood, machine and name; everything else at its default."""
+"""The panel of a new job: selection, its interpretation, machine and name; all else has defaults."""
 
 from __future__ import annotations
 
@@ -56,9 +56,8 @@ from .proposal import (
 
 
 def left_out(job: JobProposal, width: float) -> Callable[[], tuple[Issue, ...]]:
-    """The work, which touches no document, that finds what of the part would not be deposited as it is understood, by beads
-    of a width, mm.
-    What refuses the job is told by who makes it."""
+    """Return a function that finds the regions missed by beads of a width, mm; it touches no document.
+    Errors of the job are reported when it is made."""
     snapshots, ground = [snapshot_of(pick.obj) for pick in job.parts], job.ground
     names = job.parts[0].names
     is_same_object = ground is not None and ground.obj == job.parts[0].obj
@@ -103,8 +102,8 @@ def _balance(
 
 
 def arguments(job: JobProposal, machine: str, is_chosen: bool) -> dict[str, str]:
-    """Keywords and their values as text, of what was proposed, or asked for, for a machine or a saved cell. Where curved
-    layers that were proposed cannot be carried out planes are laid, as in jobs with `kind: auto`."""
+    """Return keywords and values as text for a proposed or chosen job, with a machine or a saved cell. If proposed
+    curved layers are infeasible, planes are used, as in jobs with `kind: auto`."""
     pick = job.parts[0]
     keywords = {"source": recorded.reference(pick.obj)}
     if job.kind != REVOLUTION:
@@ -133,7 +132,7 @@ def arguments(job: JobProposal, machine: str, is_chosen: bool) -> dict[str, str]
 
 
 def _solid_arguments(job: JobProposal) -> dict[str, str]:
-    """Solids and what they stand on, which may be one with them, as a macro says it."""
+    """Return the solids and their base, which may be the same object, as macro arguments."""
     source, *further = (pick.obj for pick in job.parts)
     keywords, ground = {}, job.ground
     if further:
@@ -162,9 +161,7 @@ def setup(document: Any, name: str) -> str:
 
 
 FILLED = (SOLID, DEVELOPABLE, CLADDING)  # families whose beads have a spacing
-WIDEST_LABEL = (
-    70  # pixels; with wider ones the choice of the set-up makes it wider than what is seen of it
-)
+WIDEST_LABEL = 70  # pixels; with a wider label the setup box exceeds the panel
 
 
 class JobPanel:
@@ -226,7 +223,7 @@ class JobPanel:
             *((size.heading, size.widget) for size in self.sizes.of_job.values()),
         )
         notes = {widget: self.fold.add(text, widget) for text, widget in rows}
-        # under the fields, by what errors call what is entered there
+        # notes under the fields, by the location of errors
         self.notes = {
             "cell.machine": notes[self.machine],
             self.name.where: notes[self.name.widget],
@@ -282,7 +279,7 @@ class JobPanel:
     setSelection = removeSelection = clearSelection = addSelection
 
     def _take(self) -> None:
-        """Take what is selected now; nothing selected leaves what there is."""
+        """Take the selection; an empty one changes nothing."""
         if not self.is_open:
             return
         try:
@@ -311,11 +308,11 @@ class JobPanel:
     def _judge_anew(self, *_: Any) -> None:
         """Beads of another width may suit another family, and leave out something else."""
         if self.is_open and self.picks and self.sizes.bead_width() != self.width:
-            with contextlib.suppress(ReferenceError):  # told when the job is made
+            with contextlib.suppress(ReferenceError):  # reported when the job is made
                 self._understand()
 
     def _understand(self) -> None:
-        """Find out what the picks mean, beside the window where it may take long."""
+        """Interpret the picks, in the background if it may take long."""
         self.background.cancel()
         self.width = self.sizes.bead_width()
         try:
@@ -342,11 +339,11 @@ class JobPanel:
             pass
 
     def _understood(self, job: JobProposal) -> None:
-        """Show it, and find out what of the part would be left out."""
+        """Show the interpretation and find the missed regions."""
         self.found = job
         self._show()
         if job.parts and not job.missing:
-            with contextlib.suppress(AmError):  # told when the job is made
+            with contextlib.suppress(AmError):  # reported when the job is made
                 self.background.start(
                     left_out(job, self.sizes.bead_width()), self._look_at_left_out
                 )
@@ -362,7 +359,7 @@ class JobPanel:
         self.left_out.setVisible(bool(issues))
 
     def _show(self) -> None:
-        """Show how the selection is understood, and what is missing."""
+        """Show the interpretation of the selection and missing inputs."""
         self._tell_left_out(())
         job = self.found
         if job.kind:
@@ -397,17 +394,17 @@ class JobPanel:
             self.name.of(job.parts[0].obj.Label)
 
     def say(self, text: str) -> None:
-        """Show what is wrong."""
+        """Show an error."""
         self.error.setText(text)
         self.error.setVisible(bool(text))
 
     def _show_note(self, key: str, text: str) -> None:
-        """What is wrong with a field, under it."""
+        """Show a problem under its field."""
         self.notes[key].setText(text)
         self.notes[key].setVisible(bool(text))
 
     def _entered_anew(self, *_: Any) -> None:
-        """What was wrong is no longer there; a machine without a post is told now, not when all is planned."""
+        """Clear the notes; report a machine without a post now, not after planning."""
         for key in self.notes:
             self._show_note(key, "")
         name = choices.entered(self.machine)
@@ -458,7 +455,7 @@ class JobPanel:
         return False
 
     def _wait(self) -> None:
-        """Wait for what is still to be found out about the selection."""
+        """Wait until the selection is interpreted."""
         worker = self.background.worker
         if worker is not None:
             carry_out(worker.ended.wait, tr("New job"))
@@ -476,7 +473,7 @@ class JobPanel:
         return True
 
     def close(self, *_: Any) -> None:
-        """Look at the selection no more; once or more often."""
+        """Stop observing the selection; may be called repeatedly."""
         if self.is_open:
             self.is_open = False
             Gui.Selection.removeObserver(self)

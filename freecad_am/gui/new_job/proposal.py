@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What each of the objects selected is for in a new job, and the family and layers that suit them: those of `kind: auto`."""
+"""The role of each selected object in a new job, and suitable family and layers: those of `kind: auto`."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ LEANING = "max_from_vertical"
 
 
 def label(name: str) -> Any:
-    """A text that is hidden until there is something to tell."""
+    """Create a label that is hidden until it has a text."""
     text = WrappedLabel()
     text.setObjectName(name)
     text.hide()
@@ -46,7 +46,7 @@ def label(name: str) -> Any:
 
 
 def pick_line(name: str, help: str) -> Any:
-    """What was clicked, by name."""
+    """Create a read-only line for the names of clicked objects."""
     line = QtGui.QLineEdit()
     line.setObjectName(name)
     line.setReadOnly(True)
@@ -57,7 +57,7 @@ def pick_line(name: str, help: str) -> Any:
 
 
 def machines(selected: str, doc: Any) -> Any:
-    """The machines there are, one of them chosen, and the saved cells, first."""
+    """Create the list of saved cells and machines, with one selected."""
     machine = QtGui.QComboBox()
     machine.setObjectName("Machine")
     machine.setToolTip(
@@ -71,7 +71,7 @@ def machines(selected: str, doc: Any) -> Any:
 
 
 class JobName:
-    """The name of the program: of what is deposited, as the controller takes it, until another one is typed."""
+    """The program name: derived from the deposited part for the controller until the user types one."""
 
     where = "name"  # as errors call it
 
@@ -82,12 +82,13 @@ class JobName:
         self.asked: tuple[str, str] | None = None  # machine and set-up that the post is of
 
     def of(self, label: str) -> None:
-        """Name it after what has a label."""
+        """Derive the name from a label."""
         self.label = label
         self._propose()
 
     def follow(self, machine: str, setup: str) -> str:
-        """Propose one for a machine or saved cell; why its controller refuses what is entered, '' where it does not."""
+        """Propose a name for a machine or saved cell; return why its controller rejects the entry, '' if it does
+        not."""
         if self.asked != (machine, setup):
             self.asked, self.post = (machine, setup), suggestions.post_of_job(machine, setup)
             self._propose()
@@ -132,7 +133,7 @@ class HowItStands:
             self.setup.setCurrentIndex(index)
 
     def chosen(self) -> str:
-        """The set-up that was chosen, '' where it is the usual one, or there is none to choose."""
+        """Return the chosen setup, '' for the default or without a choice."""
         return (
             str(self.setup.currentData())
             if self.setup.isEnabled() and self.setup.currentIndex()
@@ -164,7 +165,7 @@ class FittedLength:
 
     @property
     def value(self) -> Any:
-        """What is entered, in outer units, or an expression; None where the field is empty. InputError."""
+        """Return the entry in outer units or as an expression; None for an empty field. InputError."""
         return self.quantity.read() if self.quantity.line.text().strip() else None
 
 
@@ -216,12 +217,12 @@ def _row(section: type, key: str) -> Row:
     return next(row for row in rows(section) if row.key == key)
 
 
-LOOK_AT = (ARM_NEAR, LOW_MARGIN)  # notes that are told with the result
-SHOWN_MS = 15000  # ms that the next step is told on the status bar
+LOOK_AT = (ARM_NEAR, LOW_MARGIN)  # codes of notes shown with the result
+SHOWN_MS = 15000  # ms that the status bar shows the next step
 
 
 def tell_next(stages: list[Any], proposed: str = "") -> None:
-    """Show the whole result, and tell what came of it and what can be done next. proposed: layers, where some were."""
+    """Show the result with its status and the next steps. proposed: proposed layers, if any."""
     wrong = next((obj for obj in stages if obj.Status != UP_TO_DATE), None)
     if wrong is not None:
         # why is in the report view already
@@ -266,14 +267,14 @@ def tell_next(stages: list[Any], proposed: str = "") -> None:
 
 
 def show_alone(stages: list[Any]) -> None:
-    """Hide what earlier jobs of the document have drawn: their cells and paths would lie across those of this one."""
+    """Hide cells and paths of earlier jobs, which would overlap those of this one."""
     for obj in api.stages_of(stages[0].Document) if stages else []:
         if obj not in stages and obj.ViewObject.Visibility:
             obj.ViewObject.Visibility = False
 
 
 def show_machine(stages: list[Any], is_setup_chosen: bool) -> None:
-    """Show the robot at the job where its set-up was asked for, and tell which positioner was put there."""
+    """Show the robot if its setup was chosen, and report the proposed positioner."""
     cell = next((obj for obj in stages if obj.Proxy.kind == "cell"), None)
     if cell is None or not is_setup_chosen:
         return
@@ -308,8 +309,8 @@ CLADDING = "cladding"
 
 @dataclass(frozen=True)
 class JobProposal:
-    """A family, why it, what is deposited, and what it grows on. missing: what to select besides, '' for nothing. layers: of
-    solids. mend: mm across of the largest hole that has to be closed for it, 0 for the usual one."""
+    """A family, its reason, the deposited parts and their ground. missing: inputs still to select, '' for none.
+    layers: for solids. mend: size of the largest hole to close, mm, 0 for the default."""
 
     kind: str
     reason: str
@@ -326,8 +327,8 @@ class JobProposal:
 
 
 def proposal(picks: Sequence[Pick], width: float) -> Callable[[], JobProposal]:
-    """The work, which touches no document, that finds out what picks mean, for beads of a width, mm. InputError NO_SHAPE; of the work FAULTY,
-    NO_FACES."""
+    """Return a function that interprets picks for beads of a width, mm, without touching the document. Raises
+    InputError NO_SHAPE; the function raises FAULTY, NO_FACES."""
     pairs = [(pick, _copy_shape(pick)) for pick in picks]
     if len(pairs) == 1:
         return lambda: _propose_for_one(*pairs[0], width)
@@ -392,7 +393,7 @@ def as_kind(choice: str, picks: Sequence[Pick], reason: str) -> JobProposal:
 
 
 def taken_whole(job: JobProposal, picks: Sequence[Pick]) -> str:
-    """That all of an object is deposited of which one face was clicked; '' where none was."""
+    """Return a note that one clicked face selects the whole object; '' if it does not apply."""
     clicked = {pick.obj.Name for pick in picks if len(picking.pick_of_faces(pick).names) == 1}
     for target in job.parts:
         if job.kind != DEVELOPABLE and not target.names and target.obj.Name in clicked:
@@ -420,7 +421,7 @@ def _propose_for_one(pick: Pick, snapshot: Taken, width: float) -> JobProposal:
 
 
 def _propose_for_several(pairs: Sequence[tuple[Pick, Taken]], width: float) -> JobProposal:
-    """By what stands on what, their number, and the faces picked."""
+    """Propose from contacts between the objects, their number and the picked faces."""
     picks = [pick for pick, _ in pairs]
     faced = [pair for pair in pairs if picking.pick_of_faces(pair[0]).names]
     for ground, hub in (*faced, *(pair for pair in reversed(pairs) if pair not in faced)):
@@ -462,14 +463,14 @@ def _as_proposed(result: Proposal, picks: tuple[Pick, ...], ground: Pick | None)
 
 
 def _ground_missing(wall: Pick, ground: Pick | None) -> str:
-    """What a wall lacks; a mesh may stand on the platform."""
+    """Return what a wall lacks; a mesh may start on the platform."""
     if ground is not None or picking.is_mesh(wall.obj):
         return ""
     return tr("Select also, with Ctrl, the part it grows on.")
 
 
 def _deposit_pick(pick: Pick, snapshot: Taken) -> Pick:
-    """What is to be deposited of what was clicked: several edges, several faces, or all of it."""
+    """Return the clicked geometry to deposit: several edges, several faces or the whole object."""
     if snapshot.shape is None:
         return Pick(pick.obj)
     if not snapshot.shape.Faces or sum(name.startswith(picking.EDGE) for name in pick.names) > 1:
@@ -479,11 +480,11 @@ def _deposit_pick(pick: Pick, snapshot: Taken) -> Pick:
 
 
 def _several_elements(pick: Pick) -> Pick:
-    """A pick with edges and faces as they were clicked; a lone one stands for the whole."""
+    """Return the pick with its elements; a single one means the whole object."""
     return pick if len(pick.names) > 1 else Pick(pick.obj)
 
 
 def _copy_shape(pick: Pick) -> Taken:
-    """What an object is now; a copy, as the window draws the original, maybe at the very moment it is looked at."""
+    """Return a copy of an object's shape; the window may draw the original at the same time."""
     snapshot = snapshot_of(pick.obj)
     return snapshot if snapshot.shape is None else Taken(snapshot.label, snapshot.shape.copy(False))

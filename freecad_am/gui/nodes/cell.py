@@ -61,10 +61,10 @@ def plain_links(machine: Machine, platform: float, torch: float) -> Links:
 
 
 class MachineNodes:
-    """The links of a machine, in the frame of what they are posed in.
+    """Nodes of a machine's links, in the frame of their poses.
 
-    solids: as of `plain_links`. meshes: of the files a user gave the links, where they are read already. One that cannot be
-    read is told on the report view, once.
+    solids: as of `plain_links`. meshes: of the files a user gave the links, where they are read already. Unreadable
+    files are reported once in the report view.
     """
 
     def __init__(self, machine: Machine, solids: Links, meshes: Sequence[Mesh | None] = ()) -> None:
@@ -139,7 +139,7 @@ def solid_node(solid: Solid) -> Any:
 
 
 def _drawn_mesh(shape: LinkShape) -> Mesh | None:
-    """The mesh of a user's file that is to be drawn; None when it cannot be read, which is told on the report view."""
+    """Return the mesh of a user's file; report an unreadable file in the report view and return None."""
     try:
         return mesh_of(shape)
     except InputError as error:
@@ -177,7 +177,7 @@ STANDING, CARRYING, MOVING = (0.36, 0.39, 0.43), (0.66, 0.68, 0.71), (0.5, 0.53,
 
 
 class ExternalLinkNodes:
-    """The links, in the frame of what they are posed in."""
+    """Nodes of external links, in the frame of their poses."""
 
     def __init__(self, links: Sequence[ExternalLink]) -> None:
         self.node = coin.SoSeparator()
@@ -222,9 +222,9 @@ def _colour(link: ExternalLink) -> tuple[float, float, float]:
 
 
 _LEAST_THICKNESS = 1.0
-_BODY = 2.5  # where the body of a nozzle that stands still ends, in lengths of the nozzle
+_BODY = 2.5  # end of the body of a fixed nozzle, in nozzle lengths
 _REACHED = 1.0  # mm from where the nozzle should be; check poses of machine files may be rounded by half of it
-_GHOST = 0.55  # how transparent a machine is that nothing but shows what is entered
+_GHOST = 0.55  # transparency of a machine that only previews entries
 PLATFORM, NOZZLE = ((0.55, 0.58, 0.62), 0.2), ((0.8, 0.82, 0.85), 0.0)
 
 
@@ -315,7 +315,7 @@ def _standing(cell: Cell, joints: Array, point: Array, solids: Links) -> tuple[A
 
 
 def resting_point(toolpath: Toolpath | None, mount: Array) -> Array:
-    """(3,) where the nozzle stands at rest: on the highest point of the toolpath, or on the platform without one."""
+    """Return the nozzle position (3,) at rest: the highest point of the toolpath, else the platform."""
     if toolpath is None:
         return np.asarray(mount[:3, 3])
     points = np.concatenate([bead.points for _, _, bead in toolpath])
@@ -372,7 +372,7 @@ class CellNodes:
             move(self.standing.matrix, pose)
 
     def _set_machine(self, value: CellParameters, rest_pose: Rest | None) -> None:
-        """Pose the machine; its nodes are made anew only where it is to look otherwise."""
+        """Pose the machine; rebuild its nodes only if its appearance changed."""
         looks = () if rest_pose is None else _looks(value, rest_pose)
         if rest_pose is None or looks != self.looks:
             self.links.removeAllChildren()
@@ -406,7 +406,7 @@ def _looks(value: CellParameters, rest_pose: Rest) -> tuple[Any, ...]:
 
 
 def _seen_through() -> Any:
-    """The node that makes what follows transparent, and leaves its colours."""
+    """Create a node that makes the following nodes transparent and keeps their colours."""
     material = coin.SoMaterial()
     for channel in (
         material.ambientColor,
@@ -455,7 +455,7 @@ def nozzle_node(value: CellParameters) -> Any:
 
 
 def torch_seen(value: CellParameters) -> Torch | None:
-    """The torch, in the frame of its tip; None without one, or where it is refused, which is told at its field."""
+    """Return the torch in the frame of its tip; None without one or if it is rejected, which its field reports."""
     try:
         return torch_of(value)
     except InputError:

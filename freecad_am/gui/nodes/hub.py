@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids in the 3D view: the cylinders, cones or plane they grow on, the guide of their layers,
-and the contours of the first of these."""
+"""Solids in the 3D view: their base cylinders, cones or plane, the guide and the first layer's contours."""
 
 from __future__ import annotations
 
@@ -65,7 +64,7 @@ NOTHING = Drawing([], np.zeros((0, 3)), np.zeros((0, 3), int), [])
 
 
 def drawing(solids: SolidsOnHub) -> Drawing:
-    """What is drawn of solids, made without the window. InputError OPEN_MESH."""
+    """Return the drawing of solids, computed without the window. InputError OPEN_MESH."""
     contours = [first_contours(group, solids.chord_error) for group in solids.groups]
     bases = [
         _base(group, [contour for solid in curves for contour in solid])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Planned beads in the 3D view, coloured by how near the machine comes to what it cannot do, with a legend."""
+"""Planned beads in the 3D view, coloured by the distance to the machine's limits, with a legend."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _NOTHING = np.zeros((0, 3))
 
 
 class JointPathNodes:
-    """Draws beads as lines, nothing at first. Clicks go through all of it."""
+    """Draws beads as lines, initially nothing. Clicks pass through."""
 
     def __init__(self) -> None:
         self.lines, self.lost, self.legend = Lines(3.0), Points(7.0, UNREACHABLE), Legend()

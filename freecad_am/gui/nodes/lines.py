@@ -79,7 +79,7 @@ class Points:
         self.node = coin.SoSeparator()
         for child in (unshaded(), style, material, self.coordinates, self.set_node):
             self.node.addChild(child)
-        self.set([])  # Coin has one at the origin by itself
+        self.set([])  # Coin starts with a point at the origin
 
     def set(self, points: Any) -> None:
         """points (n, 3)."""
@@ -89,7 +89,7 @@ class Points:
 
 
 class Faces:
-    """Triangles of one colour that shows what is behind, a little in front of the same faces of a body."""
+    """Translucent triangles of one colour, slightly in front of the same faces of a body."""
 
     def __init__(self, colour: Sequence[float], transparency: float) -> None:
         self.node = coin.SoSwitch()
@@ -206,7 +206,7 @@ class MeridianNodes:
         self.show(True)
 
     def show(self, visible: bool) -> None:
-        """Show or hide all of it."""
+        """Show or hide the nodes."""
         self.switch.whichChild = coin.SO_SWITCH_ALL if visible else coin.SO_SWITCH_NONE
 
     def clear(self) -> None:
@@ -215,7 +215,7 @@ class MeridianNodes:
             lines.set(_NOTHING, [])
 
     def set_wall(self, wall: RevolvedWall) -> None:
-        """Meridian and axis, which stands out at both ends."""
+        """Meridian and axis; the axis protrudes at both ends."""
         radius, height = wall.meridian.points.T
         points = wall.points(radius, height, np.full(len(radius), wall.start))
         low, high = float(height.min()), float(height.max())

@@ -52,7 +52,7 @@ class WallNodes:
         self.show(True)
 
     def show(self, visible: bool) -> None:
-        """Show or hide all of it."""
+        """Show or hide the nodes."""
         self.switch.whichChild = coin.SO_SWITCH_ALL if visible else coin.SO_SWITCH_NONE
 
     def set_first(self, curves: Sequence[Array]) -> None:
@@ -71,7 +71,7 @@ class WallNodes:
 
 
 def unpickable() -> Any:
-    """The node that lets clicks through to what is behind."""
+    """Create a node that passes clicks to objects behind."""
     style = coin.SoPickStyle()
     style.style = coin.SoPickStyle.UNPICKABLE
     return style

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How a machine stands at rest, as the panel of a cell tells it."""
+"""Describe a machine at rest for the cell panel."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..texts.in_language import tr
 
 
 def stands(rest_pose: Rest) -> str:
-    """What is told of a machine at rest: its title, and what is nearest to its limit."""
+    """Return the text for a machine at rest: its title and the axis nearest to its limit."""
     if not rest_pose.machine.free:
         return tr("{} at rest, revolute axes at 0").format(rest_pose.machine.title)
     if not rest_pose.reached:

@@ -49,7 +49,7 @@ class CellPanel(ProposingPanel):
     lines = 4
 
     def __init__(self, obj: Any = None) -> None:
-        self.unknown = ""  # what was wrong with its name
+        self.unknown = ""  # the message about its name
         self.aside = Aside()
         super().__init__(tr("Cell") if obj is None else obj.Label, obj, CellNodes(ghost=True))
         self._add_machine_box()
@@ -76,8 +76,8 @@ class CellPanel(ProposingPanel):
     # ---- what the machine asks for
 
     def _follow(self) -> None:
-        """Fit the fields to the machine; those of an unknown one stay as they are."""
-        with contextlib.suppress(InputError):  # which the preview tells
+        """Fit the fields to the machine; leave them unchanged for an unknown one."""
+        with contextlib.suppress(InputError):  # the preview reports it
             names = whole_cell(self._holds(MACHINE), self._holds(EXTERNAL))
             if names is not None:
                 self._widget(MACHINE).setEditText(names[0])
@@ -96,8 +96,8 @@ class CellPanel(ProposingPanel):
         self._ask_proposal(name, machine)
 
     def _fit(self, machine: Machine) -> None:
-        """Leave out what has no meaning for the machine, or with what the robot carries: beside it a part stands on its
-        deposition point, or on the platform of a positioner."""
+        """Hide fields without meaning for the machine or its setup: a part the robot does not carry is at the
+        deposition point or on a positioner's platform."""
         if not machine.free:
             without: tuple[str, ...] = OF_ROBOTS
         elif arrangement_of(self._widget(SETUP).currentData()).carries_part:
@@ -107,7 +107,7 @@ class CellPanel(ProposingPanel):
         self.leave_out(without, also_entered=True)
 
     def _tell_of_machine(self, text: str) -> None:
-        """What is wrong with the machine, until another one is followed."""
+        """Show a problem of the machine until the panel follows another one."""
         self.unknown = text
         self.show_note(MACHINE, text)
 
@@ -117,7 +117,7 @@ class CellPanel(ProposingPanel):
             setup.setCurrentIndex(setup.findData(possible[0]))
 
     def _offer_limits(self, names: list[str]) -> None:
-        """Let those limits be chosen that the machine has; what is entered stays."""
+        """Offer the limit sets of the machine; keep the entry."""
         limits = self._widget("cell_limits")
         text = limits.currentText()
         limits.clear()
@@ -170,7 +170,7 @@ class CellPanel(ProposingPanel):
         )
 
     def _locate(self, error: AmError) -> tuple[str, str]:
-        """What is wrong with the file of a machine is told under its name."""
+        """Show a problem of a machine file under the machine's name."""
         return (
             (MACHINE, translated(error.message))
             if error.code == "BAD_MACHINE"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of a joint path: some points of it are planned as it is entered, and tell what will come of it."""
+"""The panel of a joint path; it plans a sample of points during input and reports the result."""
 
 from __future__ import annotations
 
@@ -82,8 +82,8 @@ class JointPathPanel(PreviewPanel):
         )
 
     def _fit(self, *_: Any) -> None:
-        """Leave out what has no meaning for the machine of the cell, or with the method."""
-        with contextlib.suppress(InputError, ReferenceError):  # told by the preview
+        """Hide fields without meaning for the cell's machine or the method."""
+        with contextlib.suppress(InputError, ReferenceError):  # the preview reports it
             cell = self._cell().value()
             if cell is None:
                 return
@@ -125,7 +125,7 @@ class JointPathPanel(PreviewPanel):
         )
 
     def _colouring(self, judgement: Judgement) -> str:
-        """What the object's own view tells by its colours, if that is of the machine and known."""
+        """Return the colouring of the object's view if it is a known machine quantity."""
         kind = MARGIN if self.obj is None else self.obj.ViewObject.Colouring
         kinds = (MARGIN, RATIO) if judgement.worst_condition is None else (MARGIN, CONDITION, RATIO)
         return kind if kind in kinds else MARGIN
@@ -135,7 +135,7 @@ class JointPathPanel(PreviewPanel):
         self.aside.put(self.obj)
 
     def _show_own(self, visible: bool) -> None:
-        """What else stands back for the preview goes on doing so until the panel closes."""
+        """Show or hide the object; other objects hidden for the preview stay hidden until the panel closes."""
         hidden_objects = (
             [] if visible else [obj for obj in self.aside.objects if obj is not self.obj]
         )
@@ -182,7 +182,8 @@ def _feasibility_lines(trial: Trial) -> list[str]:
 
 
 def _issue_text(issue: Issue, is_complete: bool) -> str:
-    """A finding with its place: of some points alone it is the layer, whose beads and points have other numbers."""
+    """Return an issue with its location: for a sample only the layer, because its beads and points have other
+    numbers."""
     placed = issue if is_complete else replace(issue, bead=None, point=None)
     return (
         tr("{}: {}").format(translated(placed.where), translated(issue.message))
@@ -192,7 +193,7 @@ def _issue_text(issue: Issue, is_complete: bool) -> str:
 
 
 def _figures(judgement: Judgement) -> list[str]:
-    """What is least and most; machines with rotary axes have no condition, and what is out of reach nothing."""
+    """Return the extremes as text. Machines with rotary axes have no condition, unreachable points no figures."""
     figures = (
         (tr("Smallest joint margin: {:.1f} %, of {} in layer {}"), judgement.worst_margin, 100.0),
         (tr("Least condition: {0:.3f}, in layer {2}"), judgement.worst_condition, 1.0),
@@ -210,7 +211,7 @@ def _figures(judgement: Judgement) -> list[str]:
 
 
 def _looked_at(sample: Sampled) -> str:
-    """Of what this is the preview, and what is left to OK."""
+    """Return how many points the preview covers and that OK plans the rest."""
     if sample.is_complete:
         return tr("Preview of all points; OK also checks the rapids.")
     if sample.beads == 1:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is wrong with what is entered in a panel, told under the field it belongs to, else at the top."""
+"""Show problems of a panel's entries under their fields, else at the top."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from ..widgets.upright import scroll_areas_of
 class Noted:
     """Fields with a note under each; a panel has them filled in."""
 
-    draft = ""  # the name in errors of what is not made yet
+    draft = ""  # name of an object to be created, in errors
     proxy: type[Stage]
     choices: Sequence[Input]
     obj: Any
@@ -34,7 +34,7 @@ class Noted:
     messages: Messages
     error: Any  # at the top
     heading: Any  # of the inputs
-    marked: dict[str, str]  # places with an error of OK or Apply, and what was entered there
+    marked: dict[str, str]  # keys with an error from OK or Apply, and their entries
     remarks: dict[str, str]  # those with what an expression gives or is wrong as typed, and that
     notes: dict[str, Any]  # under the fields, by the label of an input or the place of a parameter
     places: dict[
@@ -42,13 +42,13 @@ class Noted:
     ]  # by the name that errors give a parameter: field, how it is called
 
     def say(self, text: str) -> None:
-        """Show what is wrong."""
+        """Show an error at the top."""
         self.error.setText(text)
         self.error.setVisible(bool(text))
         self.messages.to_top()
 
     def show_note(self, key: str, text: str, wrong: bool = True) -> None:
-        """Something about a field, under it; '' for nothing any more."""
+        """Show a note under a field; '' hides it."""
         note = self.notes[key]
         set_role(note, INVALID if wrong else PLAIN)
         note.setText(text)
@@ -67,7 +67,7 @@ class Noted:
         QtCore.QTimer.singleShot(0, lambda: _bring_into_sight(self.form, self.notes.get(key)))
 
     def _locate(self, error: AmError) -> tuple[str, str]:
-        """The place among the notes that an error belongs to, '' for none, and what to say there."""
+        """Return the key of the note for an error, '' for none, and its text."""
         error_key, names = error.where.replace(".", "_"), self._names()
         for key, (field, _, _) in self.places.items():
             if key == error_key or error.where in [f"{name}.{field.row.name}" for name in names]:
@@ -91,7 +91,7 @@ class Noted:
         ]
 
     def leave_out(self, keys: Collection[str], also_entered: bool = False) -> None:
-        """Show all fields but some that mean nothing now; those that hold something all the same only where it is said."""
+        """Show all fields except `keys`. A field with an entry stays visible unless `also_entered`."""
         for key, (field, _, fold) in self.places.items():
             default = field.row.outer(
                 field.row.default
@@ -101,7 +101,7 @@ class Noted:
             fold.show(field.widget, key not in keys or holds)
 
     def _unfolded(self, key: str) -> Any:
-        """The widget of a place, its part of the panel unfolded."""
+        """Unfold the section of a key and return its widget."""
         if key in self.places:
             field, _, fold = self.places[key]
             fold.show(field.widget, True)
@@ -111,7 +111,7 @@ class Noted:
         return next(choice.widget for choice in self.choices if choice.label == key)
 
     def _entry(self, key: str) -> str:
-        """What is entered at a place, to be compared."""
+        """Return the entry of a key for comparison."""
         try:
             if key in self.places:
                 return repr(self.places[key][0].value)
@@ -121,7 +121,7 @@ class Noted:
             return error.message
 
     def judge_entries(self) -> None:
-        """Tell under each field what its expression gives or is wrong as typed; an error of OK goes with its entry."""
+        """Show the value or problem of each expression under its field; clear errors of changed entries."""
         for key, entry in list(self.marked.items()):
             if self._entry(key) != entry:
                 del self.marked[key]
@@ -136,7 +136,7 @@ class Noted:
                     self.show_note(key, "")
 
     def _judge_field(self, field: fields.Field) -> tuple[str, bool] | None:
-        """What the expression in a field gives, or what is wrong with what it holds; None where there is nothing to tell."""
+        """Return the value of a field's expression or the problem of its entry; None without either."""
         try:
             value = field.value
             if field.row.form not in rows.FOLLOW:

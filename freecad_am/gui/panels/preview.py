@@ -28,13 +28,13 @@ from ..texts.in_language import tr, translated, translated_error
 from ..views.preview import Draft, Preview
 from .stage import CLOSED, StagePanel
 
-LOOK_EVERY = 200  # ms; what has not changed between two looks is previewed
+LOOK_EVERY = 200  # ms; an entry that stays this long is previewed
 SHOWN_AFTER_MS = 400  # ms; when a preview takes longer, that is said
 
 
 class PreviewPanel(StagePanel):
-    """Makes a stage or changes one, and shows it before, in the 3D view by its nodes, where it has any. The document is
-    left alone before OK."""
+    """Panel that creates or changes a stage and previews it in the 3D view if it has nodes. The document changes
+    only on OK."""
 
     stage: type[Stage]
     is_open = True
@@ -45,7 +45,7 @@ class PreviewPanel(StagePanel):
         self.nodes = nodes
         super().__init__(self.stage, title, choices, obj)
         self.seen: Any = None  # the entries at the last look
-        self.shown: Any = None  # those that are previewed
+        self.shown: Any = None  # the previewed entries
         self.blamed: set[str] = set()  # the places that the last preview was refused for
         self.state = self.messages.add("preview", PLAIN)
         self.preview = None if nodes is None else Preview(self.document, nodes.switch)
@@ -60,7 +60,7 @@ class PreviewPanel(StagePanel):
     # ---- what a panel defines
 
     def _lacks(self) -> str:
-        """What is to be entered first, '' for nothing."""
+        """Return which input is missing, '' for none."""
         return next((choice.missing for choice in self.choices if choice.missing), "")
 
     def _links(self) -> dict[str, Any]:
@@ -68,26 +68,26 @@ class PreviewPanel(StagePanel):
         return {choice.link.name: choice.value() for choice in self.choices}
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Any]]:
-        """The work, which leaves the document alone, that makes what is entered, and what is drawn of it. Both raise
+        """Return a function that computes the outcome and its drawing without touching the document. Both raise
         AmError."""
         raise NotImplementedError
 
     def _draw(self, outcome: Outcome, drawing: Any) -> str:
-        """Draw what was computed; what to tell about it."""
+        """Draw the outcome and return its summary."""
         raise NotImplementedError
 
     def _draw_without(self) -> None:
-        """Draw what can be drawn where nothing can be computed."""
+        """Draw without an outcome."""
         raise NotImplementedError
 
     def _show_own(self, visible: bool) -> None:
-        """Show or hide what the object itself draws, which the preview stands for."""
+        """Show or hide the object's own drawing, which the preview replaces."""
         raise NotImplementedError
 
     # ---- preview
 
     def _look(self) -> None:
-        """Preview what is entered once it no longer changes. What is being computed may change inputs: it is waited for."""
+        """Preview the entries once they settle. Wait for a running recompute, which may change inputs."""
         if hooks.carrying():
             return
         try:
@@ -122,15 +122,15 @@ class PreviewPanel(StagePanel):
         return [stage for stage in stages if stage is not None]
 
     def _stale_inputs(self) -> tuple[str, ...]:
-        """The labels of those that are out of date now."""
+        """Return the labels of stale inputs."""
         return tuple(stage.Label for stage in self._stages() if stage.Status == STALE)
 
     def _renew(self) -> None:
-        """Begin to compute what is entered, in place of what was before."""
+        """Start computing the entries; cancel the previous run."""
         self.background.cancel()
         refused = set(self.marked) if self.shown == self.refused else set()
         for key in (self.blamed | set(self.marked)) - refused:
-            # what the entry itself is told stays; that may be of the entry before, while the next one is not judged yet
+            # keep the remark on the entry; it may belong to the previous entry until the next one is judged
             if self.remarks.get(key) != self.notes[key].text():
                 self.show_note(key, "")
         self.blamed.clear()
@@ -154,7 +154,7 @@ class PreviewPanel(StagePanel):
                 self._say(tr("Computing the preview."), False)
 
     def _show_result(self, worker: Worker) -> None:
-        """Show what was computed, or what is wrong."""
+        """Show the result or the error."""
         try:
             outcome, drawing = worker.result()
             self._say(self._draw(outcome, drawing), has_errors(outcome.issues))
@@ -162,7 +162,7 @@ class PreviewPanel(StagePanel):
             self._refuse(error)
         except ReferenceError:
             self.close()
-        except Exception as error:  # of nobody's making; OK would tell it too
+        except Exception as error:  # unexpected; OK would report it too
             self._say(f"{type(error).__name__}: {error}", True)
             self._draw_without()
 
@@ -190,7 +190,7 @@ class PreviewPanel(StagePanel):
         return values
 
     def _say(self, text: str, wrong: bool) -> None:
-        """Tell about the preview."""
+        """Show a message about the preview."""
         set_role(self.state, INVALID if wrong else PLAIN)
         self.state.setText(text)
         self.state.setVisible(bool(text))
@@ -205,7 +205,7 @@ class PreviewPanel(StagePanel):
         return succeeded
 
     def apply(self) -> bool:
-        """Make or change the feature; the preview goes on standing for what it draws."""
+        """Make or change the feature; the preview keeps replacing its drawing."""
         succeeded = super().apply()
         if succeeded:
             self._show_own(False)
@@ -214,16 +214,14 @@ class PreviewPanel(StagePanel):
     def _carry_out(self) -> bool:
         self.background.cancel()
         succeeded = super()._carry_out()
-        self.seen = self.shown = (
-            None  # what was being previewed is begun again, what was made is another one
-        )
+        self.seen = self.shown = None  # the preview restarts; the created object differs
         if not succeeded:
             with contextlib.suppress(ReferenceError):
                 self.refused = self._entered()
         return succeeded
 
     def reject(self) -> bool:
-        """Nothing was done; what was previewed goes."""
+        """Close without a change and remove the preview."""
         self.close()
         return super().reject()
 
@@ -252,7 +250,7 @@ def stale_lines(labels: Sequence[str]) -> list[str]:
 
 
 def coarsened(values: dict[str, Any]) -> dict[str, Any]:
-    """Entries, but for the chord error, which a picture need not keep; a wrong one stays wrong."""
+    """Return the entries. The preview ignores a valid chord error."""
     error = values["ChordError"]
     return (
         {**values, "ChordError": COARSE}
@@ -262,7 +260,7 @@ def coarsened(values: dict[str, Any]) -> dict[str, Any]:
 
 
 class PickPanel(PreviewPanel):
-    """Makes a feature of what is selected, or changes one."""
+    """Panel that creates a feature from the selection, or changes one."""
 
     armed: PickField | None = None  # the one that waits for clicks
 
@@ -270,7 +268,7 @@ class PickPanel(PreviewPanel):
         self.picks = picks
         unclear = self._propose(picking.selected(App.ActiveDocument)) if obj is None else ""
         super().__init__(title, picks, obj, nodes)
-        Gui.Selection.clearSelection()  # or its colour would hide what is previewed
+        Gui.Selection.clearSelection()  # or its colour would hide the preview
         Gui.Selection.addObserver(self)
         self._arm_missing()
         self.say(unclear)
@@ -278,7 +276,7 @@ class PickPanel(PreviewPanel):
     # ---- what a panel defines
 
     def _propose(self, picks: list[picking.Pick]) -> str:
-        """Fill in what the selection tells; what is unclear about it."""
+        """Fill in the selection and return what is unclear."""
         raise NotImplementedError
 
     def _lacking(self) -> PickField | None:
@@ -289,11 +287,11 @@ class PickPanel(PreviewPanel):
         """The input that a click can only mean which the one that waits for it does not take."""
         return None
 
-    def _on_pick(self, field: PickField) -> None:
+    def _handle_pick(self, field: PickField) -> None:
         """Something was picked for an input."""
 
     def _refusal(self, field: PickField, pick: picking.Pick) -> str:
-        """Why an input does not take what was clicked."""
+        """Return why an input rejects a click."""
         raise NotImplementedError
 
     def _link_places(self) -> dict[str, str]:
@@ -314,7 +312,8 @@ class PickPanel(PreviewPanel):
     # ---- picking
 
     def _worth_telling(self, inputs: dict[str, str]) -> dict[str, str]:
-        """Of a new feature the part and whatever else was picked, of one that is changed all inputs: some may be emptied."""
+        """Return the part and other picks of a new feature, or all inputs of an existing one, as some may be
+        cleared."""
         if self.obj is not None:
             return inputs
         return {
@@ -334,7 +333,7 @@ class PickPanel(PreviewPanel):
         self.armed = field if on else (None if self.armed is field else self.armed)
         field.show()
         if on:
-            self._take()  # what is selected already
+            self._take()  # the current selection
 
     def _arm_missing(self) -> None:
         """Wait for the first input that is missing."""
@@ -367,7 +366,7 @@ class PickPanel(PreviewPanel):
             else:
                 self.show_note(field.label, self._refusal(field, pick))
         if picks:
-            self._on_pick(field)
+            self._handle_pick(field)
             Gui.Selection.clearSelection()
             if field.picks and not field.more:
                 for pick_field in self.picks:
@@ -394,7 +393,7 @@ class PickPanel(PreviewPanel):
     # ---- the end
 
     def close(self, *_: Any) -> None:
-        """Take away the preview, and look at clicks no more; once or more often."""
+        """Remove the preview and stop observing clicks; may be called repeatedly."""
         if self.is_open:
             Gui.Selection.removeObserver(self)
         super().close()

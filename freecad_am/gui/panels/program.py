@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of a program: how it begins, and what it is in all, is seen as it is entered."""
+"""The panel of a program; it previews the first lines and the totals."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ POST, MOTION, START, START_LAYER = (
 
 @dataclass(frozen=True)
 class Beginning:
-    """How a program begins. name: of its main file; text: the first lines. lines, files: in all. stale: labels of the inputs
-    that were out of date when it was begun. promises: of its preflight."""
+    """The start of a program. name: main file; text: first lines. lines, files: totals. stale: labels of stale
+    inputs. promises: from its preflight."""
 
     name: str
     text: str
@@ -170,7 +170,7 @@ class ProgramPanel(PreviewPanel):
         """A program draws nothing."""
 
     def _locate(self, error: AmError) -> tuple[str, str]:
-        """Where a program starts is told under the first of its two fields."""
+        """Show an error of the start under the first of its two fields."""
         return (
             (START_LAYER, translated(error.message))
             if error.where == START
@@ -210,7 +210,7 @@ def _lines(beginning: Beginning) -> list[str]:
 
 
 def _part_label() -> str:
-    """What a program is called after: the part that is deposited, that of the selected job first."""
+    """Return the label of the deposited part, preferably of the selected job."""
     for obj in [*job_selection(), *App.ActiveDocument.Objects]:
         if getattr(getattr(obj, "Proxy", None), "kind", "") == "feature" and obj.Source:
             return str(obj.Source[0].Label)

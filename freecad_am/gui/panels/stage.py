@@ -41,7 +41,7 @@ _DELETED_ERRORS = (RuntimeError, ReferenceError, NameError)
 
 
 class Watch:
-    """An observer of documents. It knows the panel by its widget alone: FreeCAD takes that away with the panel."""
+    """Observer of documents. It refers only to the panel's widget, which FreeCAD deletes with the panel."""
 
     def __init__(self) -> None:
         self.form: Any = None
@@ -205,7 +205,7 @@ def show_other(
     previous: dict[str, Any],
     now: dict[str, Any],
 ) -> None:
-    """Show what is another one now than before; what was entered elsewhere stays."""
+    """Show changed values; keep other entries."""
     for key, field in fields:
         if now[key] != previous[key]:
             field.show(now[key])
@@ -221,21 +221,21 @@ def _expression_of(obj: Any, row: Row) -> str:
 
 
 ADVANCED = marked("{}: advanced")
-BUTTON_PADDING = 26  # pixels beside its text
+BUTTON_PADDING = 26  # pixels next to its text
 CLOSED = marked(
     "The document or object in this panel was deleted; cancel and open the panel again."
 )
 
 
 class StagePanel(Noted):
-    """Inputs and parameters of a stage to be made (`obj` None) or changed. Nothing happens before OK or Apply.
+    """Inputs and parameters of a stage to create (`obj` None) or changed. Nothing happens before OK or Apply.
 
-    What is wrong is told under the field it belongs to, else at the top.
+    A problem is shown under its field, else at the top.
     """
 
     icon = function = ""  # where they are not called as the stage's kind is
     lines = 3  # that messages have room for above the fields
-    draft = ""  # the name in errors of what is not made yet
+    draft = ""  # name of an object to be created, in errors
 
     def __init__(
         self, proxy: type[Stage], title: str, choices: Sequence[Input], obj: Any = None
@@ -254,10 +254,8 @@ class StagePanel(Noted):
         self.following = self.messages.add("following", INVALID)
         self.findings = self.messages.add(
             "findings", PLAIN
-        )  # above all fields: some change what is deposited
-        self.marked: dict[
-            str, str
-        ] = {}  # places with an error of OK or Apply, and what was entered there
+        )  # above all fields, because some change the deposit
+        self.marked: dict[str, str] = {}  # keys with an error from OK or Apply, and their entries
         self.remarks: dict[
             str, str
         ] = {}  # those with what an expression gives or is wrong as typed, and that
@@ -292,10 +290,10 @@ class StagePanel(Noted):
         if obj is None and missing:
             self.say(missing[0])
 
-    # ---- what is shown
+    # ---- display
 
     def _watch_entries(self) -> None:
-        """Judge what is entered, now and a moment after it was typed."""
+        """Judge the entries now and shortly after typing."""
         self.later_entries = Later(self.form, self.judge_entries)
         widgets = [
             *(field.widget for field, _, _ in self.places.values()),
@@ -330,7 +328,7 @@ class StagePanel(Noted):
             if current is None and value != row.default:
                 field.differs_from(row.default)
             if row.key in parted and value != row.default:
-                folds[title].heading.setChecked(True)  # what is changed is seen
+                folds[title].heading.setChecked(True)  # show changed fields
             self._mark_driven(field)
             is_direct = group == section.group
             heading = (
@@ -359,7 +357,7 @@ class StagePanel(Noted):
         self.findings.show()
 
     def follow_undo(self) -> None:
-        """Show what undo or redo has changed; what is entered elsewhere, and not applied, stays."""
+        """Show changes of undo and redo; keep entries that are not applied."""
         if self.obj is None:
             return
         if not is_there(self.obj):
@@ -367,7 +365,7 @@ class StagePanel(Noted):
             return
         previous, self.known = self.known, self._entries()
         fields_of = [(name, field) for name, (field, _, _) in self.places.items()]
-        with contextlib.suppress(AmError, ReferenceError):  # an input that is gone is told by OK
+        with contextlib.suppress(AmError, ReferenceError):  # OK reports a deleted input
             stored_inputs, current_inputs = self.first_inputs, self._inputs()
             show_other(fields_of, self.choices, previous, self.known)
             self.first_inputs = {
@@ -400,7 +398,7 @@ class StagePanel(Noted):
         QtCore.QTimer.singleShot(0, lambda: _narrow(box))  # once they have their texts
 
     def clicked(self, button: Any) -> None:
-        """One of them was clicked; OK and Cancel have functions of their own."""
+        """Handle a clicked button; OK and Cancel have their own functions."""
         if _number(button) == _number(QtGui.QDialogButtonBox.Apply):
             self.apply()
 
@@ -409,7 +407,7 @@ class StagePanel(Noted):
         return self._carry_out()
 
     def apply(self) -> bool:
-        """Make or change the stage and keep the panel open, as that of the stage; a step of undo of its own."""
+        """Make or change the stage in one undo step and keep the panel open."""
         old_names = set() if self.obj is not None else {obj.Name for obj in self.document.Objects}
         if not self._carry_out():
             return False
@@ -431,7 +429,7 @@ class StagePanel(Noted):
         return True
 
     def _carry_out(self) -> bool:
-        """Do what is entered, in one step of undo; False where it is refused, which is told."""
+        """Apply the entries in one undo step; on rejection report it and return False."""
         self.say("")
         for key in self.marked:
             self.show_note(key, "")
@@ -443,7 +441,7 @@ class StagePanel(Noted):
                 function = self.function or f"make_{self.proxy.kind.replace(' ', '_')}"
                 recorded.make(self.document, function, {**current_inputs, **changed})
             elif changed or current_inputs != self.first_inputs or is_warned(self.obj):
-                # what is no longer what was chosen is confirmed by OK, where nothing else was entered
+                # OK confirms a replaced input if nothing else was entered
                 inputs = (
                     current_inputs if current_inputs != self.first_inputs or not changed else {}
                 )
@@ -459,7 +457,7 @@ class StagePanel(Noted):
         return False
 
     def _changed(self) -> dict[str, str]:
-        """Arguments of what was changed by keyword. Raises InputError named as a parameter is, not as a field."""
+        """Return the arguments of changed fields by keyword. An InputError names the parameter, not the field."""
         arguments = {}
         for key, (field, _, _) in self.places.items():
             try:

@@ -24,7 +24,7 @@ from .stage import StagePanel
 
 MODEL, WIDTH = "process_bead_model", "process_bead_width"
 NONE = "none"
-SCAN = "substrate_"  # before the names of what is asked about a scan
+SCAN = "substrate_"  # prefix of the parameters of a scan
 
 
 class ToolpathPanel(StagePanel):
@@ -66,7 +66,7 @@ class ToolpathPanel(StagePanel):
         self._fit_to(scan)
 
     def _fit_to(self, scan: Any) -> None:
-        """Leave out what is asked about a scan where there is none."""
+        """Hide the parameters of a scan without a scan."""
         self.leave_out(
             () if scan.value() is not None else {key for key in self.places if key.startswith(SCAN)}
         )
@@ -84,12 +84,12 @@ class ToolpathPanel(StagePanel):
             self.places[MODEL][0].widget.setEditText(path)
 
     def _soon(self, of_model: bool) -> None:
-        """Something was typed: show the fit once no more follows, and scroll to that of another model."""
+        """Show the fit once typing stops, and scroll to it for another model."""
         self.to_be_seen = self.to_be_seen or of_model
         self.later.ask()
 
     def _show_fit(self) -> None:
-        """Plot the model that is entered; what is wrong with its table is told under its field."""
+        """Plot the entered model; show a problem of its table under the field."""
         note, name = self.notes[MODEL], self.places[MODEL][0].value
         note.hide()
         self.plot.hide()
@@ -121,7 +121,7 @@ class ToolpathPanel(StagePanel):
                 area.ensureWidgetVisible(self.fit)
 
     def _width(self) -> float | None:
-        """The width entered; None where it is none."""
+        """Return the entered width; None without one."""
         try:
             width = float(self.places[WIDTH][0].value)
         except InputError:

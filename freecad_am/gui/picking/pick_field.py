@@ -18,7 +18,7 @@ from .picking import EDGE, FACE, Pick, is_mesh
 
 
 def pick_button(text: str, name: str, help: str) -> Any:
-    """A narrow button beside the field of an input."""
+    """Create a narrow button next to the field of an input."""
     button = QtGui.QToolButton()
     button.setText(text)
     button.setObjectName(name)
@@ -73,7 +73,7 @@ class Input:
     places: tuple[str, ...] = ()  # what errors call it, other than by its link
 
     def show_note(self, text: str) -> None:
-        """Something about it; the panel shows it under the widget."""
+        """Show a note under the widget; the panel replaces this method."""
 
     @property
     def missing(self) -> str:
@@ -85,14 +85,14 @@ class Input:
         raise NotImplementedError
 
     def applied(self) -> None:
-        """What is entered is what the document has now."""
+        """Take the entry as the state of the document."""
 
     def stored(self, obj: Any) -> Any:
-        """What a stage in the document has of it."""
+        """Return the input's value of a stage in the document."""
         return getattr(obj, self.link.name)
 
     def show_stored(self, stored: Any) -> None:
-        """Show what a stage in the document has, in place of what is there."""
+        """Replace the entry by the value of a stage in the document."""
         raise NotImplementedError
 
 
@@ -112,8 +112,8 @@ class PickField(Input):
         meshes: bool = False,
         allow_whole: bool = False,
     ) -> None:
-        """element: what of an object is picked, where it is not the whole; meshes: they may be picked all the same;
-        whole: so may an object as a whole in place of its edges."""
+        """element: type of picked elements, '' for whole objects; meshes: accept meshes anyway; allow_whole: accept
+        a whole object in place of its edges."""
         self.link, self.label, self.element = link, label, element
         self.several = link.type_name == _LIST
         self.meshes = meshes or not element
@@ -156,7 +156,7 @@ class PickField(Input):
     # ---- picking
 
     def take(self, pick: Pick) -> bool:
-        """Take what was clicked, or leave it out where it was in already; False for what cannot be taken."""
+        """Add a click, or remove it if already picked; return False if it is rejected."""
         names = tuple(name for name in pick.names if self.element and name.startswith(self.element))
         if (not self.whole and not names) or (is_mesh(pick.obj) and not self.meshes):
             return False
@@ -179,7 +179,7 @@ class PickField(Input):
 
     @property
     def more(self) -> bool:
-        """Whether further clicks add to what is picked."""
+        """Whether further clicks add to the picks."""
         return self.several or bool(self.element and self.picks and self.picks[0].names)
 
     def clear(self, *_: Any) -> None:
@@ -188,7 +188,7 @@ class PickField(Input):
         self.show()
 
     def show(self) -> None:
-        """Tell what is picked, or what to click."""
+        """Show the picks, or a hint to click."""
         text = ", ".join(" ".join([pick.obj.Label, *pick.names]) for pick in self.picks)
         self.text.setText(text)
         self.text.setCursorPosition(0)
@@ -212,7 +212,7 @@ class PickField(Input):
         return tr("{} is missing: click it in the tree or the 3D view.").format(self.label)
 
     def value(self) -> Any:
-        """What is picked as the link's property holds it."""
+        """Return the picks as the link's property holds them."""
         if self.several:
             return [pick.obj for pick in self.picks]
         if not self.picks:

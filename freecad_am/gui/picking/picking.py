@@ -22,14 +22,14 @@ FACE, EDGE = nested.FACE, nested.EDGE
 
 @dataclass(frozen=True)
 class Pick:
-    """An object, and the names of the faces or edges of it that were picked; none for the whole object."""
+    """An object and the names of its picked faces or edges; none for the whole object."""
 
     obj: Any
     names: tuple[str, ...] = ()
 
 
 def selected(document: Any) -> list[Pick]:
-    """What is selected in a document now, in the order of selection; what can be neither wall nor substrate left out."""
+    """Return the selection of a document in order, without objects that can be neither wall nor substrate."""
     picks: dict[str, Pick] = {}
     for entry in Gui.Selection.getSelectionEx(document.Name, 0):
         for path in entry.SubElementNames or ("",):
@@ -42,8 +42,8 @@ def selected(document: Any) -> list[Pick]:
 
 
 def selected_line(document: Any) -> Pick | None:
-    """The first edge, datum line or axis of a sketch that is selected in a document, or a whole object where none is: what
-    something may turn about. None where nothing is selected."""
+    """Return the first selected edge, datum line or sketch axis, else a whole object, as axis of revolution. None
+    without a selection."""
     whole_pick: Pick | None = None
     for entry in Gui.Selection.getSelectionEx(document.Name, 0):
         for path in entry.SubElementNames or ("",):
@@ -77,13 +77,13 @@ def is_mesh(obj: Any) -> bool:
 
 
 def pick_of_faces(pick: Pick) -> Pick:
-    """The pick with its faces alone."""
+    """Return the pick with only its faces."""
     return Pick(pick.obj, tuple(name for name in pick.names if name.startswith(FACE)))
 
 
 def expand_pick(pick: Pick) -> Pick:
-    """What a click on something to be deposited means: one face of several stands for all of its object, for that is what a
-    click in the 3D view selects; several faces are meant themselves."""
+    """Interpret a click on an object to deposit: one face selects the whole object, as a click in the 3D view
+    selects a face; several faces select themselves."""
     faces = pick_of_faces(pick)
     lone = len(faces.names) == 1 and len(global_shape(pick.obj).Faces) > 1
     return Pick(pick.obj) if lone else faces
@@ -101,7 +101,7 @@ def stands(wall: Pick) -> bool:
 
 
 def is_alone(obj: Any) -> bool:
-    """Whether the document of an object has no solid and no mesh but those that it is made of, or that are made of it."""
+    """Whether all solids and meshes of the document derive from the object or are its sources."""
     related_names = {
         obj.Name,
         *(member.Name for member in (*obj.OutListRecursive, *obj.InListRecursive)),
@@ -120,9 +120,9 @@ def _has_solids(obj: Any) -> bool:
 
 
 def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
-    """Wall and substrate of a selection, None for what it does not tell, and what is unclear about it.
+    """Return wall and substrate of a selection, None if undetermined, and a text on ambiguities.
 
-    The one with faces picked is the wall, else the first; a mesh is the substrate, but by itself a wall.
+    The wall is the pick with faces, else the first. A mesh is the substrate; a single mesh is a wall.
     """
     if len(picks) == 1 and is_mesh(picks[0].obj):
         return picks[0], None, ""

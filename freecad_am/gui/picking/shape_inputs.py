@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Inputs that are shapes, faces of them or whole objects: what is selected."""
+"""Inputs from the selection: shapes, their faces or whole objects."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ def job_named() -> str:
 
 
 def _job(obj: Any) -> list[Any]:
-    """The stages of a job, or of that of a stage: those in its group, first the ones that are linked with the stage, then
-    what they are made from elsewhere. Without a group those that are linked with the stage, the latest first."""
+    """Return the stages of a job or of a stage's job: stages in its group, linked ones first, then their sources
+    elsewhere. Without a group, the linked stages, latest first."""
     if is_group(obj):
         linked, group = [], obj
     elif stage_of(obj) is not None:
@@ -69,8 +69,7 @@ def _group_of(stage: Any) -> Any:
 
 
 def _line(stage: Any) -> list[Any]:
-    """What a stage is made from, what is made from it, and what else that is made from. Of an inspection that of what it
-    measures."""
+    """Return the sources of a stage, its dependents and their sources. An inspection uses the stage it measures."""
     planned = getattr(stage, "Planned", None)
     origin = stage if planned is None or stage_of(planned) is None else planned
     lines = [_leading_to(obj) for obj in stage.Document.Objects if stage_of(obj) is not None]
@@ -78,7 +77,7 @@ def _line(stage: Any) -> list[Any]:
 
 
 def _leading_to(stage: Any) -> list[Any]:
-    """A stage and those that it is made from. Expressions count for nothing: jobs may share figures."""
+    """Return a stage and its sources. Expressions are ignored, because jobs may share figures."""
     stages = [stage]
     for obj in stages:
         inputs = [getattr(obj, link.name) for link in obj.Proxy.links]
@@ -104,9 +103,7 @@ class ShapeChoice(Input):
 
     def __init__(self, link: Link, present: Any, take_now: bool) -> None:
         self.link, self.label, self.present = link, translated(link.label), present
-        self.explicit = link.required or bool(
-            present
-        )  # whether a macro must say that there is none
+        self.explicit = link.required or bool(present)  # whether a macro must pass None explicitly
         self.document = App.ActiveDocument
         self.widget = QtGui.QWidget()
         self.widget.setToolTip(translated(link.help))
@@ -140,7 +137,7 @@ class ShapeChoice(Input):
         self._show()
 
     def _propose_selected(self) -> None:
-        """Take what was selected before the panel was opened, where a click on one face stands for all of it."""
+        """Take the selection from before the panel opened; one face selects the whole object."""
         selection = self._selected()
         pick = (
             selection
@@ -154,7 +151,7 @@ class ShapeChoice(Input):
             )
 
     def _pressed(self, on: bool) -> None:
-        """The pick button was pressed: take what is selected, or wait for a click."""
+        """Take the selection when the pick button is pressed, or wait for a click."""
         if on and not self._is_selected():
             self.click.wait()
             self._show()
@@ -166,7 +163,7 @@ class ShapeChoice(Input):
             self._show()
 
     def _is_selected(self) -> bool:
-        """Whether anything is selected; a document that is closed is told when it is taken from."""
+        """Whether anything is selected. Taking from a closed document reports it."""
         try:
             return bool(Gui.Selection.getSelection(self.document.Name))
         except (ReferenceError, RuntimeError, NameError):
@@ -184,7 +181,7 @@ class ShapeChoice(Input):
         self.show_note("")
 
     def _take_selected(self, *_: Any) -> None:
-        """Take what is selected, perhaps after the document was closed."""
+        """Take the selection; the document may be closed."""
         try:
             self.take()
         except ReferenceError:
@@ -196,7 +193,7 @@ class ShapeChoice(Input):
             )
 
     def take(self, *_: Any) -> None:
-        """Take what is selected now; what cannot be taken is told, and what was taken before stays."""
+        """Take the selection; report a rejected one and keep the previous input."""
         self._take(self._selected())
 
     def _take(self, pick: picking.Pick | None) -> None:
@@ -239,7 +236,7 @@ class ShapeChoice(Input):
         self._show_state(bool(text))
 
     def _show_state(self, is_set: bool) -> None:
-        """Tell what to click while a click is awaited."""
+        """Show what to click while waiting for a click."""
         idle = tr("select") if self.link.required else self.nothing
         self.text.setPlaceholderText(tr("click an object") if self.pick.isChecked() else idle)
         self.empty.setEnabled(is_set)
@@ -263,7 +260,7 @@ class ShapeChoice(Input):
 
 
 class ObjectChoice(ShapeChoice):
-    """A whole object with a shape: what is selected, renewed by a button."""
+    """Input for a whole selected object with a shape; a button updates it."""
 
     def __init__(self, link: Link, present: Any) -> None:
         super().__init__(link, None if present is None else (present, []), take_now=False)
@@ -286,7 +283,7 @@ class ObjectChoice(ShapeChoice):
 
 
 class ObjectsChoice(ShapeChoice):
-    """Several whole objects with a shape or a mesh: what is selected, renewed by a button; nothing selected, none."""
+    """Input for several whole selected objects with a shape or mesh; a button updates it."""
 
     def __init__(self, link: Link, present: Any) -> None:
         self.objects = list(present or ())
@@ -300,7 +297,7 @@ class ObjectsChoice(ShapeChoice):
         self._show()
 
     def take(self, *_: Any) -> None:
-        """Take what is selected now."""
+        """Take the selection."""
         self.objects = [pick.obj for pick in picking.selected(self.document)]
         self._show()
         self.show_note("" if self.objects else picking.refused(self.document))
@@ -353,13 +350,13 @@ class StageChoice(Input):
         wished = [obj.Name for obj in job_selection() if obj.Name in names]
         fallback = (
             [] if link.kind == INSPECTION else names[-1:]
-        )  # what is compared elsewhere is an input only if chosen
+        )  # a compared stage is an input only if chosen
         self.proposed = present.Name if present is not None else (wished or fallback or [""])[0]
         self.widget.setCurrentIndex(max(0, self.widget.findData(self.proposed)))
 
     def show_stored(self, stored: Any) -> None:
         name = "" if stored is None else stored.Name
-        if name and self.widget.findData(name) < 0:  # it was not there when the panel was opened
+        if name and self.widget.findData(name) < 0:  # created after the panel opened
             self.widget.addItem(stored.Label, name)
         self.widget.setCurrentIndex(self.widget.findData(name))
 
@@ -399,7 +396,7 @@ class StageChoice(Input):
 
 
 def _compares_stages(obj: Any) -> bool:
-    """Whether an object is an inspection of what was planned, not of a part."""
+    """Whether an object is an inspection of a stage, not of a part."""
     return stage_of(getattr(obj, "Planned", None)) is not None
 
 

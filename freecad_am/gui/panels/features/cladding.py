@@ -33,7 +33,7 @@ CM2 = 100.0  # mm2
 
 
 class CladdingPanel(PickPanel):
-    """Makes a feature of cladding of what is selected, or changes one."""
+    """Panel that creates a cladding feature from the selection, or changes one."""
 
     stage, icon, function, draft = CladdingFeature, "cladding", "make_cladding_feature", "Cladding"
 
@@ -58,7 +58,7 @@ class CladdingPanel(PickPanel):
         )
 
     def _propose(self, picks: list[picking.Pick]) -> str:
-        """What is selected first, with its faces."""
+        """Return the first selected object with its faces."""
         if picks:
             self.faces.take(picks[0])
         return ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of curves that are laid as beads: they are picked, and seen as points would be laid while it is open."""
+"""The panel of curves printed as beads; it previews the points while it is open."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ SUBSTRATE = Link(
 
 
 class CurvesPanel(PickPanel):
-    """Makes a feature of curves of what is selected, or changes one."""
+    """Panel that creates a curves feature from the selection, or changes one."""
 
     stage, icon, function, draft = CurvesFeature, "curves", "make_curves_feature", "Curves"
 
@@ -73,7 +73,7 @@ class CurvesPanel(PickPanel):
         }
 
     def _propose(self, picks: list[picking.Pick]) -> str:
-        """What is selected first, with its edges."""
+        """Return the first selected object with its edges."""
         if picks:
             self.curves.take(picks[0])
         return ""

@@ -49,7 +49,7 @@ _NO_BASE = ("NO_HUB", "NO_BASE")
 
 
 class HubPanel(PickPanel):
-    """Makes a feature of solids on a hub of what is selected, or changes one.
+    """Panel that creates a feature of solids on a hub from the selection, or changes one.
 
     Where a face of the only solid is picked as hub, both are one.
     """
@@ -62,7 +62,7 @@ class HubPanel(PickPanel):
     )
     nodes: HubNodes
     cached: tuple[Any, Outcome, Drawing] | None = (
-        None  # what was computed last: what of, what, and what is drawn of it
+        None  # last result: its inputs, outcome and drawing
     )
 
     def __init__(self, obj: Any = None) -> None:
@@ -77,7 +77,7 @@ class HubPanel(PickPanel):
             field, _, fold = self.places[key]
             if field.value == field.row.outer(
                 field.row.default
-            ):  # what is refused must be put right here
+            ):  # a rejected value must stay editable
                 fold.enable(field.widget, False)
                 field.widget.setToolTip(
                     tr("For walls only: solids on a hub grow along the normals of its surface")
@@ -88,10 +88,10 @@ class HubPanel(PickPanel):
             pick.label: stored for pick, stored in zip(self.picks, _present(self.obj), strict=True)
         }
 
-    # ---- what is picked
+    # ---- picks
 
     def _propose(self, picks: list[picking.Pick]) -> str:
-        """The last one is the hub, or the only one with faces picked; one alone is to be deposited."""
+        """The hub is the last pick, or the only pick with faces; a single pick is deposited."""
         faced = [
             pick for pick in picks if any(name.startswith(picking.FACE) for name in pick.names)
         ]
@@ -103,8 +103,8 @@ class HubPanel(PickPanel):
     def _lacking(self) -> PickField | None:
         return None if self.solids.picks else self.solids
 
-    def _on_pick(self, field: PickField) -> None:
-        """What is picked as hub is not a solid beside others."""
+    def _handle_pick(self, field: PickField) -> None:
+        """Remove the hub from the solids if there are others."""
         hub = self.hub.picks[0].obj if self.hub.picks else None
         solid_picks = [pick for pick in self.solids.picks if pick.obj != hub]
         if solid_picks and len(solid_picks) < len(self.solids.picks):
@@ -119,7 +119,7 @@ class HubPanel(PickPanel):
         return text.format(pick.obj.Label)
 
     def _roles(self) -> tuple[list[Any], tuple[str, ...], Any, tuple[str, ...]]:
-        """The objects to deposit, faces of the first one that are the base, the hub, and faces of it."""
+        """Return the objects to deposit, base faces of the first one, the hub and its faces."""
         solids = [pick.obj for pick in self.solids.picks]
         hub = self.hub.picks[0] if self.hub.picks else picking.Pick(None)
         if solids == [hub.obj]:
@@ -152,11 +152,11 @@ class HubPanel(PickPanel):
     # ---- preview
 
     def _values(self) -> dict[str, Any]:
-        """Entries, but for the chord error, which a picture need not keep; a wrong one stays wrong."""
+        """Return the entries. The preview ignores a valid chord error."""
         return coarsened(super()._values())
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Drawing]]:
-        """Computed anew only where solids or hub are others."""
+        """Recompute only if the solids or the hub changed."""
         draft.check()
         key = (self._inputs(), [str(getattr(draft.obj, name)) for name in _SHAPING])
         cached, work, strategy = self.cached, draft.prepare(), self._strategy()
@@ -172,7 +172,7 @@ class HubPanel(PickPanel):
         return compute
 
     def _strategy(self) -> DevelopableParameters:
-        """What is entered, with the chord error that the deposit is to keep."""
+        """Return the entered parameters, with the chord error of the deposit."""
         entered = Draft(self.proxy, self.document, self.draft, self._links(), super()._values())
         strategy: DevelopableParameters = entered.stage.parameters(
             entered.obj, DevelopableParameters

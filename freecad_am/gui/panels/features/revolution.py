@@ -30,7 +30,7 @@ class FeaturePanel(PreviewPanel):
     def __init__(self, obj: Any = None) -> None:
         title = tr("Feature") if obj is None else obj.Label
         super().__init__(title, shape_inputs.of(RevolutionFeature, obj), obj, MeridianNodes())
-        self.say("")  # what is missing is told where the preview will be
+        self.say("")  # a missing input is reported in place of the preview
         self.show_note(self.choices[0].label, self.choices[0].note, wrong=False)
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Drawing]]:
@@ -65,7 +65,7 @@ class FeaturePanel(PreviewPanel):
         self.nodes.clear()
 
     def _locate(self, error: AmError) -> tuple[str, str]:
-        """What is wrong with the shape is told under it."""
+        """Show a problem of the shape under its field."""
         source = self.choices[0]
         if source.present is not None and error.where == source.present[0].Label:
             return source.label, translated(error.message)

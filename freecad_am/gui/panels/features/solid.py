@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of solids: solids and a guide of their layers are picked; the plane they stand on is seen while it is open."""
+"""The panel of solids: pick solids and a guide for their layers; it previews the base plane."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ START = Link(
 
 
 class SolidNodes(HubNodes):
-    """Draws the plane that solids stand on, their first layer, and what of them leans out over nothing."""
+    """Draws the base plane of solids, their first layer and their overhangs."""
 
     def __init__(self) -> None:
         super().__init__(pickable=False)
@@ -83,13 +83,13 @@ class SolidNodes(HubNodes):
 
 
 class SolidPanel(PickPanel):
-    """Makes a feature of solids in plane layers of what is selected, or changes one."""
+    """Panel that creates a feature of solids in planar layers from the selection, or changes one."""
 
     stage, icon, function, draft = SolidFeature, "solid", "make_solid_feature", "Solids"
     nodes: SolidNodes
-    leaning: Leaning | None = None  # what of the part leans out, as it is previewed
+    leaning: Leaning | None = None  # overhang of the previewed part
     lean = -1  # deg that the field of the largest overhang held when the slider followed it
-    cached: tuple[Any, Outcome] | None = None  # the solids read last: what of, and what
+    cached: tuple[Any, Outcome] | None = None  # last solids: their inputs and outcome
 
     def __init__(self, obj: Any = None) -> None:
         solids, substrate, guide, start, fixtures = (
@@ -112,7 +112,7 @@ class SolidPanel(PickPanel):
         }
 
     def _add_overhang(self) -> None:
-        """The slider of the overhang view: a picture alone, it enters nothing."""
+        """Add the slider of the overhang view, which changes only the picture."""
         box, help = (
             QtGui.QWidget(),
             tr("Faces that overhang by more than this angle are red in the 3D view"),
@@ -133,7 +133,7 @@ class SolidPanel(PickPanel):
         scrolls(box)
 
     def _show_overhang(self, *_: Any) -> None:
-        """Colour what leans out by more than the slider tells."""
+        """Colour overhangs steeper than the slider's angle."""
         angle = self.overhang.value()
         if self.leaning is None:
             self.nodes.set_overhang(np.zeros((0, 3, 3)))
@@ -184,11 +184,11 @@ class SolidPanel(PickPanel):
         return self._worth_telling(arguments)
 
     def _values(self) -> dict[str, Any]:
-        """Entries, but for the chord error, which a picture need not keep; a wrong one stays wrong."""
+        """Return the entries. The preview ignores a valid chord error."""
         return coarsened(super()._values())
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, tuple[Drawing, Leaning, int]]]:
-        """Solids are read anew only where they are others."""
+        """Read the solids again only if they changed."""
         draft.check()
         cached, work = self.cached, draft.prepare()
         strategy: SolidParameters = draft.stage.parameters(draft.obj, SolidParameters)
@@ -203,7 +203,7 @@ class SolidPanel(PickPanel):
                 outcome.value if guided else prepare_stack(bodies, strategy, outcome.value.label)
             )
             size.refuse_absurd(size.solids_size(solids, strategy), strategy)
-            if guided:  # at once what is higher or lower than allowed
+            if guided:  # reject layers that are too high or too low at once
                 list(along.slices(solids.groups[0].base, bodies, strategy))
             slit = strategy.chord_error if strategy.fuse == "auto" else None
             lean = find_leaning(

@@ -26,9 +26,9 @@ _ELEMENTS = {"Source": picking.FACE, "StartEdges": picking.EDGE}
 
 
 class WallPanel(PickPanel):
-    """Makes a wall on a part of what is selected, or changes one."""
+    """Panel that creates a wall on a part from the selection, or changes one."""
 
-    note = ""  # about what was selected before it was opened
+    note = ""  # about the selection when the panel opened
     stage, icon, function, draft = SurfaceFeature, "wall_on_part", "make_surface_feature", "Wall"
 
     def __init__(self, obj: Any = None) -> None:
@@ -66,7 +66,7 @@ class WallPanel(PickPanel):
         return unclear
 
     def _lacking(self) -> PickField | None:
-        """A substrate is not missing where a wall starts at edges of its own, and where it may stand on the platform."""
+        """A wall that starts at its own edges, or may start on the platform, needs no substrate."""
         if not self._field("Source").picks:
             return self._field("Source")
         edges = any(field.picks for field in self.picks if field.element == picking.EDGE)
