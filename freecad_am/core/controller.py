@@ -8,20 +8,23 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Controller:
-    """A controller as planning sees it; the values by default are those of one that asks for nothing.
+    """The requirements of a controller on planning; the defaults describe a controller without any.
 
-    external: whether axes next to the robot are written, and positioner: what the first one that carries the part is called
-    there unless the job names it (mechanical unit, motion group, number of MACHINE_DEF). configurations: whether Cartesian
-    positions name the configuration of the arm, in words of a spherical wrist. flange: whether programs with the part on the
-    robot count on the pose of the flange. pulses: whether positions are in pulses of the axes, and Cartesian speeds in the
-    unit of the controller. whole_beads: whether a program of several files is loaded file by file, each with whole beads.
-    straight_in_part: whether linear moves with the part on the robot run straight as the part sees them, so that beads need
-    no points in between. least_step: s, shorter moves of a bead are not taken, 0 where there is no limit. least_blend: mm
-    next to a point, by controllers that blend by a share of it at 100 % and stop where that is too little. arc_moves:
-    whether arc instructions are linear moves themselves, the one onto the start of a bead and its last one. linear_triggers:
-    whether the deposit is switched ahead of a place on linear moves, in Cartesian programs on the one onto a bead too.
-    point_bytes: about how many bytes of the program a point takes. memory_mb: MB of programs that a user of such a controller
-    was known to have room for, 0 where nobody said.
+    external: whether axes next to the robot are written, and positioner: its default name for the
+    first one that carries the part (mechanical unit, motion group, number of MACHINE_DEF).
+    configurations: whether Cartesian positions name the configuration of the arm, in words of a
+    spherical wrist. flange: whether programs with the part on the robot count on the pose of the
+    flange. pulses: whether positions are in pulses of the axes, and Cartesian speeds in the unit of
+    the controller. whole_beads: whether a program of several files is loaded file by file, each
+    with whole beads. straight_in_part: whether linear moves with the part on the robot run straight
+    as the part sees them, so that beads need no points in between. least_step: s, shorter moves of
+    a bead are not taken, 0 where there is no limit. least_blend: mm next to a point, by controllers
+    that blend by a share of it at 100 % and stop where that is too little. arc_moves: whether arc
+    instructions are linear moves themselves, the one onto the start of a bead and its last one.
+    linear_triggers: whether the deposit is switched ahead of a place on linear moves, in Cartesian
+    programs on the one onto a bead too. point_bytes: about how many bytes of the program a point
+    takes. memory_mb: MB of programs that a user of such a controller was known to have room for, 0
+    if unknown.
     """
 
     external: bool = False

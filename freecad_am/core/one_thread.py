@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One thread for the linear algebra below numpy and scipy while we compute.
+"""Limits the linear algebra libraries below numpy and scipy to one thread.
 
-With more than one OpenBLAS rounds otherwise, even when it solves six equations, and matrices as small as ours take it many
-times as long: docs/decisions/0016-one-thread.md. A process of our own is told by `ENVIRONMENT`, before it loads numpy.
-In FreeCAD numpy may be there already, and others use it too: so the number is set while we work, and then set back.
+With more threads OpenBLAS rounds differently, even for six equations, and our small matrices take
+many times as long: docs/decisions/0016-one-thread.md. A process of our own gets the limit by
+`ENVIRONMENT`, before it loads numpy. In FreeCAD numpy may be loaded already and other code uses it
+too, so the limit is set for our work and then reset.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-# what tells the libraries that numpy may be built on: OpenBLAS, any with OpenMP, MKL, BLIS, Apple's
+# settings of the libraries that numpy may be built on: OpenBLAS, any with OpenMP, MKL, BLIS,
+# Apple's
 ENVIRONMENT = dict.fromkeys(
     (
         "OPENBLAS_NUM_THREADS",
@@ -31,7 +33,8 @@ ENVIRONMENT = dict.fromkeys(
     ),
     "1",
 )
-# functions that tell and set the number; the wheels of numpy and scipy name those of OpenBLAS in ways of their own
+# functions that get and set the number; the wheels of numpy and scipy have their own names for
+# those in OpenBLAS
 _NUMBERS = (
     *(
         (f"{before}openblas_get_num_threads{after}", f"{before}openblas_set_num_threads{after}")
@@ -41,11 +44,11 @@ _NUMBERS = (
     ("MKL_Get_Max_Threads", "MKL_Set_Num_Threads"),
     ("bli_thread_get_num_threads", "bli_thread_set_num_threads"),
 )
-_OPENMP = ("omp_get_max_threads", "omp_set_num_threads")  # the number of the calling thread alone
+_OPENMP = ("omp_get_max_threads", "omp_set_num_threads")  # the number for the calling thread only
 
 
 class _Number(NamedTuple):
-    """How many threads a library uses: told and set."""
+    """The thread limit of a library: its functions to get and set it."""
 
     get: Callable[[], int]
     set: Callable[[int], None]
@@ -94,7 +97,9 @@ def here() -> None:
 
 @functools.cache
 def _numbers() -> tuple[_Number, ...]:
-    """Of the libraries below numpy and scipy; none where they only know one thread."""
+    """Return the thread limits of the libraries below numpy and scipy; empty if they only have one
+    thread.
+    """
     found: dict[int, _Number] = {}
     for file in _files():
         try:

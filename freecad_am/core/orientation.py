@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How rotations are told in numbers: by angles about three axes, by quaternions, by rotation vectors. Each formula stands
-here once. Posts write by it, and name the one of their controller with the letters of its pendant.
+"""Conversions between rotations and numbers: angles about three axes, quaternions and rotation
+vectors.
 
-Rotations are (n, 3, 3), numbers (n, 3) or (n, 4), angles in rad. Readers of programs have formulas of their own: they are to
-find what is wrong here.
+Each formula exists once, here. Posts use them under the name of their controller, with the letters
+of its pendant.
+
+Rotations are (n, 3, 3), numbers (n, 3) or (n, 4), angles in rad. Readers of programs have formulas
+of their own, to detect errors here.
 """
 
 from __future__ import annotations
@@ -19,7 +22,11 @@ from .types import Array
 
 @dataclass(frozen=True, eq=False)
 class Orientation:
-    """numbers: what tells rotations (n, 3, 3). rotations: what numbers tell. degrees: whether pendants show degrees."""
+    """A pair of conversions.
+
+    numbers: from rotations (n, 3, 3) to numbers. rotations: from numbers to rotations. degrees:
+    whether pendants show degrees.
+    """
 
     numbers: Callable[[Array], Array]
     rotations: Callable[[Array], Array]

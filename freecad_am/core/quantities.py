@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Numbers and quantities as people read them.
+"""Numbers and quantities in texts for people.
 
-Texts of this package are in mm, mm/s, cm3 and kg. `in_other_units` rewrites such a text for a window that shows other units;
-which ones, its caller says.
+Texts of this package are in mm, mm/s, cm3 and kg. `in_other_units` rewrites such a text for a
+window with other units; the caller chooses them.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ UNITS = {
         f"{unit}/min": f"{base}^3/min" for base in ("mm", "cm") for unit in (f"{base}3", f"{base}³")
     },
 }
-# examples of what may be typed, and the formula of bead models, whose figures are of mm
+# examples of input, and the formula of bead models, whose coefficients are in mm
 _EXAMPLE = re.compile(r"such as|for instance|, as (?:in )?[\d{]|v\^\(-1/3\)")
 _ALONE = re.compile(r"[-+]?\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?")
 # of `core.geometry.formatting.place`
 _PLACE = re.compile(r"\(-?[\d.]+(?:e-?\d+)?(?:, -?[\d.]+(?:e-?\d+)?){2}\)")
-_PRIVATE = 0xE000  # signs that stand for nothing in any language
+_PRIVATE = 0xE000  # code points without a meaning in any language
 LARGEST_PLAIN, SMALLEST_PLAIN = 1e15, 1e-9  # beyond these an exponent is easier to read
 LEAST_DIGITS, MOST_DIGITS = 3, 7  # significant ones of a converted number
 
@@ -101,20 +101,20 @@ def _without_zeros(text: str) -> str:
 
 
 def in_other_units(text: str, convert: Convert) -> str:
-    """A text with its quantities in other units.
+    """Return a text with its quantities in other units.
 
     Parameters
     ----------
     text : str
-        It holds quantities such as '5 mm', '2 to 3 mm/s' and '1, 2, 3 mm'.
+        A text with quantities such as '5 mm', '2 to 3 mm/s' and '1, 2, 3 mm'.
     convert : callable
-        `convert(value, unit)` returns how many of one unit of ours make one of the other unit, and the other unit's name;
-        None where the quantity stays as it is.
+        `convert(value, unit)` returns the other unit's size in our unit, and its name; None to keep
+        the quantity.
 
     Returns
     -------
     str
-        What follows 'at most' or 'at least' is rounded so that it may be typed.
+        The text; numbers after 'at most' or 'at least' are rounded to the allowed side.
     """
 
     def converted(match: re.Match[str]) -> str:
@@ -151,19 +151,20 @@ def _digits(number: str) -> int:
 
 
 def is_example(template: str) -> bool:
-    """Whether a template tells what may be typed, whose quantities stay as they are."""
+    """Return whether a template gives examples of input, whose quantities must not change."""
     return _EXAMPLE.search(template) is not None
 
 
 def put_values(template: str, values: Sequence[str], in_units: Callable[[str], str]) -> str:
-    """A template with its values, whose quantities are in other units then.
+    """Fill a template with its values and convert their quantities to other units.
 
     Parameters
     ----------
     template : str
-        With places by number, as `core.issues.Text` has it.
+        With numbered places, as in `core.issues.Text`.
     values : sequence of str
-        Those that are no numbers, units or places are out of sight of `in_units`: they may be names such as 'Plate 5 mm'.
+        `in_units` does not see values other than numbers, units and places: they may be names such
+        as 'Plate 5 mm'.
     in_units : callable
         Returns a text of numbers with its quantities in other units.
 

@@ -57,15 +57,16 @@ def _numbers(value: object) -> Hashable:
 
 # length of the pieces into which the deposit is divided, mm, near nozzles and near links
 GRAIN, LINK_GRAIN = 1.5, 5.0
-HALVINGS = 6  # of a nozzle's length: to a hundredth of it
-REMEMBERED = (
-    25_000  # points of beads whose ends are known at most: of longer ones they take too much memory
-)
+HALVINGS = 6  # steps for the nozzle's length: accurate to a hundredth
+REMEMBERED = 25_000  # maximum points of beads with cached ends: longer ones take too much memory
 
 
 class Bead(Protocol):
-    """A bead of a toolpath: points, unit build directions and tool axes (n, 3), width and height (n,) mm, None where it does
-    not tell them."""
+    """The points of a toolpath's bead with unit build directions and tool axes (n, 3), width and
+    height (n,) mm.
+
+    Width and height are None if the bead has none.
+    """
 
     @property
     def points(self) -> Array: ...
@@ -92,7 +93,7 @@ class Beads(NamedTuple):
 
     @classmethod
     def of(cls, beads: Sequence[Bead], width: float, height: float) -> Beads:
-        """Those of beads; width and height, mm, of those that do not tell theirs."""
+        """Collect beads; width and height, mm, apply to beads without their own."""
         points = np.concatenate([bead.points for bead in beads])
         counts = np.array([len(bead.points) for bead in beads])
         is_first = np.zeros(len(points), dtype=bool)
@@ -117,7 +118,9 @@ class Beads(NamedTuple):
         )
 
     def solid(self, grain: float = GRAIN) -> Obstacles:
-        """The deposit in pieces of so many mm, each from the number of its last point on."""
+        """Return the deposit in pieces of `grain` mm; each exists from the number of its last point
+        on.
+        """
         return build_deposit(
             self.points, self.build, self.width, self.height, self.first, grain=grain
         )
@@ -132,8 +135,10 @@ class Size(NamedTuple):
 
 
 class _Ends(NamedTuple):
-    """Ends of beads by how many points of all are there (m + 1): the points (m + 1, 3), NaN where there is none, and the
-    heights (m + 1,) mm that are left out there."""
+    """Bead ends by the number of printed points (m + 1).
+
+    point: (m + 1, 3), NaN without an end. height: (m + 1,) mm of the nozzle that are exempt there.
+    """
 
     point: Array
     height: Array
@@ -171,10 +176,10 @@ class BeadEnds:
 
     def nozzle(self, tip: Array, deposited: Index) -> Nozzle:
         """Return the nozzle with tips (k, 3) when `deposited` points (k,) are printed: it leaves the last
-        of these and comes to the one after.
+        printed point and approaches the next one.
 
-        Against deposit the part that stays in it is exempt there; against bodies the part below the
-        height at which the nozzle's side is one tip diameter from the point.
+                Against deposit the part that stays in it is exempt there; against bodies the part below the
+                height at which the nozzle's side is one tip diameter from the point.
         """
         radius, slope, _ = self._size
         about = side_height(radius, slope) + ABOVE_FACES

@@ -37,14 +37,17 @@ def build_deposit(
     short: bool = False,
     like: Obstacles | None = None,
 ) -> Obstacles:
-    """The deposit of points (n, 3) in the order of deposition, on which beads stand along unit vectors build (n, 3).
+    """Build the deposit of points (n, 3) in print order, with unit build directions (n, 3).
 
-    width, height: mm, of all or (n,). starts: the points at which beads begin, by numbers or (n,) marks. moments: (n,) at
-    which each point is laid, rising; by default its number. grain: mm, pieces are joined as long as they are not longer than
-    this. foot: mm, pieces of the layer being laid are next to the tip no farther from it than they are wide, or than this.
-    short: pieces are short against what is asked about them. like: the deposit of the same points before, with other
-    directions alone: the same pieces with other corners.
-    A piece is there from the moment of the point at its end. Where no bead has a width, or a height, they are lines.
+    width, height: mm, one or (n,). starts: the first points of beads, by numbers or as a mask (n,).
+    moments: (n,) rising, the moment at which each point is printed; by default its number. grain:
+    mm, maximum length of joined pieces. foot: mm; pieces of the current layer are adjacent to the
+    tip within their width, or within this distance. short: whether pieces are short compared with
+    the queries. like: the deposit of the same points with other directions, which has the same
+    pieces with other corners.
+
+    A piece exists from the moment of the point at its end. If no bead has a width, or a height, the
+    pieces are lines.
     """
     n = len(points)
     is_first = np.zeros(n, dtype=bool)

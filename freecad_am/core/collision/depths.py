@@ -19,14 +19,15 @@ from .inside import Inside, inside_of
 
 MAX_PARTS = 40_000  # parts that triangles are divided into, about
 PLACES = 800  # within the part
-TRIES = 20_000  # at most, to find so many in the box about a thin part
+TRIES = 20_000  # maximum samples in the bounding box to find these in a thin part
 AT_ONCE = 2000
 SHARES = 128  # steps that a distribution is kept in
 PROBES = 250  # places of the surface at which the part's thickness is looked for
 HALVINGS = 7  # of the step in which a probe leaves the part
 STEPS = 14  # of a probe into the part
 REACH = 64.0  # mm; no bead is wider
-MAX_OFFSET_SHARE = 1.5  # distances between places of the surface; what lies farther beside its edge is not under it
+# distances between surface samples; a point farther from the edge is not below the surface
+MAX_OFFSET_SHARE = 1.5
 # three irrational steps, by which places spread evenly in a box (Roberts 2018, the generalised golden ratio)
 EVENLY = 1.0 / 1.22074408460575947536 ** np.arange(1, 4)
 

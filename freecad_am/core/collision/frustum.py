@@ -32,9 +32,11 @@ def side_height(radius: float, slope: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Frustum:
-    """radius: a, mm, at the tip plane; slope: k; low, high: mm over the tip plane, low of all or (k,) of each row.
+    """A frustum about the tool axis.
 
-    All methods take offsets from the tip and unit tool axes (k, 3), row by row.
+    radius: a, mm, at the tip plane. slope: k. low, high: mm above the tip plane; low is one value
+    or (k,) for each row. All methods take offsets from the tip and unit tool axes (k, 3), row by
+    row.
     """
 
     radius: float
@@ -65,7 +67,8 @@ class Frustum:
         lean = np.hypot(1.0, self.slope)
         across -= (self.slope * side) * axis
         reach = _column_sums(np.abs(across, out=across) * half)
-        # of the plane with the normal across / (side lean); next to the axis there is none
+        # the plane with the normal across / (side lean) bounds the frustum; it does not exist close
+        # to the axis
         may_meet &= side * (side - self.radius - self.slope * x) <= reach + lean * side * (
             rounding + ROUNDING
         )
@@ -118,7 +121,7 @@ class Frustum:
             self.radius + self.slope * self.high
         ) > rise * low + size * (self.radius + self.slope * low)
         height = np.where(up, self.high, low)
-        # along the axis every point of a disc is as far: what is left across is rounding
+        # on the axis every point of a disc is equally far: a remaining lateral part is rounding
         leaning = size > ALONG * np.abs(rise)
         out = np.where(leaning, self.radius + self.slope * height, 0.0) / np.where(
             leaning, size, 1.0

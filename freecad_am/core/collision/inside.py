@@ -14,9 +14,9 @@ from ..geometry.obstacles import Body
 from ..types import Array, Mask
 from . import tree
 
-# of all rays; along no edge or face that anyone draws, so that none runs through an edge but by chance
+# of all rays; not parallel to usual edges and faces, so that a ray meets an edge only by chance
 RAY = np.array([0.5423261, 0.3190717, 0.7772039])
-MERGED = 1e-6  # mm; vertices that lie closer are one
+MERGED = 1e-6  # mm; vertices closer than this are merged
 QUERIES = 16384  # worked on at once
 
 

@@ -91,12 +91,12 @@ class _Level(NamedTuple):
 
 
 class Obstacles:
-    """Convex things (m, c, 3), the hulls of c points each, in an order of their own: points, segments, triangles, or pieces
-    of beads, the hulls of four points with a rounding of `radius` (m,) mm about them.
+    """Convex bodies (m, c, 3), the hulls of c points each, in an order of their own.
 
-    since: (m,) the moment from which each is there; none, then always. line: (m, 2, 3) the segments along which the pieces
-    of beads are laid, which they count as where they are of the layer being laid, no farther from the tip than `foot`
-    (m,) mm. chained: they are short, and those that follow each other mostly touch.
+    These are points, segments, triangles, or pieces of beads: hulls of four points with a rounding
+    of `radius` (m,) mm about them. since: (m,) the moment from which each exists; always, if None.
+    line: (m, 2, 3) the axes of the bead pieces. They replace pieces in the current layer within
+    `foot` (m,) mm of the tip. chained: the pieces are short, and consecutive ones mostly touch.
     """
 
     def __init__(
@@ -129,7 +129,9 @@ class Obstacles:
         return copied
 
     def _lay(self, corners: Array) -> None:
-        """Have the corners in order, and the boxes about them: of each level centres and half sizes by columns (3, n)."""
+        """Store the corners and the bounding boxes: for each level, centres and half sizes by
+        columns (3, n).
+        """
         self.corners = corners[self.order]
         self._sample = np.ascontiguousarray(self.corners[:, 0])
         by_column = np.ascontiguousarray(self.corners.transpose(1, 2, 0))
@@ -191,7 +193,7 @@ class Obstacles:
 
     @cached_property
     def _slabs(self) -> Slabs:
-        """About the pieces of beads of the lowest nodes, as these lie."""
+        """Slabs about the bead pieces of the lowest nodes, in the orientation of the pieces."""
         assert self.radius is not None
         return build_slabs(self.corners, self.radius, tree.BRANCH)
 

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""All that a nozzle or a link may meet: bodies, the platform as one of them, and the deposit as it is at a moment.
+"""The obstacles of a nozzle or a link: bodies, including the platform, and the deposit at a moment.
 
-A moment is a number that rises in the order of deposition: of a point, or of a row of a motion. A piece of a bead is there
-before the moment m where the number of its last point is less than m.
+A moment is a number that rises in print order: of a point, or of a row of a motion. A piece of a
+bead exists before the moment m if the number of its last point is less than m.
 
-How rapids are asked: the scene has `deposit.build_deposit` of the deposit rows of the motion, with the numbers of these rows
-as `moments` and a `grain`, and the platform as a body (`geometry.obstacles.disc`). The looks along the moves are tips
-and axes in part coordinates, their moment is the row that the move goes to; the solid is `nozzle.travelling(...)`. On
-retract and approach, which are driven like travels, its `exempt` is (k,) `max(exempt_height(radius, slope, height) - d, 0)`,
-d being how far the tip of each look is from the deposit point that it leaves or goes to; on travels it is 0. `distance`
-tells by how many mm a way is clear.
+To check rapids, the scene contains `deposit.build_deposit` of the deposit rows of the motion, with
+the numbers of these rows as `moments` and a `grain`, and the platform as a body
+(`geometry.obstacles.disc`). The checked positions along the moves are tips and axes in part
+coordinates; their moment is the row at the end of the move. The solid is `nozzle.travelling(...)`.
+On retract and approach, which run like travels, its `exempt` is (k,) `max(exempt_height(radius,
+slope, height) - d, 0)`, with the distance d of each tip from the deposit point that it leaves or
+approaches; on travels it is 0. `distance` gives the clearance in mm.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ from .tolerances import ABOVE_FACES, CHORD, FACES, HALFWAY
 
 PIECE = 8.0  # mm, longest edge of a triangle once it is cut up: slender triangles have large balls
 REMEMBERED = 1_000  # triangles of bodies that are kept as they are cut up
-MOST_PIECES = 60_000  # of all bodies; where there would be more, the pieces are longer
+MOST_PIECES = 60_000  # of all bodies; beyond this number the pieces are longer
 
 
 @dataclass(frozen=True)
@@ -77,9 +78,12 @@ class Bodies:
 def build_bodies(
     bodies: Sequence[Body], around: Array, reach: float, max_edge: float = PIECE
 ) -> Bodies:
-    """The triangles of bodies no farther than `reach` (mm) from the box about the points `around` (n, 3), and the inside of
-    those that are closed; a body with an opening counts by its triangles alone. max_edge: mm, the longest edge of a triangle
-    once it is cut up."""
+    """Return the triangles of bodies within `reach` (mm) of the box about the points `around` (n,
+    3).
+
+    Closed bodies also have an inside; an open body only has its triangles. max_edge: mm, the
+    longest edge of a triangle after subdivision.
+    """
     if not bodies:
         return Bodies(Obstacles(np.zeros((0, 3, 3))), ())
     low, high = around.min(axis=0) - reach, around.max(axis=0) + reach
@@ -101,8 +105,9 @@ def build_bodies(
 
 @lru_cache(maxsize=1)
 def _build_all(corners: bytes, max_edge: float) -> Obstacles:
-    """All triangles of bodies, cut up, once for the same ones: most jobs have their platform alone, and plan and look at
-    it several times."""
+    """Subdivide all triangles of bodies, cached: most jobs only have their platform, and check it
+    several times.
+    """
     triangles = np.frombuffer(corners).reshape(-1, 3, 3)
     return Obstacles(_cut_up(triangles, np.full(3, -np.inf), np.full(3, np.inf), max_edge))
 
@@ -113,7 +118,7 @@ def _cut_up(corners: Array, low: Array, high: Array, max_edge: float) -> Array:
     while True:
         corners = corners[_in_box(corners, low, high)]
         edges = sides(corners)
-        # halves of the longest edges first, so that where there is no room for more the largest are cut
+        # halve the longest edges first, so that the largest triangles are divided if space runs out
         longest = np.maximum(np.maximum(edges[:, 0], edges[:, 1]), edges[:, 2])
         long = longest > max(max_edge, 0.5 * float(longest.max(initial=0.0)))
         if not long.any() or len(corners) + int(long.sum()) > max(MOST_PIECES, 2 * count):

@@ -18,16 +18,16 @@ from ..types import Array, Index, Mask
 from .frustum import Frustum
 from .tolerances import CONVERGED, ROUNDING
 
-# of the edges from the newest point of a simplex of four: each, the sides of the simplex that they are, and its faces, by
-# the two edges that they lie between
+# edges from the newest point of a simplex with four points: each edge, the sides that these edges
+# form, and the faces by their two edges
 _EDGE_IDS, _SIDE, _FACE = np.arange(3), np.arange(1, 4), np.arange(4, 7)
 _FACE_EDGE_A, _FACE_EDGE_B = np.array([0, 0, 1]), np.array([1, 2, 2])
-# products of edges that are asked for: squares, then those of two
+# required products of edges: squares, then products of two edges
 _FACTOR_A, _FACTOR_B = (
     np.concatenate([_EDGE_IDS, _FACE_EDGE_A]),
     np.concatenate([_EDGE_IDS, _FACE_EDGE_B]),
 )
-# of cross products of the two other edges: the components (of 9) that are multiplied, first those that are added
+# cross products of the two other edges: the factors among 9 components, the positive terms first
 _NEXT, _AFTER = np.array([[1], [2], [0]]), np.array([[2], [0], [1]])
 _CROSS = np.array(
     [
@@ -35,7 +35,8 @@ _CROSS = np.array(
         for one, part in ((_NEXT, _NEXT), (_AFTER, _AFTER), (_NEXT, _AFTER), (_AFTER, _NEXT))
     ]
 )
-# of four points, by which of them have a share (the sum of their codes), three: those that have first, and then one of them
+# for four points, by the sum of the codes of the active points: three points, first the active
+# ones, then one of them repeated
 _CODE = np.array([1, 2, 4, 8])
 _SIMPLEX_CORNERS = np.array(
     [
@@ -44,7 +45,7 @@ _SIMPLEX_CORNERS = np.array(
     ]
 )
 BATCH = 500  # pairs that are done as soon together as in two parts
-MAX_STEPS = 64  # steps of a pair; what is not settled then is near to grazing and keeps its bounds
+MAX_STEPS = 64  # steps of a pair; an unsettled pair is then close to grazing and keeps its bounds
 
 
 class Hull(Protocol):
@@ -284,9 +285,13 @@ def _nearest_on_segments(points: Array, newest: Array) -> tuple[Array, Array]:
 
 
 def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
-    """The point (k, 3) nearest to the origin of the hulls of three points (k, 3, 3), of which some may be one, and a fourth
-    (k, 3) that has a share in it; and the up to three points (k, 3, 3) that have. Columns beside the three of a point are
-    taken by the same shares."""
+    """Return the point (k, 3) nearest to the origin in the hulls of three points (k, 3, 3) and a
+    newest one (k, 3).
+
+    Some of the three may coincide; the newest one is part of the solution. Also returns the up to
+    three other active points (k, 3, 3). Extra columns after the three coordinates are interpolated
+    with the same weights.
+    """
     edges, origin = simplex - newest[:, None], columns(newest[:, :3])
     # by edges, components, rows; all corners, sides and faces that hold the newest point at once: most calls are about a
     # handful of simplices
@@ -381,7 +386,7 @@ class _Pairs:
         return _Pairs(self.cylinders.of(rows))
 
     def farthest(self, direction: Array) -> Array:
-        """The points (k, 3) that lie farthest along directions (k, 3)."""
+        """Return the farthest points (k, 3) along directions (k, 3)."""
         points: Array = self.cylinders.start + self.cylinders.solid.farthest(
             direction, self.cylinders.axis
         )
@@ -412,7 +417,7 @@ def nearer(cylinders: PlacedCylinders, others_at: PlacedCylinders, gap: float) -
         low, _ = bounds(
             first_cylinders.solid, first_cylinders.axis[rows], adjacent[rows], gap, gap, start[rows]
         )
-        are_nearer[doubtful[rows]] = low < gap  # what is in doubt counts
+        are_nearer[doubtful[rows]] = low < gap  # doubtful pairs count as near
     return are_nearer
 
 

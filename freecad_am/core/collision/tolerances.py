@@ -11,7 +11,7 @@ CONVERGED = 1e-6  # to which distances found by iteration are known
 FACES = 0.1  # that triangles of bodies are off their true faces: what a nozzle may be deep in them on rapids
 ABOVE_FACES = (
     2.0 * FACES
-)  # left out of a nozzle over the bodies it deposits on, whose faces may be off on both sides of it
+)  # removed from a nozzle over its substrate, whose faces may be off on both sides
 ABOUT_FACES = (
     2.0 * FACES
 )  # added about links: they and the bodies both are triangles, and beads are cut into long pieces

@@ -37,7 +37,7 @@ from ..toolpath import Bead, Toolpath
 from ..types import Array, Mask
 
 TURNS = 72  # rotations about the tool to try
-FINER = 9  # between two of these, about the best one of a point that none of them serves
+FINER = 9  # between two of these, near the best one of a point without a serving rotation
 BRANCHES = 8
 
 
@@ -128,14 +128,17 @@ def _serves(task: Task, points: Points, phi: Array) -> tuple[Mask, Array]:
 Cylinders = tuple[tuple[Cylinder, ...], ...]
 
 BEADS_IN_SEQUENCE = 2  # consecutive beads, so that the plan includes rapids
-REACH = 200.0  # mm, beyond which it is not told how far the arm is from everything
+REACH = 200.0  # mm; larger clearances of the arm are not measured
 UNREACHED = "NO_ROTATION"
 
 
 @dataclass(frozen=True)
 class Job:
-    """What is placed. cell: resolves the parameters of a cell for it, with what stands there, or raises AmError.
-    cylinders: of the links of the robot in a cell."""
+    """The job to place.
+
+    cell: resolves cell parameters to a cell with its obstacles, or raises AmError. cylinders: of
+    the links of the robot in a cell.
+    """
 
     toolpath: Toolpath
     cell: Callable[[CellParameters], Cell]
@@ -146,10 +149,14 @@ class Job:
 
 @dataclass(frozen=True)
 class Judged:
-    """A pose. share: of the points looked at that the machine serves. code: of the first error, '' of a feasible pose.
-    margin: the least share of a range that is left to a limit, 1 in its middle; time: of the whole job, s; clearance: mm
-    between the arm and everything else, REACH at most, at the points of beads; all NaN where nothing was planned, clearance
-    of machines with rotary axes too. branch: the configuration it was planned in. message: of the first error."""
+    """The rating of a pose.
+
+    share: of the sampled points that the machine serves. code: of the first error, '' for a
+    feasible pose. margin: the least share of a range that is left to a limit, 1 in its middle.
+    time: of the whole job, s. clearance: mm between the arm and everything else, at most REACH, at
+    the points of beads. These three are NaN without a plan; the clearance is also NaN for machines
+    with rotary axes. branch: the configuration of the plan. message: of the first error.
+    """
 
     share: float
     code: str
@@ -293,7 +300,9 @@ class Judge:
         return min_distance(contact, path.joints, when, REACH)
 
     def _time(self, path: JointPath, motion: Motion) -> float:
-        """s of the whole job: its deposit at the reduced speeds of this plan, its rapids as between the
+        """Estimate the time of the whole job, s.
+
+        It sums the deposit at the reduced speeds of this plan, rapids like those between
         consecutive beads of this plan, lead times and waits.
         """
         all_beads, process = [bead for _, _, bead in self.job.toolpath], self.job.process
@@ -307,7 +316,9 @@ class Judge:
         return float(deposit + waits + self._rapids(motion, len(all_beads)))
 
     def _rapids(self, motion: Motion, beads: int) -> float:
-        """s of all rapids between `beads` beads, and of the moves onto the first and off the last."""
+        """Estimate the time of all rapids between `beads` beads, and of the moves onto the first
+        and off the last, s.
+        """
         steps, starts = np.nan_to_num(motion.duration), motion.deposit & (motion.point == 0)
         number = np.cumsum(
             np.append(False, starts[:-1])

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where part, positioner or deposition point may stand: a box of poses, each judged, and the best of them.
+"""Placement of part, positioner or deposition point: rates a box of poses and finds the best one.
 
-Each pose is screened (`screen`), then planned at some of its points (`judge`); the best are planned with all of them until
-one is feasible, so that what is proposed is known to be carried out.
+`screen` checks each pose, then `judge` plans it at some of its points. The best poses are planned
+at every point until one is feasible, so that a proposed pose is known to work.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from .judge import Job, Judge, Judged
 
 
 def movable(settings: CellParameters) -> tuple[str, ...]:
-    """The movable poses of a cell: those of POINT, PLATFORM, POSITIONER that it has, the usual one first."""
+    """Return the movable poses of a cell among POINT, PLATFORM and POSITIONER, the usual one first."""
     arrangement = arrangement_of(settings.setup)
     if arrangement.holds_part:
         return (POINT, PLATFORM)
@@ -110,11 +110,11 @@ JUDGING = 0.8  # of the time goes into all poses, the rest into planning the bes
 
 @dataclass(frozen=True, eq=False)
 class Placed:
-    """P poses of what is moved in the cell of these settings, poses (P, 6) in mm and rad, and what each came to.
+    """P rated poses (P, 6) of the movable frame in a cell with these settings, mm and rad.
 
-    about: where it stands in the cell. points: how many of the toolpath's, all of them `of`, poses were judged by. proven:
-    by number of a pose, what it came to with all of them, in the order in which they were planned; the best is the last of
-    these where it is feasible.
+    about: its present pose in the cell. points: number of toolpath points for the rating; of: their
+    total. proven: by pose number, the rating with all points, in the order of planning; the best
+    pose is the last entry if it is feasible.
     """
 
     settings: CellParameters

@@ -33,9 +33,11 @@ class Reach:
 
 
 def reach(cell: Cell, step: float, progress: Progress = lambda share, text: None) -> Reach:
-    """Where the tip of the nozzle, or the middle of the platform where the robot carries the part, can be, within the
-    limits, in the configuration of the cell; on a grid of `step` mm, or wider for MOST_PLACES. What stands in the cell is
-    not looked at, nor external axes. progress may raise to cancel. Nothing of machines with rotary axes.
+    """Return the reachable positions of the nozzle tip on a grid, in the configuration of the cell.
+
+    With the part on the robot, these are positions of the middle of the platform. They respect the
+    limits. The grid has `step` mm, or more to stay within MOST_PLACES. Obstacles and external axes
+    are not considered. progress may raise to cancel. Empty for machines with rotary axes.
     """
     arm = cell.robot.arm
     if arm is None:
@@ -90,7 +92,7 @@ def _share(cell: Cell, rows: LimitRows, points: Array, hold: Array) -> Array:
     for branch in range(8) if cell.branch is None else (cell.branch,):
         remaining = np.nonzero(~served.any(axis=2))
         joints = arm.inverse_branch(poses[remaining].reshape(-1, 4, 4), branch)
-        joints = np.pad(joints, ((0, 0), (0, count - robot_axes)))  # external axes stand at zero
+        joints = np.pad(joints, ((0, 0), (0, count - robot_axes)))  # external axes stay at zero
         turns = np.where(
             np.isfinite(middle),
             np.round((np.nan_to_num(middle) - joints[:, :robot_axes]) / TURN),

@@ -31,8 +31,9 @@ HEAD = (
 
 
 def rows(placed: Placed) -> Iterator[str]:
-    """The lines of place.csv, the head first. A pose that was planned with all points shows the figures
-    of that plan.
+    """Return the lines of place.csv, the header first.
+
+    A pose that was planned with all points has the figures of that plan.
     """
     yield ",".join(HEAD) + "\n"
     for number in range(len(placed.poses)):

@@ -31,12 +31,16 @@ OF_MOTION = (
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """What a preflight looks at. toolpath: as it is run. issues: of all stages. motion: as the program runs it, None without
-    a cell; condition, threshold: (n,) of its rows. arm: what the links touch, None where nobody has looked; true_shapes: by
-    shapes that were given for all of them. read: how the program was read back, None without one. on_controller: what only
-    the controller can show. distances: those between its layers, of `spacing`, where they are known. balance: of part and
-    beads, None where it is not known. looked: what the nozzle touches while depositing, None where the job asks for no
-    clearance. rapids: what the nozzle meets on them."""
+    """The data of a preflight.
+
+    toolpath: as printed. issues: of all stages. motion: as the program runs it, None without a
+    cell; condition, threshold: (n,) of its rows. arm: contacts of the links, None if not checked;
+    true_shapes: whether every link has a given shape. read: the result of the read-back, None
+    without one. on_controller: checks that only the controller can do. distances: between its
+    layers, see `spacing`, if known. balance: of part and beads, None if unknown. looked: contacts
+    of the nozzle while depositing, None if the job asks for no clearance. rapids: contacts of the
+    nozzle on rapids.
+    """
 
     toolpath: Toolpath
     process: ProcessParameters

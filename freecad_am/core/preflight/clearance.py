@@ -248,7 +248,7 @@ def external_links(
     rows = np.flatnonzero((touches.link != NONE) & about)
     rows = rows[
         np.argsort((touches.link[rows] <= robot_axes) & (not true_shapes), kind="stable")
-    ]  # those that count first
+    ]  # the decisive contacts first
     met, location = "nothing", None
     if len(rows):
         location = row_place(motion, int(rows[0]))

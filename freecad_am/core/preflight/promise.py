@@ -31,11 +31,12 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True)
 class Promise:
-    """One line of the preflight. ok: None where it was not checked, and `how` says why.
+    """One line of the preflight.
 
-    promise: what holds. how: how it was checked. worst: its worst value, in `unit`, None where there is no figure. bound:
-    what `worst` is compared with, in the same unit: the most it may be, or with at_least the least. place: where the worst
-    value is, row: of the motion, where that is a place of it.
+    ok: None if it was not checked; `how` gives the reason. promise: the statement. how: the method
+    of the check. worst: its worst value, in `unit`, None without a figure. bound: the maximum of
+    `worst` in the same unit, or with at_least its minimum. place: location of the worst value; row:
+    its motion row, if it has one.
     """
 
     promise: str

@@ -18,10 +18,11 @@ from ..types import Array, ArrayLike, Index, Integers, Mask
 
 
 def speed_ratios(joints: Array, duration: Array, speed_limits: Array) -> Array:
-    """(n, a) mean joint speed on the segment that ends at each row, as a share of the axis' maximum.
+    """Return the mean joint speeds (n, a) of the segments that end at each row, as shares of the
+    axis maxima.
 
-    joints: (n, a) rad or mm. duration: (n,) s of that segment; where it is 0 the ratio is 0, or
-    infinite if an axis moves. speed_limits: (a,) rad/s or mm/s, infinite if not known.
+    joints: (n, a) rad or mm. duration: (n,) s of the segment; if it is 0 the ratio is 0, or
+    infinite if an axis moves. speed_limits: (a,) rad/s or mm/s, infinite if unknown.
     """
     moved = np.abs(np.diff(joints, axis=0, prepend=joints[:1]))
     lasts = duration[:, None] > 0.0
@@ -55,7 +56,8 @@ def from_next(deposit: Mask, point: Integers, values: Array) -> Array:
 
 # a share of an axis's speed that counts as more than it can do: what rounding leaves is none
 OVER = 1e-9
-# shares of what bends allow that are tried as ceilings, and how far and how often the best is then raised
+# shares of the curvature limit that are tried as ceilings, and by how much and how often the best
+# one is then raised
 CEILINGS = (0.5, 0.8, 0.95, 0.99)
 GROWTH, ROUNDS = 1.3, 6
 # from this share of its bound on a bend counts as the reason for being slow
@@ -67,12 +69,13 @@ _NO_TIME = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class AchievableFeed:
-    """Columns of the n rows of a motion; each is about the segment that ends at the row.
+    """Columns of the n rows of a motion; each describes the segment that ends at the row.
 
-    ratio: the share of its largest speed that the fastest axis is asked for, 0 where the machine stands. axis: int, the
-    axis that forbids the speed asked for, -1 where none does. asked, achieved: mm/s at the deposition point, the achieved
-    one as the mean of the segment. duration: s the segment takes. slowed: bool, where the speed asked for is not kept.
-    lost: s that all of it takes longer than asked.
+    ratio: share of the maximum speed for the fastest axis, 0 at standstill. axis: int, the axis
+    that prevents the requested speed, -1 without one. asked, achieved: requested speed and mean
+    achieved speed of the segment, mm/s at the deposition point. duration: s of the segment. slowed:
+    bool, whether the requested speed is not kept. lost: s by which the whole job takes longer than
+    requested.
     """
 
     ratio: Array
@@ -130,10 +133,11 @@ def _rates(motion: Motion) -> Array:
 def _accelerated(
     motion: Motion, factor: Array, axis: Integers, largest: Array
 ) -> tuple[Array, Integers]:
-    """The factors (n,) of speed that also keep the accelerations, and the axes that ask for them.
+    """Return the speed factors (n,) that also keep the accelerations, and the axes that limit them.
 
-    With a clock u that runs evenly at the speed asked for and the pace p = du/dt, an axis moves with q' p and accelerates
-    by q'' p^2 + q' (p^2)'/2. q' is that of a segment; at a row between two q'' is its change over the mean of their times.
+    With a clock u that runs evenly at the requested speed and the pace p = du/dt, an axis moves
+    with q' p and accelerates by q'' p^2 + q' (p^2)'/2. q' is constant in a segment; at a row
+    between two segments q'' is its change over the mean of their times.
     """
     rates = _rates(motion)
     moving = np.flatnonzero(np.abs(rates).max(axis=1) > 0.0)

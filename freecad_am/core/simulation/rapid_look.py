@@ -22,8 +22,12 @@ PIECE = 2048  # moves or looks done together
 
 @dataclass(frozen=True, eq=False)
 class RapidsLooked:
-    """How many rapids were driven and at how many places, so far apart (mm) at most; rows: (k,) those of the motion on the
-    way to which the nozzle met something; place: layer, bead and point of the first of these, None without any."""
+    """The result of the rapid check: number of rapids and checked positions, and their largest
+    spacing, mm.
+
+    rows: (k,) motion rows with contact on the way to them. place: layer, bead and point of the
+    first contact, None without one.
+    """
 
     moves: int
     places: int
@@ -41,11 +45,11 @@ def looked_at(
     height: float,
     max_places: int,
 ) -> RapidsLooked:
-    """Whether the nozzle meets bodies, the platform or beads that are there by then on any rapid, which runs straight in the
-    joints; at so many places at most, evenly along all rapids.
+    """Check whether the nozzle hits bodies, the platform or printed beads on any rapid.
 
-    beads: those of the motion, in order; width, height: mm, of those that do not tell theirs. The way to the first row, and
-    what is not reached, is not known and not driven.
+    Rapids are straight in the joints. At most `max_places` positions are checked, evenly along all
+    rapids. beads: of the motion, in order. width, height: mm, for beads without their own. The way
+    to the first row and unreachable rows are unknown and not checked.
     """
     rows = 1 + np.flatnonzero(~motion.deposit[1:] & motion.reachable[1:] & motion.reachable[:-1])
     start, turned = motion.joints[rows - 1], motion.joints[rows] - motion.joints[rows - 1]

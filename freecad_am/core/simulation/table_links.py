@@ -25,8 +25,12 @@ MIN_HEIGHT_MM = 1e-3  # mm; what ends below its path is drawn as lying on it
 
 
 def heights(deposited: Array, position: Array, layer: Index) -> Array:
-    """(n,) mm above points (n, 3) of layers (n,) at which the surface of a deposit is: that of the nearest piece of the same
-    layer. laid: (m, 5) places of pieces, their layers, and mm of the surface above them. NaN in layers without pieces."""
+    """Return the height (n,) of the deposit's surface above points (n, 3) of layers (n,), mm.
+
+    It is the height of the nearest piece in the same layer, NaN in layers without pieces.
+    deposited: (m, 5) positions of pieces, their layers, and the height of the surface above them,
+    mm.
+    """
     surface_heights = np.full(len(position), np.nan)
     piece_layers = deposited[:, 3].astype(np.intp)
     for number in np.unique(layer).tolist():
@@ -68,21 +72,21 @@ def rates(motion: Motion) -> Rates:
     return Rates(speed, acceleration, jerk)
 
 
-# mm: radius of the table where nothing lies on it, and of the head's joints
+# mm: radius of the table without a part on it, and of the head's joints
 RADIUS = 130.0
 JOINT = 42.0
 
 
 def standing_link(chain: Chain) -> int:
-    """The link that stands still: the base, or the one after the last axis that slides."""
+    """Return the fixed link: the base, or the one after the last prismatic axis."""
     slides = np.flatnonzero(chain.sliding)
     return int(slides[-1]) + 1 if len(slides) else 0
 
 
 def solids(chain: Chain, radius: float = RADIUS, torch: float = 60.0) -> list[list[Solid]]:
-    """The solids of each link (axes + 1), the torch's first, in the frame of the link.
+    """Return the solids of each link (axes + 1), the torch's first, in the frame of the link.
 
-    radius: of the table, mm. torch: mm from the tip of the nozzle to where the head begins.
+    radius: of the table, mm. torch: mm from the tip of the nozzle to the head.
     """
     solids_of_links: list[list[Solid]] = [[] for _ in range(chain.axes + 1)]
     first_slide, stands = int(np.flatnonzero(chain.sliding)[0]), standing_link(chain)
@@ -165,7 +169,9 @@ def _cradle(
     radius: float,
     solids_by_link: list[list[Solid]],
 ) -> Array:
-    """The cradle that turns about `direction` and its two bearings; the lowest point of what turns."""
+    """Add the cradle that turns about `direction` and its two bearings; return the lowest point of
+    the rotating solids.
+    """
     axis = origin + ((below - origin) @ direction) * direction
     across = np.cross(up, direction)
     reach = 1.22 * radius
@@ -200,15 +206,18 @@ def _cradle(
     return np.asarray(lowest)
 
 
-# rotations about the nozzle that are looked at for a robot at rest
+# rotations about the nozzle to try for a robot at rest
 _ROTATIONS = 24
 
 
 @dataclass(frozen=True, eq=False)
 class Placing:
-    """Poses in the world, mm. links: (axes + 1, 4, 4), the robot's own. part: (4, 4), its own coordinates. nozzle: (4, 4),
-    the tip, its Z pointing into the nozzle. platform: (4, 4), what the part stands on. external_links: (k, 4, 4), the links of
-    positioner and track that are known."""
+    """Poses in the world, mm.
+
+    links: (axes + 1, 4, 4), of the robot. part: (4, 4), its coordinates. nozzle: (4, 4), the tip,
+    its Z pointing into the nozzle. platform: (4, 4), below the part. external_links: (k, 4, 4), the
+    known links of positioner and track.
+    """
 
     links: Array
     part: Array
@@ -240,10 +249,11 @@ def placing(cell: Cell, joints: ArrayLike) -> Placing:
 
 
 def at_rest(cell: Cell, point: ArrayLike) -> Array:
-    """(axes,) joints with which the nozzle stands upright, by the platform, on a point (3,) of the part.
+    """Return the joints (axes,) with which the nozzle is upright, by the platform, on a point (3,)
+    of the part.
 
-    A robot takes the rotation and branch with the most room to its limits; all axes are 0 where it does not reach. Turning
-    axes of a machine with rotary axes are at 0.
+    A robot takes the rotation and branch with the largest margin to its limits; all axes are 0 if
+    the point is out of reach. Rotary axes of a five-axis machine are at 0.
     """
     target, chain = np.asarray(point, float), cell.machine.chain
     if not cell.machine.free:

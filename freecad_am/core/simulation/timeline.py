@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""When a motion is where: the time of every row with the waits between, and the state at any time.
+"""The timeline of a motion: the time of every row with the waits between, and the state at any
+time.
 
-The machine arrives at each row at the end of its segment, and may stand there: while the deposit starts or ends (lead
-times), and between layers. Within a segment joints run straight.
+The machine arrives at each row at the end of its segment. It may wait there while the deposit
+starts or ends (lead times), and between layers. Within a segment the joints move straight.
 """
 
 from __future__ import annotations
@@ -20,12 +21,12 @@ from ..types import Array, ArrayLike, Integers, Mask
 
 
 def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> Array:
-    """(n,) mm^3 that the segment ending at each row leaves, 0 in rapid moves.
+    """Return the deposit volume (n,) of the segment that ends at each row, mm^3, 0 in rapids.
 
-    A bead's section is its width, predicted or else as beads of the toolpath count, times the layer height: what is
-    deposited once it has solidified, not what the wire holds. Layers that were fitted to a scan are as high as that made
-    them in the mean. Toolpaths of older documents do not tell how wide beads count;
-    there it is `process.bead_width`.
+    A bead's section is its width times the layer height: the solid deposit, not the volume of the
+    wire. The width is the predicted one, or else the bead width of the toolpath. Layers fitted to a
+    scan have their mean fitted height. Toolpaths of older documents have no bead width;
+    `process.bead_width` replaces it.
     """
     length = np.concatenate([[0.0], np.linalg.norm(np.diff(motion.position, axis=0), axis=1)])[
         : len(motion)
@@ -111,12 +112,13 @@ WITH_WITHDRAWAL = 3
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Where the machine is at times (...,). All arrays have the shape of the times.
+    """The machine state at times (...,). All arrays have the shape of the times.
 
-    row: int, the row it runs to or stands at. share: 0..1 of the segment that ends there; 1 while it stands. joints:
-    (..., axes) rad or mm, NaN where unreachable. position: (..., 3) mm in the part, straight between rows; in rapid moves
-    the tip goes where the joints take it, which may be wide of that. deposit: bool, whether it is on.
-    standing: bool. speed: mm/s at the deposition point, as asked; 0 while it stands.
+    row: int, the row that the machine moves to or waits at. share: 0..1 of the segment that ends
+    there; 1 at standstill. joints: (..., axes) rad or mm, NaN where unreachable. position: (..., 3)
+    mm in the part, straight between rows; in rapids the tip follows the joints and may be far from
+    this line. deposit: bool, whether it is on. standing: bool, whether the machine is at
+    standstill. speed: requested mm/s at the deposition point; 0 at standstill.
     """
 
     row: Integers

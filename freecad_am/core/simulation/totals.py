@@ -17,8 +17,11 @@ MM3_PER_CM3 = 1000.0
 
 @dataclass(frozen=True)
 class Totals:
-    """Times s; length mm; volume mm^3, of beads as they count; mass g of it; fed: mm^3 of wire, None where its speed is not
-    known. Waits are what the machine stands still on purpose, lead times included."""
+    """Totals of a job: times, s; length, mm; bead volume, mm^3, and its mass, g.
+
+    fed: mm^3 of wire, None if its speed is unknown. Waits are the intended standstills of the
+    machine, lead times included.
+    """
 
     time: float
     deposit_time: float

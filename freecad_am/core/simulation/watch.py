@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What to look at in a motion: rows that violate a limit or come near one, near a singularity, where the robot touches
-something, or is slower than asked."""
+"""Points of interest in a motion: rows beyond or near a limit or a singularity, robot contacts, and
+speed losses.
+"""
 
 from __future__ import annotations
 
@@ -27,9 +28,12 @@ STEP, SLIDE, MAX_LOOKS = float(np.radians(1.0)), 10.0, 40_000
 
 @dataclass(frozen=True, eq=False)
 class ArmTouches:
-    """link: (n,) of the n rows of a motion the link that touches something on the segment that ends there, or at the row,
-    NONE where none does: number of `links`. what: (n,) number of `names`, what it touches. step: rad between two places
-    looked at."""
+    """Contacts of links in a motion of n rows.
+
+    link: (n,) the link in contact at the row or on the segment that ends there, NONE without one.
+    The number of `links` means the nozzle. what: (n,) index in `names` of the body in contact.
+    step: rad between two checked positions.
+    """
 
     link: Index
     what: Index
@@ -138,10 +142,13 @@ TOUCHES = "touches"
 
 @dataclass(frozen=True)
 class Finding:
-    """What is to be seen at a row, the first of a run of rows. kind: one of the words above. label: the limit or axis it
-    is about, or an issue's message, or the axis that moves the link ('base' of the first) that touches `other`. value,
-    than: worst margin in degrees or mm and 0; condition and its threshold; speeds achieved and asked, mm/s, of the run's
-    worst row."""
+    """A point of interest at a row, the first of a run of rows.
+
+    kind: one of the words above. label: the limit or axis, or an issue's message, or the axis that
+    moves the link ('base' for the first) in contact with `other`. value, than: worst margin in
+    degrees or mm and 0; condition and its threshold; achieved and requested speeds, mm/s, of the
+    run's worst row.
+    """
 
     row: int
     kind: str
@@ -153,9 +160,13 @@ class Finding:
 
 @dataclass(frozen=True, eq=False)
 class Watch:
-    """margin: (n,) the smallest to any limit, in degrees or mm, and `limit`, which of `Limits.labels`. condition,
-    threshold: (n,), NaN where not known. findings: in the order of rows. touching: (n,) the link that touches something,
-    NONE where none does; arm_known: whether that was looked at."""
+    """The points of interest of a motion.
+
+    margin: (n,) the smallest margin to any limit, in degrees or mm; limit: its index in
+    `Limits.labels`. condition, threshold: (n,), NaN if unknown. findings: in the order of rows.
+    touching: (n,) the link in contact, NONE without one; arm_known: whether arm contacts were
+    checked.
+    """
 
     margin: Array
     limit: Index
