@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Documents name the classes of view providers by module and class. Those of documents saved before these modules moved are
-found where they are now; FreeCAD saves them under their present names."""
+"""Documents store view providers by module and class. This finds classes of documents saved before the modules
+moved; FreeCAD saves them under their present names."""
 
 from __future__ import annotations
 

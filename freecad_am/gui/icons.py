@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Paths of icons, and icons with a badge that tells the status of an object."""
+"""Paths of icons, and icons with a badge for the status of an object."""
 
 from __future__ import annotations
 

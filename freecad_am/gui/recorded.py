@@ -21,7 +21,8 @@ IMPORT = "import freecad_am.api as am"
 
 
 def make(document: Any, function: str, arguments: dict[str, str]) -> None:
-    """Call a function that makes something in a document. Raises what it raises, ReferenceError when it is closed."""
+    """Call a function that creates an object in a document. Raises its errors, ReferenceError if the document is
+    closed."""
     _run(document, function, _document(document), arguments)
 
 
@@ -31,7 +32,7 @@ def change(obj: Any, arguments: dict[str, str]) -> None:
 
 
 def act(obj: Any, function: str, arguments: dict[str, str]) -> None:
-    """Call a function on a stage. Raises what it raises, ReferenceError when the stage is gone."""
+    """Call a function on a stage. Raises its errors, ReferenceError if the stage is deleted."""
     target = reference(obj)
     _run(obj.Document, function, target, arguments)
 
@@ -70,7 +71,7 @@ def _run(document: Any, function: str, target: str, arguments: dict[str, str]) -
     with busy(), step:
         Gui.doCommand(call)
     new = [finding for finding in _wrong(document) if finding not in old_findings]
-    for name, status, message in new[:1]:  # those that follow say it again
+    for name, status, message in new[:1]:  # later stages repeat it
         text = tr("{} failed: {}") if status == FAILED else tr("{} is infeasible: {}")
         App.Console.PrintError(text.format(name, translated(message)) + "\n")
 

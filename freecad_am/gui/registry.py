@@ -24,10 +24,10 @@ def edit(obj: Any) -> None:
 
 
 def fill_menu_of_stage(menu: Any, obj: Any) -> None:
-    """Add what can be done with a stage to its context menu in the tree."""
+    """Add the entries of a stage to its context menu in the tree."""
     _acts["fill_menu_of_stage"](menu, obj)
 
 
 def fill_menu_of_job(menu: Any, group: Any) -> None:
-    """Add what can be done with a whole job to its context menu in the tree."""
+    """Add the entries of a whole job to its context menu in the tree."""
     _acts["fill_menu_of_job"](menu, group)

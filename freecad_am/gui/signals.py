@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Signals of what Qt or FreeCAD has made, such as FreeCAD's fields and their parts.
+"""Signals of objects created by Qt or FreeCAD, such as FreeCAD's fields.
 
 `sender.signal.connect` of PySide2 keeps the Python side of such an object for ever, also when the object itself is deleted.
-That of a field of FreeCAD is then found, by its place in memory, in stead of whatever comes to be there later: what Python
-takes for a new line edit is a dead spin box, and the panel it belongs to cannot be made.
+The wrapper of a deleted FreeCAD field is then found by its memory address instead of a later object there: Python
+takes a new line edit for a dead spin box, and its panel cannot be created.
 """
 
 from __future__ import annotations

@@ -32,8 +32,8 @@ _together: _Dialog | None = None
 
 
 def carry_out(work: Callable[[], Any], title: str, doing: str = "") -> Any:
-    """What `work` returns or raises, done in another thread; it must touch no document. doing: what is told of it as long as
-    it tells nothing itself. Raises Cancelled."""
+    """What `work` returns or raises, done in another thread; it must touch no document. doing: message until the
+    work reports progress. Raises Cancelled."""
     worker = Worker(work)
     if not worker.ended.wait(AT_ONCE):
         with busy() as dialog:
@@ -43,7 +43,7 @@ def carry_out(work: Callable[[], Any], title: str, doing: str = "") -> Any:
 
 @contextlib.contextmanager
 def busy() -> Iterator[_Dialog]:
-    """Within it several works are one to the user: one dialog, which shows up when all of them take long."""
+    """Show one dialog for several works, if together they take long."""
     global _together
     if _together is not None:
         yield _together
@@ -98,11 +98,11 @@ def _run(loop: Any, flags: Any) -> None:
 
 
 class _Dialog:
-    """Text, bar and Cancel. It is made when it is due; Esc and closing it cancel too.
+    """Dialog with text, bar and Cancel, created when due; Esc and closing it cancel too.
 
     FreeCAD, which may be recomputing, takes mouse and keys from all windows but modal messages and progress dialogs; of the
-    latter Esc is a shortcut, which comes before keys. So it needs no filter of ours on all events of the application, which
-    would call Python for each of them, also while FreeCAD is in the midst of something.
+    latter Esc is a shortcut, which comes before keys. So no event filter on the application is needed, which would
+    call Python for every event, even in the middle of FreeCAD's work.
     """
 
     def __init__(self) -> None:
@@ -112,7 +112,7 @@ class _Dialog:
 
     @property
     def is_due(self) -> bool:
-        """Whether the user has waited long enough to be told."""
+        """Whether the work has taken long enough to show the dialog."""
         return monotonic() - self.since >= SHOWN_AFTER
 
     @property
@@ -159,7 +159,7 @@ class _Dialog:
         self.button.setFocus()
 
     def show_progress(self, title: str, fraction: float | None, text: str) -> None:
-        """What is computed, how far it is (None: unknown) and what it is doing."""
+        """Show what is computed, its progress (None: unknown) and the current step."""
         if self.box is None:
             return
         message = (

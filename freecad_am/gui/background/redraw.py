@@ -14,13 +14,13 @@ import FreeCADGui as Gui
 
 
 def schedule_redraw(view: Any) -> None:
-    """Have a 3D view drawn when fields that change now are painted. Raises RuntimeError when it is closed."""
+    """Redraw a 3D view together with the fields that change now. Raises RuntimeError if it is closed."""
     # not view.redraw(): in FreeCAD 0.20 that may draw at once, and it leaves out what Coin still has to do before
     view.graphicsView().viewport().update()
 
 
 def views_with_fields(document: str) -> None:
-    """The same of all 3D views of a document."""
+    """Schedule a redraw of all 3D views of a document."""
     if document in App.listDocuments():
         for view in Gui.getDocument(document).mdiViewsOfType("Gui::View3DInventor"):
             schedule_redraw(view)

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Work in a thread of its own, which touches no document and no window, and can be cancelled at any moment.
 
-It ends at its next report of progress, or between any two steps of Python, whichever comes first. A single call into
-compiled code is not interrupted: the work is left to itself then, and what it returns is dropped.
+A cancelled work ends at its next progress report or between two Python steps, whichever comes first. A single call
+into compiled code is not interrupted: the work then continues and its result is dropped.
 
-What the window is made of must end in the window's thread: a timer that is deleted in another one is still called by Qt
-afterwards, and FreeCAD crashes. Python deletes what nothing refers to in whatever thread dropped it last, and collects
-cycles (a widget and the method its signal calls are one) in whatever thread has just made many objects, which is the
-working one. So workers are kept, with what their work refers to, until their threads have ended, and while any thread
-goes on cycles are collected by a timer of the window alone.
+Widgets must be deleted in the window's thread: Qt still calls a timer deleted in another thread, and FreeCAD
+crashes. Python deletes an object in the thread that drops its last reference, and collects cycles (such as a widget
+and the method its signal calls) in the thread that has just made many objects, which is the worker. So workers and
+the objects they refer to are kept until their threads have ended, and while a thread runs only a timer of the
+window collects cycles.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from PySide import QtCore
 from ...core import one_thread
 from ...objects.work.progress import Cancelled, told_to
 
-AGAIN = 200  # ms between two looks at the threads that go on
+AGAIN = 200  # ms between two checks of running threads
 YOUNG = 1  # the generation of objects up to which cycles are collected at each look: those made since the last one
 
 
@@ -47,7 +47,7 @@ class Worker:
         self._thread.start()
 
     def result(self) -> Any:
-        """What the work, which has ended, returned; raises what it raised, once, and Cancelled when it was."""
+        """Return the result of the ended work; re-raise its error once, or Cancelled."""
         if self._cancelled:
             raise Cancelled
         error, self._error = self._error, None
@@ -72,7 +72,7 @@ class Worker:
             try:
                 with told_to(self._report):
                     self._value = self._work()
-            except BaseException as error:  # told to whoever asks for the result
+            except BaseException as error:  # raised by `result`
                 self._error = error
             with self._ending:
                 self.ended.set()
@@ -95,7 +95,7 @@ class Worker:
                 )
 
     def goes_on(self) -> bool:
-        """Whether the thread may still do anything; a cancelled one is told again to end."""
+        """Whether the thread still runs; a cancelled one is asked again to end."""
         alive = self._thread.is_alive()
         if self._cancelled:
             self._stop()
@@ -107,7 +107,7 @@ class Worker:
 
 
 _going: list[Worker] = []
-_collecting = False  # whether Python collected cycles by itself before the first of them
+_collecting = False  # whether Python's cycle collector was on before the first worker
 
 
 def _attend(worker: Worker) -> None:
@@ -144,8 +144,8 @@ DELETED = (
 
 @contextlib.contextmanager
 def while_there() -> Iterator[None]:
-    """Pass over that a field of a closed panel, or an object of a closed document, is gone, and nothing else: FreeCAD and
-    Python tell other errors as a RuntimeError too."""
+    """Ignore errors of deleted fields and objects, after a panel or document closes, but no other RuntimeError of
+    FreeCAD or Python."""
     try:
         yield
     except ReferenceError:
@@ -183,7 +183,7 @@ class Later:
 
 
 class Background:
-    """Carries out work for a panel while the window goes on; what is begun anew ends what went on."""
+    """Runs work for a panel in the background; new work cancels the running one."""
 
     def __init__(self, form: Any) -> None:
         self.worker: Worker | None = None
@@ -199,7 +199,7 @@ class Background:
         self.timer.start()
 
     def cancel(self) -> None:
-        """End what goes on, if anything does; once or more often."""
+        """Cancel running work, if any; may be called repeatedly."""
         if self.worker is not None:
             self.worker.cancel()
             self.worker = self.show = None
@@ -207,7 +207,7 @@ class Background:
             self.timer.stop()
 
     def at_once(self) -> None:
-        """Show what has ended, without waiting for the next look."""
+        """Show ended work now, without waiting for the next check."""
         self._look()
 
     def _look(self) -> None:

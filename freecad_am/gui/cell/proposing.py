@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the panel of a cell proposes: what suits the machine that is chosen, and then the cell in which the job of the
-toolpath at hand can be done. What was entered stays, and the panel says what it would propose."""
+"""Proposals of the cell panel: values that suit the chosen machine, then a cell in which the toolpath's job is
+feasible. Entries are kept; the panel shows what it would propose."""
 
 from __future__ import annotations
 
@@ -29,9 +29,10 @@ from ..views.preview import Draft
 
 
 def whole_cell(machine: object, external: object) -> tuple[str, str] | None:
-    """What the fields of machine and external axes hold of a URDF that has them all; None where that is not asked for.
+    """Return machine and external axes for a URDF of a whole cell; None if the name is not such a file.
 
-    Raises InputError BAD_URDF where robot, track and positioner cannot be told apart, BAD_VALUE for what is no URDF.
+    Raises InputError BAD_URDF if robot, track and positioner cannot be distinguished, BAD_VALUE if the file is not
+    a URDF.
     """
     if not isinstance(external, str) or external.strip() != WHOLE_CELL:
         return None
@@ -45,16 +46,16 @@ OF_ROBOTS = (SETUP, POINT, BRANCH, TOOL, TORCH, ARM, OBSTACLES, EXTERNAL)
 
 
 class ProposingPanel(PreviewPanel):
-    """Proposes in fields of a cell. A panel that does says what was wrong with a machine, and which toolpath is at hand."""
+    """Proposes field values of a cell. A subclass reports problems of a machine and gives the toolpath."""
 
     later: Later
 
     def __init__(self, title: str, obj: Any, nodes: Any) -> None:
-        # what is proposed, by machine and set-up as the fields hold them, and which of these were followed last
+        # proposals by machine and setup of the fields, and the last pair followed
         self.of_machine: dict[tuple[str, str], CellParameters] = {}
         self.before: tuple[str, str] | None = None
         self.put: dict[str, Any] = {}  # what the panel itself has entered
-        self.noted: dict[str, Any] = {}  # what fields held when something was told of a proposal
+        self.noted: dict[str, Any] = {}  # field values when a proposal was reported
         super().__init__(title, [], obj, nodes)
         self.enabled = {key: self.places[key][0].widget.isEnabled() for key in OF_ROBOTS}
         if obj is None:
@@ -62,7 +63,7 @@ class ProposingPanel(PreviewPanel):
         self.proposing, self.suiting = Background(self.form), Background(self.form)
 
     def follow_undo(self) -> None:
-        """What comes back is the user's, to which nothing is proposed."""
+        """Restored entries belong to the user and get no proposals."""
         super().follow_undo()
         self.proposing.cancel()
         self.suiting.cancel()
@@ -72,7 +73,7 @@ class ProposingPanel(PreviewPanel):
         return self.places[key][0].widget
 
     def _tell_of_machine(self, text: str) -> None:
-        """What is wrong with the machine."""
+        """Show a problem of the machine."""
         raise NotImplementedError
 
     def _toolpath(self) -> Any:
@@ -82,7 +83,7 @@ class ProposingPanel(PreviewPanel):
     # ---- what suits a machine
 
     def _ask_proposal(self, name: str, machine: Machine) -> None:
-        """Find out, beside the window, what suits the machine; nothing for one that was not chosen here."""
+        """Compute a proposal for the machine in the background, unless it was not chosen here."""
         setup = self._widget(SETUP).currentData()
         previous, self.before = self.before, (name, setup)
         if previous == self.before or (previous is None and self.obj is not None):
@@ -114,7 +115,7 @@ class ProposingPanel(PreviewPanel):
         )
 
     def _tool(self) -> Any:
-        """The pose of the tip on the flange as it is entered, None where that cannot be read as numbers."""
+        """Return the entered pose of the tip on the flange, None if it is not numeric."""
         row, entry = self.places[TOOL][0].row, self._holds(TOOL)
         with contextlib.suppress(AmError):
             return None if entry is None else row.inner(entry, row.label)
@@ -123,23 +124,23 @@ class ProposingPanel(PreviewPanel):
     def _propose(
         self, worker: Worker, previous: tuple[str, str] | None, current: tuple[str, str], title: str
     ) -> None:
-        """Enter what suits the machine where nobody has entered anything else than what suited the one before."""
+        """Enter the proposal where the field still has the proposal of the previous machine."""
         try:
             self.of_machine = worker.result()
         except AmError as error:
             self._tell_of_machine(translated(error.message))
             return
-        except Exception as error:  # of nobody's making
+        except Exception as error:  # unexpected
             self._tell_of_machine(f"{type(error).__name__}: {error}")
             return
         proposal = self.of_machine.get(current)
         default = CellParameters()
         usual = (None if previous is None else self.of_machine.get(previous)) or default
-        if proposal is None:  # no cell can have it, which the preview tells
+        if proposal is None:  # no cell can have it; the preview reports it
             return
         if EXTERNAL in self.put and self._may_put(
             EXTERNAL, default.external
-        ):  # that of the machine before
+        ):  # of the previous machine
             self.places[EXTERNAL][0].show(default.external)
         for key, value, *was in (
             (POINT, proposal.deposition_point, usual.deposition_point, default.deposition_point),
@@ -165,27 +166,27 @@ class ProposingPanel(PreviewPanel):
         self._ask_for_job()
 
     def _may_put(self, key: str, *usual: Any) -> bool:
-        """Whether nobody has entered anything else than the panel itself, or what is usual."""
+        """Whether the field has only a value from the panel or a default."""
         return self.enabled[key] and any(
             _alike(self._holds(key), value) for value in (self.put.get(key), *usual)
         )
 
     def _put(self, key: str, value: Any, text: str) -> None:
-        """Enter what is proposed, and say so."""
+        """Enter a proposal and note it."""
         self.places[key][0].show(value)
         self.put[key] = value
         self._note(key, text)
 
     def _note(self, key: str, text: str) -> None:
-        """Tell something of a proposal as long as the field holds what it does."""
+        """Show a note on a proposal while the field keeps its value."""
         self.noted[key] = self._holds(key)
         self.show_note(key, text, wrong=False)
 
     # ---- what suits the job at hand
 
     def _ask_for_job(self) -> None:
-        """Find out, beside the window, in which cell the job of the toolpath at hand can be done, from what is entered on;
-        nothing where that is no cell, which the preview tells."""
+        """Search a feasible cell for the toolpath's job in the background, starting from the entries. The preview
+        reports entries that are not a cell."""
         toolpath = self._toolpath()
         if toolpath is None:
             return
@@ -207,12 +208,12 @@ class ProposingPanel(PreviewPanel):
             )
 
     def _suit(self, worker: Worker, entered: dict[str, Any], label: str) -> None:
-        """Enter the cell of the job where nobody has entered anything else in any of its fields, else tell it there."""
+        """Enter the job's cell if all its fields are unedited, else note it at the fields."""
         try:
             entered_values, suited_values = worker.result()
-        except AmError:  # which the preview tells
+        except AmError:  # the preview reports it
             return
-        except Exception as error:  # of nobody's making
+        except Exception as error:  # unexpected
             self._tell_of_machine(f"{type(error).__name__}: {error}")
             return
         if self._all_held() != entered:  # something else was entered meanwhile
@@ -245,13 +246,13 @@ class ProposingPanel(PreviewPanel):
     # ---- entries
 
     def _holds(self, key: str) -> Any:
-        """What a field holds, None where that cannot be read."""
+        """Return the value of a field, None if it cannot be read."""
         with contextlib.suppress(InputError):
             return self.places[key][0].value
         return None
 
     def judge_entries(self) -> None:
-        """What was told of a proposal goes once something else is entered."""
+        """Clear the note on a proposal once the entry changes."""
         super().judge_entries()
         for key, value in list(self.noted.items()):
             if not _alike(self._holds(key), value):
@@ -259,7 +260,7 @@ class ProposingPanel(PreviewPanel):
                 self.show_note(key, "")
 
     def _carry_out(self) -> bool:
-        """Make or change the cell, after what was typed last is followed. What that entered nobody has seen: it is told."""
+        """Make or change the cell after following the last entry. Report values that the user has not seen."""
         previous = dict(self.put)
         self.later.at_once()
         for background in (self.proposing, self.suiting):
@@ -296,7 +297,7 @@ class ProposingPanel(PreviewPanel):
 
 
 def _alike(a: Any, b: Any) -> bool:
-    """Whether two poses, or two texts, are the same to whoever reads them."""
+    """Whether two poses or two texts are equal as displayed."""
     if isinstance(a, tuple) and isinstance(b, tuple):
         if any(isinstance(number, str) for number in (*a, *b)):  # an expression
             return a == b

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The room that our docks take from the rest of the window, height below the 3D view and width beside it, and give back."""
+"""The space that our docks take from the window and give back: height below the 3D view, width next to it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Follower:
         raise NotImplementedError
 
     def slotDeletedObject(self, obj: Any) -> None:
-        """An object is about to go; once it is gone, another is looked at."""
+        """Called before an object is deleted; afterwards another one is shown."""
         QtCore.QTimer.singleShot(0, self.fill)
 
     def slotDeletedDocument(self, document: Any) -> None:
@@ -34,7 +34,7 @@ class Follower:
         QtCore.QTimer.singleShot(0, self.fill)
 
     def slotActivateDocument(self, document: Any) -> None:
-        """Another document is looked at."""
+        """Called when another document becomes active."""
         if self.target is not None and self.target[0] != document.Name:
             self.target = None
         QtCore.QTimer.singleShot(0, self.fill)
@@ -90,7 +90,7 @@ class Lookout:
 
 MOST_SHARE = 0.38  # of the window that a dock asks for, so that the 3D view keeps its room
 _TOLERANCE_PX = 3  # pixels that layouts round away
-_STABLE_MS = 300  # ms in which docks that stand still do not change
+_STABLE_MS = 300  # ms without change after which docks are at rest
 _SIDE_AREAS = (QtCore.Qt.LeftDockWidgetArea, QtCore.Qt.RightDockWidgetArea)
 
 
@@ -104,7 +104,7 @@ class _Part:
 
 
 class DockArea:
-    """Of one area of the window. Docks of ours that are open there make it as large as the largest of them asks."""
+    """One dock area of the window. It is as large as its largest open dock requests."""
 
     def __init__(self, area: Any) -> None:
         self.area = area
@@ -114,9 +114,7 @@ class DockArea:
             str, int
         ] = {}  # names of other docks, and the pixels they had before ours came
         self.wishes: dict[str, int] = {}  # what docks had by the user's hand when they were closed
-        self.made: int | None = (
-            None  # what has come of the pixels that were asked for, once docks stand still
-        )
+        self.made: int | None = None  # resulting pixels once the docks are at rest
         self.last: int | None = None
         self.timer = QtCore.QTimer()
         self.timer.setSingleShot(True)
@@ -124,7 +122,7 @@ class DockArea:
         self.timer.timeout.connect(self._measure)
 
     def enter(self, dock: Any, min_pixels: int) -> None:
-        """A dock is about to be opened; it asks for `least` pixels, 0 for what its fields need."""
+        """Prepare to open a dock of at least `min_pixels`; 0: the size its fields need."""
         self._look()
         if not self.parts:
             self.before = {
@@ -140,7 +138,7 @@ class DockArea:
         )
 
     def fit_size(self) -> None:
-        """Make it as large as it is to be."""
+        """Resize the area to its target size."""
         docks = [member.dock for member in self.parts if self._stands(member.dock)]
         if docks:
             self._resize(docks[-1:], [self._target_extent()])
@@ -148,7 +146,7 @@ class DockArea:
             self.timer.start()
 
     def leave(self, dock: Any) -> None:
-        """A dock is about to be closed: what stays is soon as large as without it."""
+        """Prepare to close a dock; the others soon resize."""
         if not any(member.dock is dock for member in self.parts):
             return
         self._look()
@@ -159,7 +157,7 @@ class DockArea:
         QtCore.QTimer.singleShot(0, self._give_back)
 
     def has_another(self, dock: Any) -> bool:
-        """Whether another dock of ours is seen there at the same time."""
+        """Whether another of our docks is visible in the area."""
         visible_docks = self._visible_docks()
         return any(
             member.dock is not dock and member.dock in visible_docks for member in self.parts
@@ -173,14 +171,14 @@ class DockArea:
         self._resize(docks, [self.before[dock.objectName()] for dock in docks])
 
     def _target_extent(self) -> int:
-        """The pixels that all who are there make together, as they came."""
+        """Return the pixels requested by the open docks, in order of opening."""
         pixels = max(self.before.values(), default=0)
         for member in self.parts:
             pixels = member.extent if member.by_hand else max(pixels, member.extent)
         return pixels
 
     def _look(self) -> None:
-        """Take notice of what the user has done by hand since."""
+        """Record manual resizing by the user."""
         self.parts = [member for member in self.parts if self._stands(member.dock)]
         if not self.parts:
             return
@@ -197,7 +195,7 @@ class DockArea:
             self.made = extent
 
     def _current_extent(self) -> int | None:
-        """The pixels of ours now; None where none is seen."""
+        """Return the current pixels of our docks; None if none is visible."""
         visible_docks = self._visible_docks()
         own_docks = [member.dock for member in reversed(self.parts) if member.dock in visible_docks]
         return self._extent(own_docks[0]) if own_docks else None
@@ -212,7 +210,7 @@ class DockArea:
         )
 
     def _visible_docks(self) -> list[Any]:
-        """The docks that stand there, without those behind others: Qt keeps these outside of the window."""
+        """Return the visible docks, without those behind others, which Qt keeps outside the window."""
         window = Gui.getMainWindow()
         docks = present(window, QtGui.QDockWidget)
         return [
@@ -268,7 +266,7 @@ class Dock(QtGui.QDockWidget):
         super().setWindowTitle(escape_mnemonic(title))
 
     def hold(self, title: str, content: Any) -> None:
-        """Show this, under this title; what it held goes."""
+        """Show a widget under a title; delete the previous one."""
         self.setWindowTitle(title)
         old_content = self.widget()
         self.setWidget(content)
@@ -276,7 +274,7 @@ class Dock(QtGui.QDockWidget):
             old_content.deleteLater()
 
     def come(self) -> None:
-        """Open it, in front of those it shares a place with."""
+        """Open the dock in front of its tabs."""
         window = Gui.getMainWindow()
         if not self.isFloating() and window.dockWidgetArea(self) == _NOWHERE:
             window.addDockWidget(self.area, self)
@@ -292,7 +290,7 @@ class Dock(QtGui.QDockWidget):
             QtCore.QTimer.singleShot(0, self._fit_size)  # once it has its place among other docks
 
     def _join(self, window: Any) -> None:
-        """Become a tab of one of ours that stands there, or would if it were open."""
+        """Become a tab of one of our docks in the area, open or closed."""
         docks = [
             dock
             for dock in _docks.values()
@@ -342,14 +340,14 @@ _areas: list[DockArea] = []
 
 
 def dock(name: str, area: Any, wide: float = 0.0, high: int = 0) -> Dock:
-    """The frame of this name, made when it is first asked for."""
+    """Return the dock of this name; create it at first use."""
     if name not in _docks:
         _docks[name] = Dock(name, area, wide, high)
     return _docks[name]
 
 
 def _area(dock: Dock) -> DockArea | None:
-    """The room of the area where a dock stands, or would; None of one that floats."""
+    """Return the area of a dock; None if it floats."""
     area = Gui.getMainWindow().dockWidgetArea(dock)
     if dock.isFloating() or area == _NOWHERE:
         return None

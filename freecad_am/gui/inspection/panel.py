@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of an inspection: what was measured, how it is laid onto the part, and what came of it."""
+"""The panel of an inspection: the measurement, its registration and the results."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ from ..widgets.fold import Fold
 
 
 class PlannedChoice(Input):
-    """A feature, a toolpath, or an object with a shape or mesh: the present one, else the selected one or that of the job
-    that is selected, else the last feature."""
+    """Choice of a feature, a toolpath, or an object with a shape or mesh: the present one, else the selected one or
+    the one of the selected job, else the last feature."""
 
     def __init__(self, link: Link, present: Any) -> None:
         self.link, self.label = link, tr("Planned")
@@ -152,7 +152,7 @@ class FileChoice(Input):
 
 
 def offered(document: Any) -> list[Any]:
-    """What points can be compared with, in the order of the tree."""
+    """Return the objects that points can be compared with, in tree order."""
     objects = []
     for obj in [] if document is None else document.Objects:
         stage = stage_of(obj)
@@ -257,7 +257,7 @@ class InspectionPanel(StagePanel):
         choices[1].predict.clicked.connect(lambda *_: choices[0].choose_toolpath())
         super().__init__(Inspection, tr("Inspect") if obj is None else obj.Label, choices, obj)
         if obj is None and not choices[0].missing:
-            self.say("")  # the file is still to be chosen, which needs no telling in red
+            self.say("")  # no file chosen yet; show no error
         self.heading.heading.setChecked(obj is None or not obj.Key)
         self.results = Fold(tr("Result"), True)
         self.table, self.histogram = QtGui.QTableWidget(0, 3), Histogram()
@@ -361,7 +361,7 @@ class InspectionPanel(StagePanel):
 
 
 def inspect() -> None:
-    """Open the panel of a new inspection; of the one that is selected, if there is one."""
+    """Open the panel of the selected inspection, else of a new one."""
     inspections = [
         obj
         for obj in Gui.Selection.getSelection()

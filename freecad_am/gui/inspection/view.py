@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Measured points in the 3D view, laid onto the part and coloured by their deviation, with a legend."""
+"""Measured points in the 3D view, registered to the part and coloured by deviation, with a legend."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ..views.base import StageView
 
 
 class InspectionView(StageView):
-    """Green within tolerance, to red where there is more than planned, to blue where there is less."""
+    """Green within tolerance, to red for excess, to blue for missing material."""
 
     icon = "inspect"
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A table of figures that are typed or pasted, and read so that what is not a number is told with its row and column."""
+"""A table of typed or pasted figures; errors name row and column."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..texts.in_language import sentence, tr, translated_error
 
 
 class Page(QtGui.QWizardPage):
-    """A page that makes the wizard's draft a step fuller. `fill` shows a draft that came from another source; `take` puts
+    """A page that completes the wizard's draft by one step. `fill` shows a draft that came from another source; `take` puts
     what was entered into the draft, and raises InputError."""
 
     def __init__(self, wizard: Any, name: str, title: str, explanation: str) -> None:
@@ -42,7 +42,7 @@ class Page(QtGui.QWizardPage):
         return label
 
     def say(self, text: str) -> None:
-        """Tell what is wrong; '' for nothing any more."""
+        """Show a problem; '' hides it."""
         self.error.setText(text)
         self.error.setVisible(bool(text))
 
@@ -50,10 +50,10 @@ class Page(QtGui.QWizardPage):
         """Show the draft."""
 
     def take(self) -> None:
-        """Put what was entered into the draft."""
+        """Store the entries in the draft."""
 
     def initializePage(self) -> None:
-        """Called by Qt when the page comes: what was entered stays unless the machine is another one."""
+        """Called by Qt when the page opens: entries stay unless the machine changed."""
         self.say("")
         if self.filled_with is not self.owner.origin:
             self.filled_with = self.owner.origin
@@ -109,7 +109,7 @@ def axis_names(owner: Any) -> list[str]:
     return [f"J{number}" for number in range(1, draft.chain.axes + 1)]
 
 
-CELL_PADDING = 12  # pixels in a cell beside its text
+CELL_PADDING = 12  # pixels in a cell next to its text
 ROW_HEIGHT = 24
 MOST_SHOWN = 9  # rows that are to be seen at once
 
@@ -129,7 +129,7 @@ class FigureTable:
         self.set_shape(rows, columns)
 
     def set_shape(self, rows: Sequence[str], columns: Sequence[str]) -> None:
-        """Rows and columns by their headings; what is in cells that stay is kept."""
+        """Set rows and columns by their headings; keep the content of remaining cells."""
         self.widget.setRowCount(len(rows))
         self.widget.setColumnCount(len(columns))
         self.widget.setVerticalHeaderLabels(list(rows))
@@ -155,7 +155,7 @@ class FigureTable:
         )
 
     def widen(self, columns: Sequence[int], widest: str) -> None:
-        """Let columns have room for such a figure; the others share what is left."""
+        """Fit columns to such a figure; the others share the remaining width."""
         header, width = (
             self.widget.horizontalHeader(),
             self.widget.fontMetrics().boundingRect(widest).width() + CELL_PADDING,
@@ -165,7 +165,7 @@ class FigureTable:
             header.resizeSection(column, width)
 
     def lock(self, *columns: int) -> None:
-        """Let columns be read only: what is shown there is computed."""
+        """Make columns read-only for computed values."""
         self.read_only = frozenset(columns)
         for row in range(self.widget.rowCount()):
             for column in columns:
@@ -181,7 +181,7 @@ class FigureTable:
         self.widget.blockSignals(False)
 
     def text(self, row: int, column: int) -> str:
-        """What is in a cell."""
+        """Return the text of a cell."""
         item = self.widget.item(row, column)
         return "" if item is None else str(item.text()).strip()
 

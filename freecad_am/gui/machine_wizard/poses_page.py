@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Check poses, typed from the pendant: how far the machine is from them, and what is likely wrong."""
+"""Check poses typed from the pendant: the machine's deviations and the likely errors."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class PosesPage(Page):
     def _angles(self) -> list[str]:
         return pose_figures.CONVENTIONS[str(self.convention.currentData())][0].split()
 
-    # ---- what is shown
+    # ---- display
 
     def fill(self) -> None:
         """Empty rows, the first at the serial zeros; or the poses of the machine that is copied."""
@@ -130,7 +130,7 @@ class PosesPage(Page):
             self.later.ask()
 
     def initializePage(self) -> None:
-        """Called by Qt when the page comes: poses stay, deviations are those of the conventions as they are now."""
+        """Called by Qt when the page opens: poses stay, deviations use the current conventions."""
         super().initializePage()
         zeros = ", ".join(format_figure(value) for value in self.owner.draft.shown.zeros)
         self.zero.setText(
@@ -138,12 +138,12 @@ class PosesPage(Page):
         )
         self.judge()
 
-    # ---- what is entered
+    # ---- entries
 
     def _entered(self, require_complete: bool) -> tuple[Array, Array, list[int]]:
         """Joints (n, axes) as shown, flange poses (n, 4, 4) in base_link and their rows.
 
-        Rows that are begun but not complete are left out unless `whole`; InputError names what is missing then.
+        Incomplete rows are skipped unless `require_complete`; then InputError names the missing figure.
         """
         draft, values, figures, rows = self.owner.draft, [], [], []
         for row in range(self.table.widget.rowCount()):
@@ -210,10 +210,10 @@ class PosesPage(Page):
             )
         self.owner.draft = replace(draft, values=values, poses=poses)
 
-    # ---- what it says
+    # ---- verdict
 
     def judge(self) -> None:
-        """Show the deviations, and what may be wrong."""
+        """Show the deviations and likely errors."""
         draft = self.owner.draft
         self._clear_offers()
         self.say("")
@@ -278,7 +278,7 @@ class PosesPage(Page):
             widget.deleteLater()
 
     def _offer(self) -> None:
-        """A button per thing that may be wrong, which puts it right."""
+        """Add a button per likely error that corrects it."""
         if len(self._entered(require_complete=False)[2]) < MIN_POSES:
             return
         for number, suspect in enumerate(self.suspects):
@@ -323,7 +323,7 @@ class PosesPage(Page):
         return tr("signs and zeros of {} differ").format(axes)
 
     def adopt(self, suspect: Suspect) -> None:
-        """Put right what may be wrong, in the draft and on the page of conventions."""
+        """Correct a likely error in the draft and on the page of conventions."""
         draft = self.owner.draft
         if suspect.shown is not None:
             draft = replace(draft, shown=suspect.shown)

@@ -32,7 +32,7 @@ MOST_AXES = 6
 
 
 class SourcePage(Page):
-    """Makes the draft anew where the source is another one."""
+    """Page that creates the draft again if the source changes."""
 
     def __init__(self, wizard: Any) -> None:
         super().__init__(
@@ -246,7 +246,7 @@ class SourcePage(Page):
                 box.setCurrentIndex(box.findText(link))
 
     def _stands(self) -> str:
-        """Where the mechanism of these links stands in the cell of the file; '' where nothing tells it."""
+        """Return the location of the mechanism of these links in the file's cell; '' if unknown."""
         links = self.base.currentText(), self.tip.currentText()
         return next(
             (where for _, ends, where in self.mechanisms if (ends.base, ends.tip) == links), ""
@@ -255,13 +255,13 @@ class SourcePage(Page):
     def _offer_tips(self, *_: Any) -> None:
         self.tip.clear()
         if self.robot is not None and self.base.count():
-            with contextlib.suppress(InputError):  # a chain that carries itself is told on Next
+            with contextlib.suppress(InputError):  # Next reports a chain that carries itself
                 self.tip.addItems(self.robot.tips(self.base.currentText()))
 
     # ---- the draft
 
     def take(self) -> None:
-        """Make the draft. What was entered on later pages stays where the source is the same."""
+        """Make the draft. Entries on later pages stay if the source is unchanged."""
         entered = self._entered()
         if entered == self.taken and self.owner.draft is not None:
             return
@@ -280,7 +280,7 @@ class SourcePage(Page):
         self.owner.begin(draft)
 
     def _entered(self) -> str:
-        """All that tells one source from another."""
+        """Return all entries that identify the source."""
         tables = [
             [
                 table.text(row, column)

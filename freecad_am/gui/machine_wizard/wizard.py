@@ -125,7 +125,7 @@ class FramesPage(Page):
         self._follow()
 
     def take(self) -> None:
-        """Into the draft; the closed form must be there now."""
+        """Store the entries in the draft; require the closed form."""
         draft = self.owner.draft
         base, flange = (
             frames.from_rpy(line[:3], np.radians(line[3:])) for line in self.frames.figures()
@@ -297,7 +297,7 @@ class LimitsPage(Page):
         self.column.addStretch(1)
 
     def fill(self) -> None:
-        """Show what the source tells."""
+        """Show the figures of the source."""
         draft = self.owner.draft
         names = axis_names(self.owner)
         self.table.set_shape(names, _heads())
@@ -393,14 +393,14 @@ class MachineWizard(QtGui.QWizard):
         self.finished.connect(self._closed)
 
     def begin(self, draft: Draft) -> None:
-        """Another source: what was entered before is not of this machine."""
+        """Reset for another source: earlier entries belong to another machine."""
         self.draft = draft
         self.origin = object()
         self.geometry_sources = draft.sources
         self.copied = draft.values is not None
 
     def reject(self) -> None:
-        """Cancel, Esc and the window's own cross: what was entered is not lost without a question."""
+        """Handle Cancel, Esc and the close button: ask before entries are lost."""
         if not self._entered() or self._to_be_lost():
             super().reject()
 

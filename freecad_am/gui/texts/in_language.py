@@ -60,8 +60,8 @@ _KEY = re.compile(
 
 @lru_cache(maxsize=1)
 def _known() -> dict[str, tuple[str, str]]:
-    """The group within its panel, '' for none, and the label of each parameter, by its name in job files; of each group
-    too, and of each range, which has two fields."""
+    """Return group within the panel ('' for none) and label of each parameter by its job file name; also of each
+    group and of each range, which has two fields."""
     labels: dict[str, tuple[str, str]] = {}
     for section, cls in _SECTIONS:
         for row in rows(cls):
@@ -106,7 +106,7 @@ def as_in_panels(
     text: str, translate: Callable[[str], str], quoted: str = "“{}”", with_panel: bool = False
 ) -> str:
     """A message with the names that parameters have in panels, translated: “Bead width” for process.bead_width, “Motion:
-    joint” for motion: joint, with or without backticks. with_panel: tell whose panel has it, “Bead width” (Toolpath)."""
+    joint” for motion: joint, with or without backticks. with_panel: append the panel, “Bead width” (Toolpath)."""
 
     def quote_field(name: str, value: str = "") -> str:
         group, label = _known()[name]
@@ -141,15 +141,14 @@ def in_language(
     ----------
     text : str
     translate : callable
-        Returns the translation of a template; the template itself where there is none.
+        Returns the translation of a template, or the template without one.
     in_units : callable, optional
         Returns a text of numbers with the quantities in it in other units. None: quantities stay as they are.
 
     Returns
     -------
     str
-        Values are put in as they are written, those that are texts of ours in that language too. Values that are names stay
-        whatever is in them.
+        Values are inserted as written, our own texts also translated. Names stay unchanged.
     """
     template = (
         text.template if isinstance(text, Text) else text.replace("{", "{{").replace("}", "}}")
@@ -171,7 +170,7 @@ def in_language(
 def _value(
     value: str, translate: Callable[[str], str], in_units: Callable[[str], str] | None
 ) -> str:
-    """What is put into a text: one of ours, else a name or a number, which stay."""
+    """Return a value for a text: our texts translated, names and numbers unchanged."""
     if isinstance(value, Text):
         return in_language(value, translate, in_units)
     return in_language(value, translate) if " " in value or value in KINDS else value
@@ -190,13 +189,13 @@ FOLDER = Path(__file__).resolve().parents[3] / "resources" / "translations"
 
 
 def install() -> None:
-    """Let FreeCAD find our translations, and use that of its language."""
+    """Register our translations in FreeCAD and load the one of its language."""
     Gui.addLanguagePath(str(FOLDER))
     Gui.updateLocale()
 
 
 def tr(text: str) -> str:
-    """The text in the language of FreeCAD's window; itself where no translation is there.
+    """Return the text in the language of FreeCAD's window, or unchanged without a translation.
 
     Called with literals, or what was `marked`, so that a script can collect them; figures are put in afterwards, by
     `format`.
@@ -210,8 +209,8 @@ def marked(text: str) -> str:
 
 
 def translated(text: str, user_units: bool = True) -> str:
-    """What the core wrote, which knows no language and no panel - a help, a word, a message with figures in it - in that of
-    the window, with parameters as its panels call them; itself where no translation is there. user_units: False
+    """Translate a text of the core (help, word or message with figures) to the window's language, with panel names
+    of parameters; unchanged without a translation. user_units: False
     keeps quantities in mm, for files."""
     return as_in_panels(
         in_language(text, tr, in_user_units if user_units else None), translated, tr("“{}”"), True
@@ -232,8 +231,8 @@ def error_line(error: AmError) -> str:
 
 
 def sentence(text: str) -> str:
-    """A text that begins small, such as a finding, as a sentence of its own, in the language of the window. One that begins
-    with the name of a part or file keeps that as it is."""
+    """Return a text in the window's language, capitalised as a sentence. A leading name of a part or file stays as
+    it is."""
     translation = translated(text)
     return translation if names_first(text) else translation[:1].upper() + translation[1:]
 

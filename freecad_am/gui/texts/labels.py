@@ -5,5 +5,5 @@ from __future__ import annotations
 
 
 def escape_mnemonic(label: str) -> str:
-    """A label for a menu, title, tab or button, where Qt would take an `&` for the mark of a key."""
+    """Escape `&` in a label for a menu, title, tab or button, where Qt marks a key with it."""
     return label.replace("&", "&&")

@@ -8,7 +8,7 @@ from . import openers, whats_this
 from .freecad_am import add_command
 from .tool import PREFIX, Tool
 
-# In the order of the work; between groups stands a separator. A tool that is in none comes last.
+# In workflow order, with a separator between groups. Other tools come last.
 GROUPS = (
     ("OpenPart", "NewJob"),
     ("Cell", "Feature", "WallOnPart", "Solid", "SolidsOnHub", "Curves", "Cladding"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Entries of context menus in the tree: what can be done with a stage, or with a whole job."""
+"""Entries of context menus in the tree for a stage or a whole job."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _MAKE_NEXT = ("Toolpath", "JointPath", "Program")  # of a stage that fits
 
 
 def add_stage_entries(menu: Any, obj: Any) -> None:
-    """What can be done with a stage: edit, renew, follow it to its inputs; more by its kind."""
+    """Add the entries of a stage: edit, renew, go to its inputs, and more by kind."""
     from ..program import window
 
     kind = obj.Proxy.kind
@@ -58,7 +58,7 @@ def add_stage_entries(menu: Any, obj: Any) -> None:
 
 
 def _next_tools(kind: str) -> list[tuple[str, str]]:
-    """Tools of the toolbar that take a stage of this kind, in the order of the toolbar."""
+    """Return toolbar tools for a stage of this kind, in toolbar order."""
     return {
         "feature": [
             ("Toolpath", tr("Cut into layers…")),
@@ -83,7 +83,7 @@ def _next_tools(kind: str) -> list[tuple[str, str]]:
 
 
 def add_job_entries(menu: Any, group: Any) -> None:
-    """What can be done with a whole job."""
+    """Add the entries of a whole job."""
     stages = stages_in(group)
     _add(
         menu,
@@ -100,7 +100,7 @@ def add_job_entries(menu: Any, group: Any) -> None:
 
 
 def renew(obj: Any, force: bool = False) -> None:
-    """Renew a stage and what it is made from; what is wrong is told in the report view and in its status."""
+    """Renew a stage and its inputs; the report view and the status show problems."""
     text = ", force=True" if force else ""
     Gui.doCommand(recorded.IMPORT)
     try:
@@ -112,7 +112,7 @@ def renew(obj: Any, force: bool = False) -> None:
 
 
 def show_alone(group: Any) -> None:
-    """Show the last path of a job and its cell, hide those of other stages, and turn the camera to it."""
+    """Show the last path and the cell of a job, hide all other stages, and fit the view."""
     stages = stages_in(group)
     paths = [obj for obj in stages if obj.Proxy.kind in ("toolpath", "joint path") and obj.Key]
     visible_names = {obj.Name for obj in stages if obj.Proxy.kind == "cell"} | {
@@ -166,7 +166,7 @@ def go_to(obj: Any) -> None:
 
 
 def _add_tool_entry(menu: Any, name: str, text: str, obj: Any, on: bool) -> None:
-    """An entry that uses a tool of the toolbar on an object; of what needs no more than this, `on` tells."""
+    """Add an entry that applies a toolbar tool to an object; `on` enables it."""
     command = Gui.Command.get(f"RoboticAM_{name}")
     _add(
         menu,
@@ -205,7 +205,7 @@ def _export(obj: Any) -> None:
 def _save_cell(obj: Any) -> None:
     """Ask for a file, first one in the folder that New Job offers cells of, and write the cell into it."""
     default_path = saved_cells.path_of(os.path.join(saved_cells.own_folder(), obj.Label))
-    with contextlib.suppress(OSError):  # which is told where the file cannot be written
+    with contextlib.suppress(OSError):  # writing the file reports it
         os.makedirs(os.path.dirname(default_path), exist_ok=True)
     path, _ = QtGui.QFileDialog.getSaveFileName(
         Gui.getMainWindow(), tr("Save cell"), default_path, f"{tr('Cells')} {saved_cells.PATTERN}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel that writes a path for other programs or its report, or makes an object of another workbench of it."""
+"""The panel that exports a path or its report, or creates an object of another workbench from it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _PREFERENCES, _FOLDER = "User parameter:BaseApp/Preferences/Mod/RoboticAM", "Wir
 
 
 class ExportPanel:
-    """Chooses a path and what is made of it, first of all `kind`; nothing happens before OK."""
+    """Panel to choose a path and the export format, first `kind`; nothing happens before OK."""
 
     def __init__(self, kind: str = STEP) -> None:
         self.document = App.ActiveDocument
@@ -93,7 +93,7 @@ class ExportPanel:
         self.path.currentIndexChanged.connect(self._follow)
         self.browse.clicked.connect(self._ask)
 
-    # ---- what is shown
+    # ---- display
 
     def _combo(self, name: str, help: str) -> Any:
         combo = QtGui.QComboBox()
@@ -164,7 +164,7 @@ class ExportPanel:
         return os.path.join(folder, self.path.currentText().replace(os.sep, "-"))
 
     def _first(self) -> int:
-        """The path that is selected, or that of the job that is, else the last joint path."""
+        """Return the selected path or the one of the selected job, else the last joint path."""
         for obj in job_selection(self.document.Name):
             if obj in self.paths:
                 return self.paths.index(obj)
@@ -184,17 +184,17 @@ class ExportPanel:
             )
 
     def say(self, text: str) -> None:
-        """Show what is wrong."""
+        """Show an error."""
         self.error.setText(text)
         self.error.setVisible(bool(text))
 
     def _tell_file(self, text: str) -> None:
-        """What is wrong with the file, under its field."""
+        """Show a problem of the file under its field."""
         self.file_note.setText(text)
         self.file_note.setVisible(bool(text))
 
     def _file_anew(self, *_: Any) -> None:
-        """Another file is no longer what was wrong."""
+        """Clear the note once the file changes."""
         self._tell_file("")
 
     # ---- called by FreeCAD

@@ -33,8 +33,8 @@ def ask() -> None:
 
 
 def opened(path: str) -> Any:
-    """The part of a file in the active document, or in a new one, selected and in sight; None where it is refused, which is
-    told, or cancelled."""
+    """Open a part in the active or a new document, select and show it; None if it is rejected, which is reported,
+    or cancelled."""
     is_new = App.ActiveDocument is None
     if is_new:
         Gui.doCommand("App.newDocument()")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A command of FreeCAD as this workbench has them: its texts, what it needs, and that its tooltip says what is missing."""
+"""A FreeCAD command of this workbench: its texts, its requirements, and a tooltip that names missing ones."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Tool:
         }
 
     def IsActive(self) -> bool:
-        """Whether it can act; the tooltip says what is missing when it cannot."""
+        """Whether the tool is available; otherwise the tooltip names the missing requirement."""
         lacking = self.missing()
         help = tr(self.help)
         hint = tr("{}. {}").format(help, lacking) if lacking else help
@@ -73,8 +73,8 @@ class Tool:
             return tr("First open a part, or create a document.")
 
     def _explain(self, text: str) -> bool:
-        """Tell the tool's name in its tooltip, and what is missing, which FreeCAD sets once; False while there is no button
-        yet."""
+        """Put the tool's name and missing requirements in the tooltip, which FreeCAD sets only once; False while no
+        button exists."""
         command = Gui.Command.get(PREFIX + self.name)
         actions = [] if command is None else command.getAction()
         name, help = html.escape(tr(self.text).rstrip("…")), html.escape(text, quote=False)
@@ -92,6 +92,6 @@ class Tool:
         if lacking:
             App.Console.PrintWarning(tr("{}: {}").format(tr(self.text), lacking) + "\n")
         else:
-            # what the tool needed, told while the pointer was on it, is out of date
+            # the tooltip shown under the pointer is out of date
             Gui.getMainWindow().statusBar().clearMessage()
             self.action()

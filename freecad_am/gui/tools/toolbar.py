@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The workbench's toolbar has a row of its own where it would hide tools beside others."""
+"""Give the workbench's toolbar its own row where it would hide tools next to others."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def for_selection() -> list[str]:
 
 
 class _BarWidth(QtCore.QObject):
-    """Looks at the bar whenever its room changes, as with the width of the window."""
+    """Checks the bar whenever its space changes, such as with the window width."""
 
     def __init__(self, bar: Any) -> None:
         super().__init__(bar)

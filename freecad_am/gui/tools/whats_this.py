@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Help on our tools and panels: What's This opens their page of docs/tools in a window of FreeCAD.
 
-FreeCAD hands what was clicked to its Help module, which knows pages of FreeCAD's wiki alone; 0.20 has no such module and
-asks for it in a dialog. So in the mode of What's This, and only then, clicks on what is ours are taken before FreeCAD.
+FreeCAD passes clicks to its Help module, which knows only pages of FreeCAD's wiki; 0.20 has no such module and asks
+for it in a dialog. So in What's This mode, and only then, clicks on our widgets are handled before FreeCAD.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def faces(doc: Any) -> str:
 
 
 def feature(doc: Any) -> str:
-    """What is to be deposited."""
+    """Return what is missing to have an object to deposit."""
     if document(doc) or _some(doc, "feature"):
         return document(doc)
     return tr(
@@ -139,7 +139,8 @@ _SIZE = (900, 700)
 
 
 def page_of(name: str) -> str:
-    """The file of a tool, panel or dock by its name: `RoboticAM_SpinMap` gives `spin-map.md`, what is unknown the index."""
+    """The file of a tool, panel or dock by its name: `RoboticAM_SpinMap` gives `spin-map.md`, an unknown name the
+    index."""
     bare = name.removeprefix(PREFIX)
     words = "".join(f"-{letter.lower()}" if letter.isupper() else letter for letter in bare).lstrip(
         "-"
@@ -200,7 +201,7 @@ class HelpWindow:
         column.addWidget(self.text, 1)
 
     def _remove_empty_headings(self, *_: Any) -> None:
-        """Markdown has a row of headings in every table: those that are empty are left out."""
+        """Remove empty heading rows, which Markdown requires in every table."""
         for table in self.text.document().rootFrame().childFrames():
             if isinstance(table, QtGui.QTextTable) and table.rows() > 1:
                 cells = (table.cellAt(0, column) for column in range(table.columns()))
@@ -217,7 +218,7 @@ class HelpWindow:
 
 
 class Watch(QtCore.QObject):
-    """Hears the main window enter the mode of What's This, and takes the clicks on what is ours while it lasts."""
+    """Detects What's This mode of the main window and handles clicks on our widgets in it."""
 
     def __init__(self, window: Any) -> None:
         super().__init__(window)
@@ -225,7 +226,7 @@ class Watch(QtCore.QObject):
         window.installEventFilter(self)
 
     def eventFilter(self, watched: Any, event: Any) -> bool:
-        """Called by Qt; True for what is dealt with."""
+        """Called by Qt; True for handled events."""
         if not isinstance(
             event, QtCore.QEvent
         ):  # PySide may take it for what lay at its address before
@@ -251,7 +252,7 @@ class Watch(QtCore.QObject):
 
 
 def _ours(widget: Any) -> tuple[str, str]:
-    """The name of the tool, panel or dock that a widget is of, '' for none of ours; what is said of the widget itself."""
+    """Return the name of the tool, panel or dock of a widget, '' for foreign ones, and the widget's own help."""
     if isinstance(widget, QtGui.QToolButton) and widget.defaultAction() is not None:
         action = widget.defaultAction()
         for name in (str(action.data() or ""), action.objectName()):

@@ -76,7 +76,7 @@ registry.register(
 )
 
 
-# ---- what is shown
+# ---- display
 
 
 def _preferences_changed() -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the view providers of all stages share. Their class paths are a file format."""
+"""Base of the view providers of all stages. Their class paths are a file format."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MODE = "Drawing"
 
 
 class StageView:
-    """Draws the stored result of a stage, and tells its status by its icon."""
+    """Draws the stored result of a stage; its icon shows the status."""
 
     icon: ClassVar[str] = ""
     # view property: FreeCAD type, default (of an enumeration all choices, the default first), help
@@ -51,11 +51,11 @@ class StageView:
         """Add the nodes to the root, once."""
 
     def read(self, obj: Any) -> Any:
-        """What `draw` is given: the stored result, or what of it is drawn. InputError as `Stage.value`."""
+        """What `draw` is given: the stored result or its drawn part. InputError as `Stage.value`."""
         return obj.Proxy.value(obj)
 
     def draw(self, obj: Any, value: Any) -> None:
-        """Fill the nodes from what was read."""
+        """Fill the nodes from the result."""
 
     def style(self, vobj: Any) -> None:
         """Apply the view properties."""
@@ -79,11 +79,11 @@ class StageView:
         vobj.addDisplayMode(self.switch, MODE)
 
     def stand_back(self, aside: bool) -> None:
-        """Draw nothing while a preview stands for it, whatever its properties say; they stay as they are."""
+        """Draw nothing while a preview replaces it; the properties stay."""
         self.switch.whichChild = coin.SO_SWITCH_NONE if aside else coin.SO_SWITCH_ALL
 
     def refresh(self) -> None:
-        """Draw what is stored now."""
+        """Draw the stored result."""
         obj = self.obj
         if obj is None or self.root is None or not getattr(obj, "Key", ""):
             return

@@ -20,7 +20,7 @@ from .base import StageView
 
 
 class CellView(StageView):
-    """Draws platform and nozzle in part coordinates; without a toolpath the platform lies at the origin.
+    """Draws platform and nozzle in part coordinates; without a toolpath the platform is at the origin.
 
     The machine is drawn at rest: the part upright, its highest point under the nozzle.
     """
@@ -63,12 +63,12 @@ class CellView(StageView):
         self.nodes.set(nozzle_scenery(value, *(_end_of_shown_path(obj) or self.end), mount))
 
     def follow_stretch(self, view: path_view.PathView) -> None:
-        """The nozzle goes to where a stretch of a path ends that is looked at; the machine at rest stays."""
+        """Move the nozzle to the end of the shown path section; the machine at rest stays."""
         if self.drawn and self.nodes.machine is None and view.obj.ViewObject.Visibility:
             self.nodes.move_nozzle(at_end(*(view.reached() or self.end)))
 
     def follow(self) -> None:
-        """Draw anew where the toolpath is another than it was."""
+        """Redraw if the toolpath changed."""
         if self.drawn and self.stands_on != _key_of(toolpath_of(self.obj)):
             self.refresh()
 
@@ -102,7 +102,7 @@ def toolpath_of(obj: Any) -> Any:
 
 
 def _standing(obj: Any) -> Any:
-    """Points and tool axes of the last bead, frame and family of the toolpath; what else it has is not read."""
+    """Return points and tool axes of the last bead, frame and family of the toolpath; read nothing else."""
     last_bead = ("layers", -1, "beads", -1)
     return _toolpath_contents(
         obj, (*last_bead, "points"), (*last_bead, "tool"), ("frame",), ("family",)
@@ -110,7 +110,7 @@ def _standing(obj: Any) -> Any:
 
 
 def _end_of_shown_path(obj: Any) -> Any:
-    """Where a stretch ends that is shown of a path for the cell, None where none is."""
+    """Return the end of the section shown of the cell's path, None without one."""
     for follower in obj.InList:
         view = getattr(follower.ViewObject, "Proxy", None)
         if (

@@ -11,7 +11,7 @@ from .base import StageView
 
 
 class CladdingView(StageView):
-    """Tints the faces, and draws the borders of what is covered as one."""
+    """Tints the faces and draws the borders of each sheet."""
 
     icon = "cladding"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves that are laid as beads in the 3D view."""
+"""Curves printed as beads, in the 3D view."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from .base import StageView
 
 
 class FeatureView(StageView):
-    """Draws the meridian at the start of the turn, and the axis; of a wall on a substrate faces and first layer."""
+    """Draws the meridian at the start angle and the axis; faces and first layer of a wall on a substrate."""
 
     icon = "feature"
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {
@@ -21,7 +21,7 @@ class FeatureView(StageView):
     }
 
     def complete(self, vobj: Any) -> None:
-        """Add the view properties a wall on a substrate lacks; there are none for parts of revolution."""
+        """Add missing view properties of a wall on a substrate; parts of revolution have none."""
         if hasattr(vobj.Object, "Substrate"):
             super().complete(vobj)
 
@@ -42,6 +42,6 @@ class FeatureView(StageView):
         self.wall.faces.show(getattr(vobj, "ShowFaces", False))
 
     def getIcon(self) -> str:
-        """That of its family, with a badge unless all is well."""
+        """Return the icon of the family, with a badge for problems."""
         family = "wall_on_part" if hasattr(self.obj, "Substrate") else self.icon
         return icons.badge_path(family, getattr(self.obj, "Status", ""))

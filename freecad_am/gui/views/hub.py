@@ -10,7 +10,7 @@ from .base import StageView
 
 
 class SolidView(StageView):
-    """Draws the plane that solids stand on, and where they do."""
+    """Draws the base plane of solids and their contours on it."""
 
     icon = "solid"
 
@@ -23,7 +23,7 @@ class SolidView(StageView):
 
 
 class HubView(StageView):
-    """Draws what solids stand on, and where."""
+    """Draws the base of solids and their contours on it."""
 
     icon = "solids_on_hub"
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {

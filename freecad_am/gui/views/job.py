@@ -15,7 +15,7 @@ from .. import icons, registry
 
 
 class JobView:
-    """Shows the worst status of the stages within. Deleted, it takes them with it; what else was dragged in stays."""
+    """Shows the worst status of its stages. Deleting it deletes them; other members stay."""
 
     obj: Any = None
 
@@ -32,22 +32,22 @@ class JobView:
             self.obj.ViewObject.signalChangeIcon()
 
     def getIcon(self) -> str:
-        """That of a job, with a badge unless all is well."""
+        """Return the job icon, with a badge for problems."""
         statuses = set() if self.obj is None else {stage.Status for stage in stages_in(self.obj)}
         worst = next((status for status in (FAILED, INFEASIBLE, STALE) if status in statuses), "")
         return icons.badge_path("job", worst)
 
     def canDropObject(self, obj: Any) -> bool:
-        """Stages alone belong into a job."""
+        """Accept only stages."""
         return stage_of(obj) is not None
 
     def replaceObject(self, old: Any, new: Any) -> bool:
-        """A stage dropped onto another one does not take its place, as FreeCAD would have it: that one would be lost from
-        the job, while what follows still needs it."""
+        """Keep a stage that another one is dropped onto. FreeCAD would replace it in the job, although later stages
+        still need it."""
         return False
 
     def onDelete(self, vobj: Any, names: Any) -> bool:
-        """The stages go too, those that follow first, within the step of undo that deletes the group."""
+        """Delete the stages too, last ones first, within the undo step that deletes the group."""
         document = vobj.Object.Document
         stages = sorted(stages_in(vobj.Object), key=lambda obj: -len(obj.OutListRecursive))
         for name in [stage.Name for stage in stages]:

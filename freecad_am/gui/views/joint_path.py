@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The joint path in the 3D view: the beads coloured by how near the machine comes to what it cannot do, the rapid moves,
-and points that something is wrong with."""
+"""The joint path in the 3D view: beads coloured by the distance to the machine's limits, rapid moves and infeasible
+points."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ from .toolpath import band_of, width_of
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """Those columns of a motion of n rows that are drawn: to open a document they alone are read."""
+    """The drawn columns of a motion of n rows; opening a document reads only these."""
 
     deposit: Mask
     layer: Integers
@@ -90,7 +90,7 @@ class JointPathView(PathView):
         root.addChild(self.wrong.node)
 
     def read(self, obj: Any) -> Seen:
-        """What of the result is drawn."""
+        """Return the drawn part of the result."""
         columns = [("motion", column.name) for column in fields(Course)]
         reader = obj.Proxy.reader(obj)
         limits, *arrays = reader(("joint_path", "limits"), *columns)
@@ -123,7 +123,7 @@ class JointPathView(PathView):
         self.rapid = np.flatnonzero(~motion.deposit[1:]) + 1
         self.find_wrong(obj)
         super().draw(obj, value)
-        if not self.source_hidden:  # the beads lie where those of the toolpath do
+        if not self.source_hidden:  # the beads coincide with those of the toolpath
             self.source_hidden = True
             obj.Toolpath.ViewObject.Visibility = False
 
@@ -195,12 +195,12 @@ def _toolpath_of(obj: Any) -> Any:
 
 
 def _layer_height(obj: Any) -> float:
-    """Of the toolpath, which is not read for it. InputError as `_toolpath_of`."""
+    """Return the toolpath's layer height without reading the toolpath. InputError as `_toolpath_of`."""
     return float(_linked(obj).Proxy.parts(obj.Toolpath, ("layer_height",))[0])
 
 
 def _known_layer_height(obj: Any) -> float:
-    """Of the toolpath, where a joint path that is drawn has one, else as high as layers mostly are."""
+    """Return the toolpath's layer height if there is one, else the typical layer height."""
     try:
         return _layer_height(obj)
     except InputError:
@@ -208,8 +208,8 @@ def _known_layer_height(obj: Any) -> float:
 
 
 def _limit_shares(obj: Any, value: Seen, kind: str) -> Array:
-    """(n,) the smallest share left to a limit, or the largest share used of a joint speed, of all rows. InputError of the
-    machine."""
+    """Return (n,) the smallest relative margin to a joint limit, or the largest relative joint speed, per row.
+    InputError of the machine."""
     if obj.Cell is None:
         raise InputError("NO_INPUT", obj.Label, "its cell was deleted; choose another cell")
     folders, settings = (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a panel's entries would make, computed beside the document, and shown in its 3D views until it is taken away."""
+"""Preview of a panel's entries, computed outside the document and shown in its 3D views until removed."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ class Draft:
             self.stage.parameters(self.obj, section.cls)
 
     def prepare(self) -> Work:
-        """The work that computes what the stage would, without the document. Raises what it raises, as does the work."""
+        """Return a function that computes the stage's result without the document. Both raise the stage's errors."""
         return self.stage.prepare(self.obj)
 
     def reporting(self, work: Callable[[], T]) -> Callable[[], T]:
-        """Work of a preview that tells a lack of memory and faults of the geometry kernel as the stage itself does."""
+        """Wrap a preview's work to report lack of memory and kernel faults as the stage does."""
 
         def run_guarded() -> T:
             with faults.kernel(self.obj), faults.memory(self.obj.Label):
@@ -56,7 +56,7 @@ class Draft:
 
 
 class Preview:
-    """Nodes in the 3D views of a document, which keeps nothing of them."""
+    """Nodes in the 3D views of a document, which does not store them."""
 
     def __init__(self, document: Any, node: Any) -> None:
         self.node = node
@@ -76,13 +76,13 @@ class Preview:
 
 
 class Aside:
-    """What stages themselves draw, which stands back while a preview stands for it."""
+    """Hides the drawings of stages that a preview replaces."""
 
     def __init__(self) -> None:
         self.objects: list[Any] = []
 
     def put(self, *objects: Any) -> None:
-        """Let these stand back, in place of those before; None is none."""
+        """Hide these objects instead of the previous ones; None entries are ignored."""
         new_objects = [obj for obj in objects if obj is not None]
         self._stand_back(
             False,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The toolpath in the 3D view: beads coloured by layer or by what else is chosen, build directions on demand."""
+"""The toolpath in the 3D view: beads coloured by layer or another quantity, build directions on demand."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class ToolpathView(PathView):
         super().draw(obj, value)
         if (
             not self.source_hidden
-        ):  # a new path lies in the surface of its shape, and its start in that of a wall
+        ):  # a new path lies in the surface of its shape, and its start in the wall's surface
             self.source_hidden = True
             for feature in features_of(obj):
                 for source in (feature.Source[0], *getattr(feature, "Further", ())):

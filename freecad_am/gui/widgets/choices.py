@@ -14,7 +14,7 @@ from ...objects import user_machines
 from ..texts.in_language import marked, tr, translated
 
 FEWEST_LETTERS = 8  # a list may be as narrow: panels are
-WORDS = {  # of keys that are not words by themselves; `tr` gives them in the language of the window
+WORDS = {  # of keys that are not words; `tr` gives them in the language of the window
     "part-on-robot": marked("part on robot"),
     "tool-on-robot": marked("tool on robot"),
     "rotary-table": marked("five-axis machine"),
@@ -56,7 +56,7 @@ def worded(key: str) -> str:
 
 
 def machines() -> list[tuple[str, str]]:
-    """Id and full name of each machine; two of one name are told apart by their ids."""
+    """Return id and full name of each machine; equal names get their ids appended."""
     entries = machine.known(user_machines.folders())
     names = [name for _, name in entries]
     return [
@@ -73,8 +73,8 @@ def machines() -> list[tuple[str, str]]:
 
 
 def offer(combo: Any, pairs: Iterable[tuple[str, str]]) -> None:
-    """Fill a list with keys and what is shown of them; it opens as wide as its longest entry. Where it can be typed into any
-    part of an entry offers it."""
+    """Fill a list with keys and their texts; it opens as wide as its longest entry. In an editable list any part of
+    an entry completes it."""
     for key, text in pairs:
         combo.addItem(text, key)
         combo.setItemData(combo.count() - 1, text, QtCore.Qt.ToolTipRole)
@@ -88,7 +88,7 @@ def offer(combo: Any, pairs: Iterable[tuple[str, str]]) -> None:
 
 
 def entered(combo: Any) -> str:
-    """The key of what a list that can be typed into shows; what was typed where that is not an entry."""
+    """Return the key of an editable list's text, or the text if it is not an entry."""
     text = str(combo.currentText()).strip()
     index = next((row for row in range(combo.count()) if combo.itemText(row) == text), -1)
     return str(combo.itemData(index) or text) if index >= 0 else text

@@ -152,7 +152,7 @@ class FeatureOrder(Input):
         return {self.link.key: f"[{references}]", "sequence": repr(self.sequence.currentData())}
 
     def _selected(self) -> list[Any]:
-        """The features selected, but for the first one."""
+        """Return the selected features except the first one."""
         features = [
             obj
             for obj in selected(self.document.Name)

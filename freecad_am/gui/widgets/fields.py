@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One widget per parameter, made from its row: what is shown, and what was typed in outer units."""
+"""One widget per parameter, made from its row; it shows and reads outer units."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class PendantLine:
         show: Callable[[tuple[float, ...]], None],
     ) -> None:
         self.name, self.read, self.show = name, read_pose, show
-        self.put = ""  # what the line shows by itself
+        self.put = ""  # last text set by the program
         self.choice, self.line = QtGui.QComboBox(), QtGui.QLineEdit()
         self.choice.setObjectName(f"{name}Pendant")
         self.line.setObjectName(f"{name}Shown")
@@ -57,7 +57,7 @@ class PendantLine:
         self.line.editingFinished.connect(self.enter)
 
     def refresh(self) -> None:
-        """Show in the line what the fields hold, as the chosen pendant would."""
+        """Show the fields' pose in the line as on the chosen pendant."""
         controller = self.choice.currentData()
         self.line.setVisible(bool(controller))
         self._wrong("")
@@ -80,7 +80,7 @@ class PendantLine:
         self.line.setCursorPosition(0)
 
     def enter(self) -> None:
-        """Enter what was typed into the fields; what cannot be read is told, and they stay."""
+        """Enter the typed pose into the fields; report an unreadable one and keep the fields."""
         controller = self.choice.currentData()
         if not controller or self.line.text() == self.put or not self.line.text().strip():
             return
@@ -131,25 +131,25 @@ class Field:
         return self.read()
 
     def show(self, value: Any) -> None:
-        """Show another value, in outer units, or an expression, in place of what is there."""
+        """Show another value in outer units, or an expression."""
         self._show(value)
 
     @property
     def changed(self) -> bool:
-        """True when it holds something else than at first, or than what was applied last."""
+        """Whether the value differs from the initial or last applied one."""
         return bool(self.read() != self.shown)
 
     def differs_from(self, value: Any) -> None:
-        """What it holds differs from this inner value, which a stage would have without it."""
+        """Mark that the value differs from this inner default."""
         self.shown = self.row.outer(value)
 
     def applied(self) -> None:
-        """What it holds is what the document has now."""
+        """Take the value as the state of the document."""
         self.shown = self.read()
 
     @property
     def heading(self) -> str:
-        """Its label, with the unit where what is shown has none."""
+        """The label, with the unit if the widget does not show one."""
         shows_unit = self.row.form in (*_QUANTITIES, f.POSE, MIXED, LENGTH_OR_POSE)
         unit = self.row.spec.unit or ("" if shows_unit else self.row.unit)
         return f"{self.label} ({unit})" if unit else self.label
@@ -159,7 +159,7 @@ def make(
     row: Row, value: Any, suggestions: Texts | None = None, expression: str = "", section: str = ""
 ) -> Field:
     """The field of a row that shows an inner value, or the expression it follows; `suggestions`: texts to choose from, and
-    what is shown of each. The section, of a job file, is for its help."""
+    their labels. The job file section is for the help."""
     field = _make(row, value, suggestions, expression)
     for widget in (field.widget, *present(field.widget, QtGui.QWidget)):
         widget.setWhatsThis(whats_this(row, section))
@@ -167,7 +167,7 @@ def make(
 
 
 def whats_this(row: Row, section: str) -> str:
-    """The help of a field: what it is, what it may be, what it is by default, and its name in jobs and macros."""
+    """Return a field's help: its meaning, choices, default, and name in jobs and macros."""
     spec, default = row.spec, in_user_units(row.text(row.default))
     unit = row.unit if row.form in (f.RATIO, f.TURN_RATE) else ""
     lines = [translated(spec.help)]
@@ -208,7 +208,7 @@ def _make(row: Row, value: Any, suggestions: Texts | None, expression: str) -> F
         box = QtGui.QSpinBox()
         box.setRange(
             -_MAX_INT32, _MAX_INT32
-        )  # what is out of range is told by the core, not cut off here
+        )  # the core reports values out of range; do not clip them here
         box.setValue(outer_value)
         return (
             Field(row, box, box.value, box.setValue)
@@ -221,7 +221,7 @@ def _make(row: Row, value: Any, suggestions: Texts | None, expression: str) -> F
 
 
 def _speed(row: Row, value: float, expression: str) -> Field:
-    """A speed in the unit that the user prefers; what is read is in mm/s all the same."""
+    """A speed in the user's preferred unit; it reads as mm/s."""
     unit = preferences.preferred_speed_unit()
     quantity = QuantityField(value, row.unit, row.label, expression, unit)
     quantity.box.setButtonSymbols(
@@ -267,7 +267,7 @@ def _text(row: Row, value: Any, expression: str = "") -> Field:
 
 
 def _add_placeholder(edit: Any, row: Row, unit: str) -> None:
-    """What an empty line may hold, short enough for a narrow panel: a unit, and words."""
+    """Set a short placeholder with the unit and words that the line accepts."""
     alternatives = ([unit] if unit else []) + list(row.spec.words)
     if alternatives or row.spec.optional:
         words = tr(" or ").join(alternatives)
@@ -321,7 +321,7 @@ def _point(edit: Any) -> str:
 def _replace_decimal_point(text: str, old: str, new: str) -> str:
     """A text of one number, with its unit or without, or of several with nothing but blanks between, with another decimal
     point; any other text as it is."""
-    numbers = re.split(r"[ \t]+", text.strip())  # no-break blanks stand within a number
+    numbers = re.split(r"[ \t]+", text.strip())  # no-break spaces occur within a number
     if len(numbers) > 1 and all(_PLAIN.fullmatch(number.replace(old, ".")) for number in numbers):
         return " ".join(number.replace(old, new) for number in numbers)
     return re.sub(

@@ -20,7 +20,7 @@ HEIGHT = 210
 
 
 class FitPlot(Canvas):
-    """Width over travel speed, a curve per radius beside what was measured."""
+    """Width over travel speed: a curve per radius and the measured points."""
 
     def __init__(self) -> None:
         super().__init__(interactive=False)
@@ -28,7 +28,7 @@ class FitPlot(Canvas):
         self.setMinimumHeight(HEIGHT)
 
     def set(self, measured: Measured, model: BeadModel, target_width: float | None) -> None:
-        """Show another fit; `wanted` is a width drawn across, mm."""
+        """Show another fit; `target_width`, mm, is drawn as a horizontal line."""
         self.show_picture(
             in_words(in_units(Picture("fit", "", (fit(measured, model, target_width),))))
         )
@@ -63,7 +63,7 @@ def fits_text(measured: Measured, model: BeadModel) -> str:
 
 
 def speeds_text(model: BeadModel, width: float) -> str:
-    """What speeds a width asks for, and whether the table has such."""
+    """Return the speeds for a width, and whether they are within the table."""
     solution = model.speed_for(width, np.array([model.radii[0], np.inf]))
     ends = np.select(
         [solution.too_slow, solution.too_fast],

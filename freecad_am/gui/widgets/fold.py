@@ -44,7 +44,7 @@ NARROW, MAX_LINES = (
 
 
 class Messages(QtGui.QScrollArea):
-    """Labels below each other; what has no room is scrolled to."""
+    """Labels below each other, in a scroll area."""
 
     def __init__(self, lines: int) -> None:
         super().__init__()
@@ -63,7 +63,7 @@ class Messages(QtGui.QScrollArea):
         self._hold(lines)
 
     def add(self, name: str, role: str) -> Any:
-        """A label below those that are there, hidden."""
+        """Add a hidden label at the end."""
         label = WrappedLabel()
         label.setObjectName(name)
         label.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
@@ -85,14 +85,14 @@ class Messages(QtGui.QScrollArea):
         self.setFixedHeight(lines * self.fontMetrics().lineSpacing() + 2 * MARGIN)
 
     def to_top(self) -> None:
-        """Show what stands first, such as an error."""
+        """Scroll to the first label, such as an error."""
         self.verticalScrollBar().setValue(0)
 
 
 KEEP_MS = 2500  # ms that the place of a note stays once it has gone
 WIDEST_LABEL = 78  # pixels; longer ones go on below
-LONGEST_ROW = 2  # fields beside a label; more go below it
-WIDEST_CHOICE = 84  # pixels of the texts of a choice beside its label; longer ones go below it
+LONGEST_ROW = 2  # fields next to a label; more go below it
+WIDEST_CHOICE = 84  # pixels of a choice's texts next to its label; longer ones go below it
 
 
 class Note(QtGui.QLabel):
@@ -103,7 +103,7 @@ class Note(QtGui.QLabel):
     def __init__(self) -> None:
         super().__init__()
         self.setWordWrap(True)
-        self.tallest = 0  # pixels that it took so far
+        self.tallest = 0  # current height in pixels
 
     def minimumSizeHint(self) -> Any:
         """Called by Qt."""
@@ -157,8 +157,7 @@ class Note(QtGui.QLabel):
 
 
 class Name(QtGui.QLabel):
-    """What a field is called. Of several lines it has room for all; a form cuts off the last ones of other labels where a
-    field beside them is lower."""
+    """Label of a field with room for all its lines; a form cuts off other labels next to a lower field."""
 
     def minimumSizeHint(self) -> Any:
         """Called by Qt."""
@@ -203,7 +202,7 @@ class Fold:
         self._show(unfolded)
 
     def add(self, label: str, widget: Any) -> Any:
-        """A row of the form. Returns the note under the widget, hidden, for what is wrong with it."""
+        """Add a row to the form. Returns the hidden note for problems, under the widget."""
         name = Name(label)
         name.setToolTip(widget.toolTip())
         for child in (widget, *present(widget, QtGui.QWidget), name):
@@ -237,13 +236,13 @@ class Fold:
         self.rows[widget.objectName()][0].setEnabled(on)
 
     def show(self, widget: Any, on: bool) -> None:
-        """Show the row of a field, or leave it out; a part of the panel that has no row left goes as a whole."""
+        """Show or hide the row of a field; hide the section if it has no visible row."""
         for cell in self.rows[widget.objectName()]:
             cell.setVisible(on)
         self.widget.setVisible(any(not name.isHidden() for name, _ in self.rows.values()))
 
     def add_below(self, widget: Any, new_widget: Any) -> None:
-        """A row of the whole width right below that of a field."""
+        """Add a row of full width directly below a field."""
         container = self.rows[widget.objectName()][1]
         items = (
             (row, self.form.itemAt(row, QtGui.QFormLayout.FieldRole))
@@ -260,7 +259,7 @@ class Fold:
 
 
 def _is_long(widget: Any) -> bool:
-    """Whether a field needs the width of the panel to be read: of several fields, or a choice of long texts."""
+    """Whether a field needs the full panel width: several fields, or a choice with long texts."""
     if isinstance(widget, QtGui.QComboBox):
         measure = widget.fontMetrics().boundingRect
         return any(

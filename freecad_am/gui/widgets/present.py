@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is to be seen below a widget."""
+"""Children of a widget."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any
 
 
 def present(parent: Any, kind: Any) -> list[Any]:
-    """The widgets of a kind below another, without those that PySide takes for deleted ones: it finds them by their place in
-    memory, where others may have been before (docs/versions.md)."""
+    """Return child widgets of a kind, without those that PySide takes for deleted ones: it finds them by their
+    memory address, which an older widget may have had (docs/versions.md)."""
     widgets = []
     for widget in parent.findChildren(kind):
         with contextlib.suppress(RuntimeError):

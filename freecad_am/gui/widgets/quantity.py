@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A field for a quantity: the unit shown is the unit typed.
 
-A number typed without a unit is in the unit that the field shows. A field that is left untouched keeps its value, bit for bit,
-whatever the digits that it shows. A text that starts with `=` is an expression, which the number follows.
+A number typed without a unit is in the unit that the field shows. An untouched field keeps its value bit for bit,
+regardless of the displayed digits. A text that starts with `=` is an expression, which the number follows.
 
 FreeCAD's own field is not used: it groups digits ('1,5' is 15 where decimals have a point), refuses keys that make a quantity
 of another kind, goes back to the last text it could read, and on leaving takes the value that it shows for the value it has
@@ -43,7 +43,7 @@ class UnitBox(QtGui.QAbstractSpinBox):
 
     @property
     def field(self) -> QuantityField | None:
-        """What it belongs to; None once that is gone."""
+        """The owning field; None once it is deleted."""
         return self._field()
 
     def stepBy(self, steps: int) -> None:
@@ -76,7 +76,7 @@ class UnitBox(QtGui.QAbstractSpinBox):
         self._fit()
 
     def _fit(self) -> None:
-        """Have room for what is shown, unless the line is deleted, as happens first where a panel is closed."""
+        """Fit the width to the text, unless the line is already deleted because the panel closes."""
         with contextlib.suppress(RuntimeError):
             if self.field is not None:
                 self.field.make_room()
@@ -111,8 +111,8 @@ class QuantityField:
     def __init__(
         self, value: float, unit: str, name: str, expression: str = "", display: str = ""
     ) -> None:
-        """shown: the number in the unit; expression: what it follows, '' where it follows nothing; display: the unit that
-        the field shows, '' for that of FreeCAD's unit scheme."""
+        """value: the number in the unit; expression: the one it follows, '' for none; display: the displayed unit,
+        '' for the one of FreeCAD's unit scheme."""
         self.unit, self.name, self.display = unit, name, display
         self.dimension = App.Units.Quantity(f"1 {unit}").Unit
         self.box = UnitBox(self)
@@ -128,7 +128,7 @@ class QuantityField:
         connect(self.box, "editingFinished()", self._settle)
 
     def show(self, number: float | str) -> None:
-        """Show another number, in the field's unit, or an expression, in place of what is there."""
+        """Show another number in the field's unit, or an expression."""
         self.shown = number
         if isinstance(number, str):
             _, self.per_bare, self.shown_unit = field_text(0.0, self.unit, self.display)
@@ -164,14 +164,14 @@ class QuantityField:
         connect(self.line, "textChanged(QString)", self._show_mark)
 
     def read(self) -> float | str:
-        """The number in the field's unit, or the expression. InputError 'BAD_VALUE' for what is neither."""
+        """Return the number in the field's unit, or the expression. InputError 'BAD_VALUE' for other text."""
         text = str(self.line.text())
         if text == self.known_text:
             return self.shown
         return text.strip() if is_expression(text) else self._number(text)
 
     def internal_value(self) -> float:
-        """What FreeCAD calls the raw value, in mm, mm/s and so on; NaN for what is not understood, and expressions."""
+        """FreeCAD's raw value in mm, mm/s and so on; NaN for unreadable text and expressions."""
         try:
             number = self.read()
         except InputError:
@@ -231,7 +231,7 @@ class QuantityField:
     # ---- what the user does
 
     def _settle(self, *_: Any) -> None:
-        """Show what was typed in the field's unit; what is not understood stays to be seen, with its first digits."""
+        """Show the entry in the field's unit; unreadable text stays, scrolled to its start."""
         text = str(self.line.text())
         if text != self.known_text and not is_expression(text):
             with contextlib.suppress(InputError):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Texts and numbers that are others in every frame, and move nothing beside them.
+"""Texts and numbers that change in every frame without moving their neighbours.
 
-The size of a plain label is that of its text: whenever it changes Qt lays all of the window out anew, and puts it together
-once more, which costs as much as a small picture. It asks nobody where a widget's size is fixed.
+A plain label has the size of its text: on each change Qt repeats the layout of the window and composes it again,
+which costs as much as a small picture. A fixed size avoids both.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ LEAST_HEIGHT = 60  # pixels
 
 
 class Scrolled(QtGui.QScrollArea):
-    """It asks for the size of what it holds, and can be as low as LEAST_HEIGHT. narrowest: pixels of its width."""
+    """Scroll area with the size of its content, at least LEAST_HEIGHT high. narrowest: minimum width in pixels."""
 
     def __init__(self, widget: Any, narrowest: int = 0) -> None:
         super().__init__()
@@ -49,13 +49,13 @@ class SteadyLabel(QtGui.QLabel):
         self.setObjectName(name)
 
     def reserve_width(self, texts: Iterable[str]) -> None:
-        """For these, and for what is shown now."""
+        """Reserve the width of these texts and the current one."""
         current = self.text()
         sizes = [self._size(text) for text in (*texts, current)]
         self.setFixedSize(max(size.width() for size in sizes), max(size.height() for size in sizes))
 
     def show_text(self, text: str) -> None:
-        """Show a text; one that is wider than was thought is shown whole too."""
+        """Show a text; widen the label if needed."""
         if text != self.text():
             size = self._size(text)
             if size.width() > self.minimumWidth():
@@ -71,7 +71,7 @@ class SteadyText(QtGui.QWidget):
 
     def __init__(self, name: str, lines: int) -> None:
         super().__init__()
-        self.label = QtGui.QLabel(self)  # in no layout, so that its size is nobody's concern
+        self.label = QtGui.QLabel(self)  # in no layout, so that its size affects nothing
         self.label.setObjectName(name)
         self.label.setWordWrap(True)
         self.label.setAlignment(QtCore.Qt.AlignTop)

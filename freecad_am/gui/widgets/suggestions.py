@@ -24,7 +24,7 @@ NO_POST = "none"
 
 
 def of(section: str, key: str) -> Callable[[], list[tuple[str, str]]] | None:
-    """A function that lists the texts for a parameter and what is shown of each, None where anything goes."""
+    """Return a function that lists the texts of a parameter with their labels, None if any text is valid."""
     texts = _texts_of(section, key)
     if (section, key) == ("cell", "machine"):
         return machines
@@ -56,8 +56,8 @@ def is_robot(name: str) -> bool:
 
 
 def no_post(name: str, setup: str = "") -> str:
-    """What to say of a machine that no post writes a new job for in a set-up, '' for its usual one; '' for others, and for
-    one that cannot be read."""
+    """Return the note on a machine without a post for a setup ('': the default one); '' for other and unreadable
+    machines."""
     try:
         loaded = machine.load(name, user_machines.folders())
     except InputError:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A panel is scrolled up and down alone. Qt scrolls sideways too where it brings something into sight, a note or the next
-field, that is above or below: FreeCAD's task view, which then shows no bar to go back with, cuts off the beginning of it."""
+"""Panels scroll only vertically. Qt also scrolls sideways when it reveals a note or field above or below: FreeCAD's
+task view then cuts off the left edge and shows no scroll bar."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class _Upright(QtCore.QObject):
     """Takes what a panel is scrolled in back to its left edge, from when it is shown as long as it is there."""
 
     def eventFilter(self, widget: Any, event: Any) -> bool:
-        """Called by Qt, of the panel and of the contents of what scrolls it."""
+        """Called by Qt for the panel and the content of its scroll areas."""
         # PySide may take an event for what lay at its address before
         if isinstance(event, QtCore.QEvent):
             with contextlib.suppress(RuntimeError):  # what scrolls it is gone
@@ -68,12 +68,12 @@ class _Upright(QtCore.QObject):
 
 
 def upright(form: Any) -> None:
-    """Let a panel be scrolled up and down alone, wherever it is shown."""
+    """Restrict a panel to vertical scrolling."""
     form.installEventFilter(_Upright(form))
 
 
 def scroll_areas_of(form: Any) -> list[Any]:
-    """The areas that a panel is scrolled in."""
+    """Return the scroll areas that contain a panel."""
     return [
         area for area in present(Gui.getMainWindow(), QtGui.QScrollArea) if area.isAncestorOf(form)
     ]
