@@ -29,7 +29,8 @@ from ..views.preview import Draft
 
 
 def whole_cell(machine: object, external: object) -> tuple[str, str] | None:
-    """Return machine and external axes for a URDF of a whole cell; None if the name is not such a file.
+    """Return machine and external axes for a URDF of a whole cell; None unless
+    `external` asks for one.
 
     Raises InputError BAD_URDF if robot, track and positioner cannot be distinguished, BAD_VALUE if the file is not
     a URDF.

@@ -56,7 +56,7 @@ def faces(doc: Any) -> str:
 
 
 def feature(doc: Any) -> str:
-    """Return what is missing to have an object to deposit."""
+    """A feature to deposit."""
     if document(doc) or _some(doc, "feature"):
         return document(doc)
     return tr(
