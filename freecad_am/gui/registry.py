@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel and the context menu of a stage, for those that panels and menus import themselves.
+"""Panel and context menu of a stage, for modules that panels and menus import.
 
-View providers open panels, and panels show what view providers draw: views ask here by the name of the act, and need import
-neither. `views.attach` says who does it, and imports that at first need.
+View providers open panels, and panels show what view providers draw: views call them by name through this module
+and import neither. `views.attach` registers the functions and imports them at first use.
 """
 
 from __future__ import annotations

@@ -27,11 +27,13 @@ from ...core import one_thread
 from ...objects.work.progress import Cancelled, told_to
 
 AGAIN = 200  # ms between two checks of running threads
-YOUNG = 1  # the generation of objects up to which cycles are collected at each look: those made since the last one
+YOUNG = (
+    1  # generation up to which cycles are collected at each check: objects made since the last one
+)
 
 
 class Worker:
-    """Carries `work` out, from now on. What it has said of its progress is in `fraction` (None before) and `text`."""
+    """Runs `work` in a thread, from now on. Its progress is in `fraction` (None at first) and `text`."""
 
     def __init__(self, work: Callable[[], Any]) -> None:
         self.fraction: float | None = None

@@ -247,10 +247,10 @@ _NOWHERE = QtCore.Qt.NoDockWidgetArea
 
 
 class Dock(QtGui.QDockWidget):
-    """A frame. `wide` is the share of the window's width that it asks for unless another of ours is beside it, `high` the
-    pixels; 0 for what its fields need.
+    """A dock. `wide` is the share of the window's width that it requests unless another of our docks is next to it,
+    `high` its height in pixels; 0: the size its fields need.
 
-    `closed` is called when it is closed, by whomever; `seen` when it comes to be seen, as when its tab is clicked.
+    `closed` is called when the dock is closed; `seen` when it becomes visible, such as by a click on its tab.
     """
 
     def __init__(self, name: str, area: Any, wide: float = 0.0, high: int = 0) -> None:

@@ -17,8 +17,8 @@ from ..texts.in_language import sentence, tr, translated_error
 
 
 class Page(QtGui.QWizardPage):
-    """A page that completes the wizard's draft by one step. `fill` shows a draft that came from another source; `take` puts
-    what was entered into the draft, and raises InputError."""
+    """A page that completes the wizard's draft by one step. `fill` shows a draft from another source; `take` stores
+    the entries in the draft and raises InputError."""
 
     def __init__(self, wizard: Any, name: str, title: str, explanation: str) -> None:
         super().__init__(wizard)

@@ -141,7 +141,8 @@ class HowItStands:
         )
 
     def arguments(self) -> dict[str, str]:
-        """Keywords of `make_all` and their values as text; none for the usual set-up. InputError for what cannot be read."""
+        """Return keywords of `make_all` with values as text; none for the default setup. InputError for unreadable
+        entries."""
         if not self.chosen():
             return {}
         keywords, value = {"setup": repr(self.chosen())}, self.leaning.value
@@ -199,8 +200,8 @@ class Sizes:
         return deposit.bead_width() if is_expression(value) or value <= 0.0 else float(value)
 
     def arguments(self, filled: bool, saved: bool) -> dict[str, str]:
-        """Keywords of `make_all` and their values as text, of what is entered. filled: beads have a spacing; saved: the cell
-        has a platform of its own. InputError for what cannot be read."""
+        """Return the entries as keywords of `make_all` with values as text. filled: beads have a spacing; saved: the
+        cell has its own platform. InputError for unreadable entries."""
         keywords = {}
         for field in (self.layer, *((self.spacing,) if filled else ())):
             if field.changed:

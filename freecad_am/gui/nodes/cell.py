@@ -63,7 +63,7 @@ def plain_links(machine: Machine, platform: float, torch: float) -> Links:
 class MachineNodes:
     """Nodes of a machine's links, in the frame of their poses.
 
-    solids: as of `plain_links`. meshes: of the files a user gave the links, where they are read already. Unreadable
+    solids: as of `plain_links`. meshes: from the user's files of links, if already read. Unreadable
     files are reported once in the report view.
     """
 
@@ -223,16 +223,16 @@ def _colour(link: ExternalLink) -> tuple[float, float, float]:
 
 _LEAST_THICKNESS = 1.0
 _BODY = 2.5  # end of the body of a fixed nozzle, in nozzle lengths
-_REACHED = 1.0  # mm from where the nozzle should be; check poses of machine files may be rounded by half of it
+_REACHED = 1.0  # max. position error of the nozzle, mm; check poses of machine files may be rounded by half as much
 _GHOST = 0.55  # transparency of a machine that only previews entries
 PLATFORM, NOZZLE = ((0.55, 0.58, 0.62), 0.2), ((0.8, 0.82, 0.85), 0.0)
 
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """A machine at rest, in part coordinates: links (axes + 1, 4, 4), what they look like, and the meshes of files a user
-    gave them. reached: whether it gets there; else all axes are at 0. limits, joints (axes,): as it stands. external_links: the
-    links of positioner and track that are known, at `stands` (k, 4, 4)."""
+    """A machine at rest, in part coordinates: links (axes + 1, 4, 4), their solids and the meshes from the user's
+    files. reached: whether the nozzle reaches its pose; otherwise all axes are at 0. joints (axes,): current
+    position. external_links: known links of positioner and track, with poses `stands` (k, 4, 4)."""
 
     machine: Machine
     links: Array
@@ -247,8 +247,8 @@ class Rest:
 
 @dataclass(frozen=True, eq=False)
 class Scenery:
-    """What is drawn of a cell, poses (4, 4) in part coordinates. mount: what sits on the platform. nozzle: its tip, Z into
-    it. rest: the machine, None where it is not to be seen."""
+    """The drawing of a cell, poses (4, 4) in part coordinates. mount: the part on the platform. nozzle: its tip, Z
+    into the nozzle. rest: the machine, None if hidden."""
 
     parameters: CellParameters
     mount: Array
@@ -323,7 +323,7 @@ def resting_point(toolpath: Toolpath | None, mount: Array) -> Array:
 
 
 class CellNodes:
-    """Draws a cell, nothing at first. As a `ghost` its machine shows what is behind, and clicks go through all of it."""
+    """Draws a cell, initially nothing. As a `ghost` its machine is translucent and clicks pass through."""
 
     def __init__(self, ghost: bool = False) -> None:
         self.machine: MachineNodes | None = None

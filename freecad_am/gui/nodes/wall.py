@@ -22,7 +22,7 @@ NONE = (_NOTHING, np.zeros((0, 3), dtype=np.int32))  # points and triangles
 
 
 class WallNodes:
-    """Draws a wall. Clicks go through the faces, and, where nothing of it is `pickable`, through the lines too."""
+    """Draws a wall. Clicks pass through the faces, and also through the lines unless `pickable`."""
 
     tint, transparency = TINT, 0.72
 
@@ -97,8 +97,8 @@ def face_mesh(snapshot: Taken, names: Sequence[str]) -> tuple[Array, Array]:
 
 
 def triangles_of(shape: Any, names: Sequence[str]) -> tuple[Array, Array]:
-    """Points (n, 3) and triangles (m, 3) of faces of a shape, all where none are named; NONE where it has none such. Those
-    that the shape has, as it has on screen, are taken: others would lie in front of them here and behind them there."""
+    """Return points (n, 3) and triangles (m, 3) of faces of a shape, of all faces without names; NONE if a name is
+    unknown. Uses the shape's own triangles, as on screen: others would cross them."""
     try:
         faces = [
             shape.getElement(name.rsplit(".", maxsplit=1)[-1]) for name in names

@@ -139,7 +139,7 @@ class ProgramPanel(PreviewPanel):
         return work
 
     def _read_back(self, job: Job, path: Any) -> Any:
-        """The `Verification` of the program, where it is up to date and what is entered is what it was made of."""
+        """Return the `Verification` of the program if it is up to date with the entries."""
         obj = self.obj
         if (
             obj is None

@@ -96,8 +96,8 @@ def _rank(stage: Any) -> int:
 
 
 class ShapeChoice(Input):
-    """A shape with some of its faces, or an axis: what is selected, renewed by a button; what is not required is none again
-    where nothing is selected. `present`: as the link holds it. note: what a panel that opens tells about it."""
+    """A selected shape with some of its faces, or an axis; a button updates it. An empty selection clears an
+    optional input. `present`: the value of the link. note: message of the panel when it opens."""
 
     note = ""
 
@@ -330,8 +330,8 @@ INSPECTION = "inspection"
 
 
 class StageChoice(Input):
-    """One of the stages of a kind in the active document; the present one, else the selected one or that of the job that
-    is selected, else the last."""
+    """One of the stages of a kind in the active document: the present one, else the selected one or the one of the
+    selected job, else the last."""
 
     def __init__(self, link: Link, present: Any) -> None:
         self.link, self.label = link, translated(link.label)

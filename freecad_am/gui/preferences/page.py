@@ -68,7 +68,7 @@ class PreferencesPage:
         for row in preferences.process_rows():
             value = row.inner(preferred[row.key], row.name) if row.key in preferred else row.default
             field = fields.make(row, value, section="process")
-            _without_expression(field.widget)
+            _remove_expression_action(field.widget)
             rows.addRow(translated(preferences.label(row)), field.widget)
             self.process[row.key] = field
 
@@ -101,9 +101,9 @@ class PreferencesPage:
         button.setAutoDefault(False)
 
         def browse(*_: Any) -> None:
-            found = QtGui.QFileDialog.getExistingDirectory(self.form, label, edit.text())
-            if found:
-                edit.setText(found)
+            folder = QtGui.QFileDialog.getExistingDirectory(self.form, label, edit.text())
+            if folder:
+                edit.setText(folder)
 
         button.clicked.connect(browse)
         line.addWidget(edit, 1)
@@ -135,7 +135,7 @@ class PreferencesPage:
     # ---- called by FreeCAD, through preferences_hook
 
     def loadSettings(self) -> None:
-        """Show what is kept."""
+        """Show the stored preferences."""
         choices.enter(self.machine, preferences.machine())
         self.post.setCurrentIndex(max(0, self.post.findData(preferences.post())))
         self.machines.setText(preferences.machine_folder())
@@ -145,7 +145,7 @@ class PreferencesPage:
         self.colour.setProperty("color", QtGui.QColor.fromRgbF(*preferences.machine_colour()))
 
     def saveSettings(self) -> None:
-        """Keep what is shown. What cannot be is told on the report view, and stays as it was."""
+        """Store the entries. Report a rejected one in the report view and keep its stored value."""
         preferences.keep("Post", self.post.currentData())
         for name, edit in (("MachineFolder", self.machines), ("ProgramsFolder", self.programs)):
             folder = edit.text().strip()
@@ -171,25 +171,25 @@ class PreferencesPage:
             preferences.keep("Machine", "" if name == preferences.builtin_machine() else name)
 
     def _figures(self) -> dict[str, Any]:
-        """The figures that are sound, in outer units by row key; texts of those that take words."""
-        found: dict[str, Any] = {}
+        """Return the valid figures in outer units by row key; texts for fields that accept words."""
+        figures: dict[str, Any] = {}
         for key, field in self.process.items():
             try:
                 value = field.value
                 inner = field.row.inner(value, field.label)
                 preferences.check(field.row, inner)
-                found[key] = (
+                figures[key] = (
                     field.row.text(inner)
                     if field.row.form == MIXED
                     else float(field.row.outer(inner))
                 )
             except InputError as error:
                 _warn(tr("{}: {}").format(field.label, translated(error.message)))
-        return found
+        return figures
 
 
-def _without_expression(widget: Any) -> None:
-    """A preference is a figure: there is no document whose expressions it could follow."""
+def _remove_expression_action(widget: Any) -> None:
+    """Remove the expression action: a preference has no document with expressions."""
     line = widget if isinstance(widget, QtGui.QLineEdit) else widget.findChild(QtGui.QLineEdit)
     for action in line.actions():
         line.removeAction(action)
@@ -200,7 +200,7 @@ def _warn(text: str) -> None:
 
 
 class RoboticAMPreferences:
-    """Makes the page when FreeCAD's dialog is opened."""
+    """Preferences page that FreeCAD creates when its dialog opens."""
 
     def __init__(self, *_: Any) -> None:
 
@@ -208,9 +208,9 @@ class RoboticAMPreferences:
         self.form = self.page.form
 
     def loadSettings(self) -> None:
-        """Show what is kept; called by FreeCAD."""
+        """Show the stored preferences; called by FreeCAD."""
         self.page.loadSettings()
 
     def saveSettings(self) -> None:
-        """Keep what is shown; called by FreeCAD."""
+        """Store the entries; called by FreeCAD."""
         self.page.saveSettings()

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tells whoever shows something when a preference of what is shown has changed, wherever it was changed, or the language of
-the window."""
+"""Notify listeners when a display preference or the language of the window changes, from any source."""
 
 from __future__ import annotations
 
@@ -19,48 +18,48 @@ _readers: list[Callable[[], None]] = []  # who shows texts
 
 
 class _Watch:
-    """Attached to the group of our preferences and that of FreeCAD's units; several changes at once are told once."""
+    """Observer of our preferences and FreeCAD's units; simultaneous changes cause one notification."""
 
     def __init__(self) -> None:
         self.groups = [App.ParamGet(GROUP), App.ParamGet(UNIT_SETTINGS)]
-        self.asked = False
+        self.is_scheduled = False
         for group in self.groups:
             group.Attach(self)
 
     def onChange(self, group: Any, name: str) -> None:
         """Called by FreeCAD when an entry has changed or gone."""
-        if name in (*SHOWN, SCHEME) and not self.asked:
-            self.asked = True
-            QtCore.QTimer.singleShot(0, self._tell)
+        if name in (*SHOWN, SCHEME) and not self.is_scheduled:
+            self.is_scheduled = True
+            QtCore.QTimer.singleShot(0, self._notify)
 
-    def _tell(self) -> None:
-        self.asked = False
-        _tell(_listeners)
+    def _notify(self) -> None:
+        self.is_scheduled = False
+        _notify(_listeners)
 
 
 class _Ear(QtGui.QWidget):
-    """Never to be seen: Qt tells all widgets of the window of another language, once for each file of translations."""
+    """Hidden widget: Qt notifies all widgets of a language change, once per translation file."""
 
     def __init__(self) -> None:
         super().__init__(Gui.getMainWindow())
         self.hide()
-        self.asked = False
+        self.is_scheduled = False
 
     def changeEvent(self, event: Any) -> None:
         """Called by Qt."""
         super().changeEvent(event)
-        if event.type() == QtCore.QEvent.LanguageChange and not self.asked:
-            self.asked = True
-            QtCore.QTimer.singleShot(0, self._tell)  # once all files are read
+        if event.type() == QtCore.QEvent.LanguageChange and not self.is_scheduled:
+            self.is_scheduled = True
+            QtCore.QTimer.singleShot(0, self._notify)  # once all files are read
 
-    def _tell(self) -> None:
-        self.asked = False
-        _tell(_readers)
+    def _notify(self) -> None:
+        self.is_scheduled = False
+        _notify(_readers)
 
 
-def _tell(listeners: list[Callable[[], None]]) -> None:
-    for listener in tuple(listeners):  # one may end what it shows, and with it another
-        with contextlib.suppress(ReferenceError, RuntimeError):  # what it shows is gone
+def _notify(listeners: list[Callable[[], None]]) -> None:
+    for listener in tuple(listeners):  # a listener may remove itself and others
+        with contextlib.suppress(ReferenceError, RuntimeError):  # its widget is deleted
             listener()
 
 
@@ -69,7 +68,7 @@ _ear: _Ear | None = None
 
 
 def listen(listener: Callable[[], None]) -> None:
-    """Call this, until `forget`, once preferences have changed."""
+    """Call `listener` after each change of preferences, until `forget`."""
     global _watch
     if _watch is None:
         _watch = _Watch()
@@ -77,7 +76,7 @@ def listen(listener: Callable[[], None]) -> None:
 
 
 def listen_to_language(listener: Callable[[], None]) -> None:
-    """Call this, until `forget`, once the window has another language."""
+    """Call `listener` after each change of the window's language, until `forget`."""
     global _ear
     if _ear is None:
         _ear = _Ear()
@@ -85,7 +84,7 @@ def listen_to_language(listener: Callable[[], None]) -> None:
 
 
 def forget(listener: Callable[[], None]) -> None:
-    """Call it no more."""
+    """Stop calling a listener."""
     for listeners in (_listeners, _readers):
         if listener in listeners:
             listeners.remove(listener)

@@ -197,7 +197,7 @@ def install() -> None:
 def tr(text: str) -> str:
     """Return the text in the language of FreeCAD's window, or unchanged without a translation.
 
-    Called with literals, or what was `marked`, so that a script can collect them; figures are put in afterwards, by
+    Call it with literals or `marked` texts, so that a script can collect them; insert figures afterwards with
     `format`.
     """
     return str(App.Qt.translate(CONTEXT, text))

@@ -17,8 +17,8 @@ PREFIX = "RoboticAM_"
 
 
 class Tool:
-    """One command. `icon` is also the object it makes; `action` opens what the tool opens; `need` tells what a document
-    lacks for it; `with_dialog`: whether it acts beside a task panel that is open."""
+    """One command. `icon` is also the object it creates; `action` opens its panel or window; `need` returns what a
+    document lacks for it; `with_dialog`: whether it is available with an open task panel."""
 
     name = ""  # without prefix
     hint = ""  # in its tooltip now, below its name

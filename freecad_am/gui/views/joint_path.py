@@ -55,7 +55,8 @@ class Course:
 
 @dataclass(frozen=True)
 class Seen:
-    """A joint path as a view sees it. limits: their name. read: gives the result that this is of, or places of it."""
+    """The drawn part of a joint path. limits: name of the limit set. read: returns the full result or parts by
+    location."""
 
     course: Course
     limits: str

@@ -20,9 +20,9 @@ T = TypeVar("T")
 
 
 class Draft:
-    """A stage that is not in the document, which is only read: all links and outer values by property name.
+    """A stage outside the document, for reading only: all links and outer values by property name.
 
-    Errors name `label` where the object's Label would stand.
+    Errors name `label` in place of the object's Label.
     """
 
     def __init__(

@@ -70,7 +70,7 @@ class CladdingPanel(PickPanel):
         return tr("{} cannot be used here.").format(pick.obj.Label)
 
     def _elements(self) -> list[str]:
-        """Of the faces picked."""
+        """Return the names of the picked faces."""
         return list(self.faces.picks[0].names) if self.faces.picks else []
 
     def _links(self) -> dict[str, Any]:
