@@ -222,10 +222,10 @@ class Program:
     pulses_per_degree: of each axis, and speed_unit of path speeds, for controllers that count in
     these units, if the machine file has them.
 
-    station, carried: X Y Z mm, RX RY RZ rad. With the part on the robot: the deposition point in
-    the manufacturer's base frame, and the program's origin on the flange. With the tool on the
-    robot: the program's origin in the manufacturer's base frame, and the nozzle's tip on the
-    flange. On a five-axis machine: the torch's tip with all axes at zero, and the program's origin
+    station, carried: X Y Z mm, RX RY RZ rad. With the part on the robot they are the deposition point in
+    the manufacturer's base frame, and the program's origin on the flange. With the tool on the robot they are the
+    program's origin in the manufacturer's base frame, and the nozzle's tip on the flange. On a
+    five-axis machine they are the torch's tip with all axes at zero, and the program's origin
     on the face that carries the part: the work offset with the rotary axes at zero.
 
     axis_names: the controller's name of each axis, such as X Y Z A C; axis_kinds: 'linear' or

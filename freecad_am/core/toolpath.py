@@ -50,8 +50,8 @@ class Bead:
 
     points: (n, 3) mm. build, tool: (n, 3) unit vectors, the build direction and the tool axis (from
     the deposit towards the tool). parameter: (n,) strictly monotonic, the variable of the layer's
-    polynomial: the unwrapped angle about the axis on parts of revolution, else the arc length,
-    normalised to 2 pi. speed: (n,) mm/s of the segment that ends at the point. width, height: (n,)
+    polynomial (the unwrapped angle about the axis on parts of revolution, else the arc length,
+    normalised to 2 pi). speed: (n,) mm/s of the segment that ends at the point. width, height: (n,)
     mm as predicted, or None without a bead model. wire_share: mm of wire per mm of bead if the wire
     follows the travel speed, else None. tangents: (n, 2, 3) unit vectors along which the bead
     arrives at and leaves each point, equal except at corners; None if a strategy does not provide

@@ -215,9 +215,11 @@ def depositing(
 
 
 def travelling(radius: float, slope: float, length: float, exempt: float | Array = 0.0) -> Nozzle:
-    """The nozzle on a rapid. exempt: mm over the tip that are exempt, one value or (k,), one for each
-    position: on retract and approach `exempt_height` at the deposit point less the distance of the
-    tip from it, at least 0.
+    """Return the nozzle on a rapid.
+
+    exempt: mm above the tip that are exempt, one value or (k,) for k positions. On retract and
+    approach it is `exempt_height` at the deposit point less the distance of the tip from it, at
+    least 0.
     """
     return Nozzle(
         Frustum(max(radius - FACES, 0.0), slope, np.maximum(exempt, FACES), length),

@@ -100,9 +100,10 @@ INSIDE = 1e-4  # of a link, cut off at its ends in the check
 class Slant(NamedTuple):
     """Conditions for the position of a link.
 
-    min_cosine: between the contours; straight: least straight share of an opening; ahead: how far ahead links end, relative to the
-    distance: 1 is 45 deg; uneven: allowed deviation of the distance, of the spacing; clearance: on either side of an opening;
-    opening: of the widest possible; margin: between links and other contours.
+    min_cosine: between the contours. straight: least straight share of an opening. ahead: how far
+    ahead links end, as a share of the distance (1 is 45 deg). uneven: allowed deviation of the
+    distance, as a share of the spacing. clearance: on either side of an opening. opening: share of
+    the widest possible one. margin: between links and other contours.
     """
 
     min_cosine: float

@@ -40,11 +40,13 @@ SHIFTS = np.vstack([np.zeros((3, 3)), np.eye(3)])
 class Inspected:
     """Measured points aligned with the part.
 
-    points: (n, 3) mm in part coordinates, where the surface was touched: a ball's radius from its centre. deviation: (n,) mm
-    from the planned surface, positive for excess. counted: (n,) False for points past the edges of the plan, which no figure counts;
-    fitted: (n,) False for uncounted points and those left out of the fit. motion: (4, 4) from the measuring coordinates. free:
-    motions without influence on the deviations. tolerance: mm. file, against: the compared objects. laid: (m, 5) for a predicted
-    deposit: mm of the middles of its pieces, their layers, and mm of its surface above them; None for a measurement.
+    points: (n, 3) mm in part coordinates, on the touched surface: a ball's radius from the centre
+    of the ball. deviation: (n,) mm from the planned surface, positive for excess. counted: (n,)
+    False for points past the edges of the plan, which no figure counts. fitted: (n,) False for
+    uncounted points and those left out of the fit. motion: (4, 4) from the measuring coordinates.
+    free: motions without influence on the deviations. tolerance: mm. file, against: the compared
+    objects. laid: (m, 5) pieces of a predicted deposit, with their middles, mm, their layers, and
+    the height of the surface above them, mm; None for a measurement.
     """
 
     points: Array

@@ -54,8 +54,8 @@ class Frames:
 @dataclass
 class Module:
     """A file: the statements of its one routine with the numbers of their lines, and its data by
-    name. slides: numbers of the external axes that a remark calls the track. speeds: mm/s at the
-    tip, halves: half their last digits; welds: mm/s in weld data.
+    name. slides: numbers of the external axes that a remark calls the track. speeds: of the tip,
+    mm/s. halves: half of their last digits. welds: mm/s in weld data.
     """
 
     file: str

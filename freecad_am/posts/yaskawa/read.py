@@ -72,7 +72,7 @@ class _Job:
 @dataclass
 class _Run:
     """The state while the jobs are followed. moves: share, V, corner level and tool, and pulses of
-    each; beside: track and station of all moves, None before the first; per_unit: pulses per degree
+    each. external: track and station of all moves, None before the first. per_unit: pulses per degree
     or mm of axes, and slides the axes in mm.
     """
 

@@ -336,8 +336,10 @@ def _base(grid: Grid, pieces: Strands, below: tuple[Strands, Array] | None) -> A
 
 
 class _Layer:
-    """One layer being deposited. base: mm (n,) of the deposit below its pieces, above their path. level: mm (n,) of their surface.
-    rise: mm (n,) that the middle of a surface is above its mean.
+    """One layer during its deposit.
+
+    The heights are in mm above the path of the pieces: base (n,) of the deposit below them, level
+    (n,) of their surface, and rise (n,) of the middle of a surface above its mean.
     """
 
     def __init__(self, grid: Grid, pieces: Strands, base: Array) -> None:

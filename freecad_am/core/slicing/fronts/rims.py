@@ -328,8 +328,8 @@ class Line(NamedTuple):
 def cut_at_rims(lines: list[LevelLine], ends: Array, longest_edge: float) -> list[Line]:
     """Return the lines with their ends among the points (k, 3) where fronts meet rims.
 
-    Between two further points near a line the wall has a gap that the mesh is too coarse to
-    show: the line is cut there. longest_edge: of the mesh, mm.
+    Two further points near a line mark a gap in the wall that the coarse mesh misses, so the line is
+    cut there. longest_edge: of the mesh, mm.
     """
     ended_lines, free = [], np.ones(len(ends), dtype=bool)
     for line in lines:
