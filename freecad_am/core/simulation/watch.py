@@ -31,7 +31,7 @@ class ArmTouches:
     """Contacts of links in a motion of n rows.
 
     link: (n,) the link in contact at the row or on the segment that ends there, NONE without one.
-    The number of `links` means the nozzle. what: (n,) index in `names` of the body in contact.
+    Its values are indices in `links`. what: (n,) index in `names` of the body in contact.
     step: rad between two checked positions.
     """
 

@@ -234,8 +234,8 @@ def brought_clear(
 ) -> tuple[Refined, Mask]:
     """Replace the polynomials in `reached` that do not keep the links clear, if clear ones exist.
 
-    Returns the result and the mask (B,) of the beads whose links still come too near. start: (B,
-    degree + 1) coefficients at the start of the local search.
+    Returns the result and the mask (B,) of the replaced beads. start: (B, degree + 1) coefficients
+    at the start of the local search.
     """
     points = gather(beads, task.cell, POINTS_PER_BEAD)
     touching = _find_touching(
@@ -301,8 +301,11 @@ class _Serving:
 def _stepped_back(
     start: Array, reached: Array, joined: Mask, serves: Callable[[Array], Mask]
 ) -> tuple[Array, Mask]:
-    """Coefficients (B, degree + 1) that serve, as near as may be to those reached, and which (B,) do; where none does, those
-    reached. joined: (B,) which beads have to join up."""
+    """Return coefficients (B, degree + 1) that serve, as close as possible to `reached`, and the
+    mask (B,) of them.
+
+    Beads without serving coefficients keep those reached. joined: (B,) beads that have to join up.
+    """
     result, changed = reached.copy(), np.zeros(len(start), dtype=bool)
     for share in SHARES:
         if changed.all():
@@ -316,7 +319,7 @@ def _stepped_back(
 
 
 def findings(arm_clearance: ArmKept, paths: Sequence[BeadPath]) -> list[Issue]:
-    """An error for each bead at whose points a link comes too near, with the link and its obstacle."""
+    """Report each bead at whose points a link comes too near, with the link and its obstacle."""
     issues = []
     for path in paths:
         sampled = np.unique(

@@ -194,10 +194,10 @@ def redundancy_map(
     bodies: Sequence[Body] = (),
     values: Array | None = None,
 ) -> RedundancyMap:
-    """Return the map of all branches for the columns. // It uses the job's cell, limits and rotation range.
-    bodies: in part coordinates.
+    """Return the map of all branches for the columns.
 
-        values: (R,) rad of the rows, else the whole turn.
+    It uses the job's cell, limits and rotation range. bodies: in part coordinates. values: (R,) rad
+    of the rows, by default a whole turn.
     """
     values = np.linspace(-np.pi, np.pi, ROWS) if values is None else values
     phi = rotation_of(task.cell, map_columns.points.tool, values[:, None], axis)
