@@ -251,5 +251,5 @@ def _happening(program: Program, block: Block) -> list[tuple[float | str, ...]]:
 
 
 def _switched(program: Program, schedule: int | None) -> tuple[float | str, ...]:
-    """What switches the deposit: an output, or an arc instruction by a schedule."""
+    """Return the switch of the deposit: an output, or an arc instruction with a schedule."""
     return (float(program.deposit_output),) if schedule is None else (float(schedule), ARC)

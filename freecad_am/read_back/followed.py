@@ -61,9 +61,10 @@ def by_robot(cell: Cell, text: ReadMoves, flanges: Array) -> Array:
 
 
 def by_table(cell: Cell, text: ReadMoves, path: Path) -> Array:
-    """(n, 5) serial joints of a machine with rotary axes whose tip takes a path; NaN where a direction is not reached.
+    """(n, 5) serial joints of a machine with rotary axes for a path of the tip; NaN for unreachable
+    directions.
 
-    A rotary axis that a direction leaves free stays where it is.
+        A rotary axis that a direction leaves free stays where it is.
     """
     assert text.joints is not None
     serial = cell.machine.from_controller(text.joints)
@@ -263,7 +264,7 @@ def beads(motion: Motion) -> list[DrivenBead]:
 
 
 def _driven(cell: Cell, program: Program, text: ReadMoves) -> tuple[Path, Array]:
-    """Where the text takes the tip, and the serial joints (n, axes) that do it."""
+    """Return the tip path of the text, and its serial joints (n, axes)."""
     machine, continuous = cell.machine, text_path.shorter_way(cell, program, text)
     if text.position is None:
         assert text.joints is not None
@@ -281,7 +282,7 @@ def _driven(cell: Cell, program: Program, text: ReadMoves) -> tuple[Path, Array]
 
 
 def _in_turns(controller_values: Array, continuous: Mask) -> Array:
-    """Controller values (n, axes) with the axes that go the shorter way counted on from row to row."""
+    """Return controller values (n, axes) with the shorter-way axes unwrapped from row to row."""
     unwrapped, reached = np.array(controller_values), np.isfinite(controller_values).all(axis=1)
     unwrapped[np.ix_(reached, continuous)] = np.unwrap(
         unwrapped[np.ix_(reached, continuous)], axis=0

@@ -132,9 +132,11 @@ MOST_LONGER = 0.002
 
 
 def switching_findings(motion: Motion, text: ReadMoves) -> list[Finding]:
-    """The first DEPOSIT_SWITCH where it is switched on a second time, or is on where the program ends: an end of a bead is
-    lost; and the first TRIGGER_LEAD where it is switched earlier than the move begins on which it is. motion: what the text
-    drives."""
+    """Return DEPOSIT_SWITCH if the deposit is switched on twice or is on at the end of the program.
+
+    Then the end of a bead is missing. Also returns the first TRIGGER_LEAD if a switch comes before
+    its move begins. motion: that of the text.
+    """
     first_findings: dict[str, Finding] = {}
     for finding in _findings(motion, text):
         first_findings.setdefault(finding.issue.code, finding)

@@ -76,7 +76,9 @@ def pieces(rows: Index) -> list[Index]:
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """Where the text takes the tip, in part coordinates, with the error its digits allow. Rows are moves."""
+    """The path of the tip in a text, in part coordinates, with the error its digits allow. Rows are
+    moves.
+    """
 
     position: Array
     tool: Array

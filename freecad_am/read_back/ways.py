@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How a text gets from point to point: what runs straight, where it stops, how far it rounds corners, in which frame, and in
-which configuration of the arm; against how the program was planned."""
+"""Compares the interpolation of a text with the plan.
+
+It covers straight motion, stops, corner rounding, frames and arm configurations.
+"""
 
 from __future__ import annotations
 

@@ -111,7 +111,9 @@ def build_deposit(
 
 
 def _join_points(points: Array, is_first: Mask, grain: float) -> Index:
-    """Which points (n, 3) are left where pieces are joined up to `grain` mm; is_first: (n,) those at which beads begin."""
+    """Return which points (n, 3) remain if pieces are joined up to `grain` mm; is_first: (n,)
+    starts of beads.
+    """
     is_last = np.append(is_first[1:], True)
     directions = np.diff(points, axis=0, prepend=points[:1])
     size = lengths(directions)

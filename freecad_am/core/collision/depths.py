@@ -107,7 +107,9 @@ def _probes(surface: Surface) -> Surface:
 
 
 def _inward(probes: Surface, inside: Inside | None, slack: float) -> tuple[float, bool]:
-    """Which way, 1.0 or -1.0, normals of a surface lead into the part, and whether both ways do."""
+    """Return the direction, 1.0 or -1.0, in which normals of a surface point into the part, and
+    whether both do.
+    """
     if inside is None:
         return 1.0, True
     ahead, behind = (
@@ -170,7 +172,9 @@ def _entry(start: Array, directions: Array, inside: Inside, slack: float) -> Arr
 
 
 def _reach(start: Array, directions: Array, inside: Inside, slack: float) -> Array:
-    """How far (m,) mm lines from points along unit vectors, (m, 3) each, stay inside of a body, once they are in it."""
+    """Return the length (m,) of lines within a body, mm, from points along unit vectors, (m, 3)
+    each.
+    """
     steps = np.geomspace(slack, REACH, STEPS)
     is_inside = inside.holds(
         (start[:, None] + steps[None, :, None] * directions[:, None]).reshape(-1, 3)

@@ -69,13 +69,13 @@ class PhaseParameters:
 
 
 class BeadStart(PhaseParameters):
-    """What differs where beads begin."""
+    """The settings at the start of beads."""
 
     where = "process.start"
 
 
 class BeadEnd(PhaseParameters):
-    """What differs where beads end."""
+    """The settings at the end of beads."""
 
     where = "process.end"
 
@@ -217,7 +217,7 @@ def _parsed(text: str) -> tuple[tuple[str, BeadClass], ...]:
 
 
 def classes(text: str) -> dict[str, BeadClass]:
-    """What a text says, by class; nothing for none. Raises InputError BAD_VALUE."""
+    """Return the classes of a text; empty for none. Raises InputError BAD_VALUE."""
     return dict(_parsed(text))
 
 

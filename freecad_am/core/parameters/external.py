@@ -56,7 +56,7 @@ class External:
 
 
 def externals(text: str) -> tuple[External, ...]:
-    """What a text says, in its order; nothing for none. Raises InputError BAD_VALUE."""
+    """Return the mechanisms of a text, in its order; empty for none. Raises InputError BAD_VALUE."""
     if text.strip() == NONE:
         return ()
     return tuple(_external(part.strip()) for part in text.split(MORE) if part.strip())

@@ -80,7 +80,7 @@ class Obstacle:
 
 
 def obstacles(text: str) -> tuple[Obstacle, ...]:
-    """What a text says, in its order; nothing for none. Raises InputError BAD_VALUE."""
+    """Return the obstacles of a text, in its order; empty for none. Raises InputError BAD_VALUE."""
     if text.strip() == NONE:
         return ()
     found = tuple(

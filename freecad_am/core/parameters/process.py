@@ -76,7 +76,7 @@ class WireParameters:
 
 @dataclass(frozen=True)
 class BetweenLayersParameters:
-    """What happens between two layers."""
+    """The settings between two layers."""
 
     lift: float = f.parameter(
         20.0, f.LENGTH, "Retract distance along the tool axis between beads.", low=0.0

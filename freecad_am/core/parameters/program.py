@@ -84,7 +84,7 @@ class NcParameters:
 
 @dataclass(frozen=True)
 class AxesParameters:
-    """What the controller calls the external axes."""
+    """The controller's names of the external axes."""
 
     unit: str | None = f.parameter(
         None,

@@ -50,7 +50,7 @@ MOST_LAYERS = (
 
 @dataclass(frozen=True)
 class LayerParameters:
-    """What every family cuts its layers by. mm."""
+    """The layer settings of all families. mm."""
 
     layer_height: float = f.parameter(
         1.0, f.LENGTH, "Distance between neighbouring layers.", low=0.0, open_low=True

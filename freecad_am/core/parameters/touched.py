@@ -34,7 +34,9 @@ class Touched:
 
 
 def touched(text: str) -> tuple[Touched, ...]:
-    """What a text says, in its order; nothing for none. Raises InputError BAD_VALUE."""
+    """Return the touched points of a text, in its order; empty for none. Raises InputError
+    BAD_VALUE.
+    """
     if text.strip() == NONE:
         return ()
     return tuple(_one(part.strip()) for part in text.split(MORE) if part.strip())

@@ -144,7 +144,7 @@ class Placed:
         return self.proven.get(number, self.judged[number])
 
     def entries(self, number: int) -> dict[str, object]:
-        """What gives the cell a pose, by parameter, in the units of macros: mm and deg."""
+        """Return the parameters that set a pose of the cell, in the units of macros: mm and deg."""
         if self.moves == POSITIONER:
             return {"external": replace_pose(self.settings, self.moves, self.pose(number)).external}
         return {

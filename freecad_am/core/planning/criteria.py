@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a joint path is judged by (Chalvin 2020, eqs. 1 to 6 as corrected in ERRATA, and eq. 17).
+"""The criteria of a joint path (Chalvin 2020, eqs. 1 to 6 as corrected in ERRATA, and eq. 17).
 
 Every criterion is to be minimised and comes per bead with its derivative along d q / d phi of each point. The sums
 over points are means, so that a bead with more points is not judged worse; eq. 17 stays a sum.

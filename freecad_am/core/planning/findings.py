@@ -19,7 +19,7 @@ ROUNDING = 1e-9
 
 
 def findings(task: Task, path: BeadPath) -> list[Issue]:
-    """At most one issue of a kind and axis for the bead, at the point where it is worst."""
+    """Return at most one issue per kind and axis for the bead, at its worst point."""
     bead_fields = {"layer": path.layer, "bead": path.index}
     unreachable = np.flatnonzero(~np.isfinite(path.joints).all(axis=1))
     if len(unreachable) and not task.cell.machine.free:

@@ -212,7 +212,9 @@ def steps(joints: Array, points: Points) -> Array:
 
 
 def unwrapped(joints: Array, points: Points) -> Array:
-    """(..., T, axes) joint values counted on from the first point of each bead, NaN from its first point without any on."""
+    """Return the joints (..., T, axes) unwrapped from the first point of each bead, NaN after a NaN
+    point.
+    """
     rising = steps(joints, points)
     unreachable = np.isnan(rising)
     any_lost = bool(unreachable.any())

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What every method of planning has in common: cell, branch, limits, thresholds, and the joints of a rotation."""
+"""The common data of all planning methods: cell, branch, limits, thresholds, and the joints of a
+rotation.
+"""
 
 from __future__ import annotations
 
@@ -158,7 +160,7 @@ class Task:
 
     @cached_property
     def middle(self) -> Array:
-        """(axes,) the middle of each axis's range, 0 where it has no end; rad."""
+        """(axes,) the middle of each axis's range, 0 for continuous axes; rad."""
         limits = self.cell.limits
         with np.errstate(invalid="ignore"):
             return np.where(self.continuous, 0.0, 0.5 * (limits.lower + limits.upper))
@@ -247,7 +249,9 @@ class Task:
         return joints[..., : self.cell.robot.chain.axes]
 
     def joints(self, points: Points, phi: Array) -> Array:
-        """(..., T, axes) joint values counted on within each bead, in the turn that suits the limits best."""
+        """Return the joints (..., T, axes) unwrapped within each bead, in the turn that suits the
+        limits best.
+        """
         raw = self.raw_joints(points, phi)
         if phi.ndim > 1 and not np.isnan(raw.max()):
             return self.in_range(unwrapped_by_turns(raw, points), points)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the nozzle and the links of the arm keep clear of."""
+"""Clearance checks of the nozzle and the arm links."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What carries the part can carry it."""
+"""Payload check of the machine that carries the part."""
 
 from __future__ import annotations
 

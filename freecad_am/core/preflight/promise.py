@@ -22,7 +22,7 @@ def number(value: float) -> str:
 
 
 class Place(NamedTuple):
-    """Where a worst value is, counted from 0; None for no such place."""
+    """The location of a worst value, counted from 0; None if it does not apply."""
 
     layer: int
     bead: int | None

@@ -18,8 +18,11 @@ TEXT, BETWEEN = (
 
 @dataclass(frozen=True)
 class ReadBack:
-    """How a program was read back. ok: without an error. at_points, between: mm from the plan; bound: mm that the digits of
-    the text explain. allowed: mm between points. solvers: how many computed its kinematics."""
+    """The result of the read-back.
+
+    ok: no error. at_points, between: mm from the plan. bound: mm that the digits of the text
+    explain. allowed: mm between points. solvers: number of solvers of its kinematics.
+    """
 
     ok: bool
     at_points: float

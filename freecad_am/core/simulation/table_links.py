@@ -60,7 +60,7 @@ class Rates:
 
 
 def rates(motion: Motion) -> Rates:
-    """The rates of a motion at the speed that is asked for."""
+    """Return the rates of a motion at the requested speed."""
     within = motion.deposit & (motion.point > 0) & (motion.duration > 0.0)
     time = np.where(within, motion.duration, np.nan)[:, None]
     speed = np.diff(motion.joints, axis=0, prepend=motion.joints[:1]) / time
@@ -227,7 +227,7 @@ class Placing:
 
 
 def placing(cell: Cell, joints: ArrayLike) -> Placing:
-    """Where links, part and nozzle are for a joint vector (axes,)."""
+    """Return the poses of links, part and nozzle for a joint vector (axes,)."""
     chain, values = cell.robot.chain, np.asarray(joints, float)
     links = cell.links(values)
     flange = links[-1] @ chain.flange

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a job takes and deposits, summed up before anything is posted."""
+"""Totals of a job before export: time, deposit and material."""
 
 from __future__ import annotations
 

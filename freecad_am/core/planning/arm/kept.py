@@ -37,7 +37,7 @@ class ArmKept:
     before: Mapping[Place, int]
 
     def touches(self, joints: Array, points: Points, bead_ids: Sequence[Place]) -> Touches:
-        """What links come too near with joints (T, axes) at the points of beads at these places."""
+        """Return the contacts of links with joints (T, axes) at the points of these beads."""
         return self.contact.touches(
             joints,
             np.array([self.moment(bead_id) for bead_id in bead_ids], dtype=np.int64)[points.bead],
@@ -111,7 +111,10 @@ def check_moves(
 def clearance_issue(
     cell: Cell, link: str, what: str, layer: int, bead: int, on_way: bool = False
 ) -> Issue:
-    """That a link, as `ArmContact.links` calls it, comes too near to something at a bead, or on the rapid way to it."""
+    """Build the issue for a link that comes too near to something at a bead or on the rapid to it.
+
+    `link` is a name of `ArmContact.links`.
+    """
     where = " on the rapid way to the bead" if on_way else ""
     stands = what in [external_link.name for external_link in cell.external_links]
     if link == NOZZLE:

@@ -16,9 +16,10 @@ from ..task import Task
 
 
 def extend_past_seam(task: Task, path: BeadPath, overlap: float) -> BeadPath:
-    """The path of a closed bead with its beginning repeated over `overlap` mm, at most once round; then it is open.
+    """Return the path of a closed bead extended over its beginning by `overlap` mm, at most one
+    round.
 
-    The rotation goes on from where it has come to, and the joints are those it then takes.
+    The result is open. The rotation continues from its end value, and the joints follow it.
     """
     if overlap <= 0.0 or not path.bead.closed or not path.reachable:
         return path

@@ -194,7 +194,7 @@ def _gains(planned: Bead, slowed: Bead) -> tuple[Array, Array]:
 
 
 def _growth(sections: Sequence[_Place], worst: _Place, law: SpeedLaw | None) -> str:
-    """What the bead model says of slowed places."""
+    """Return the growth that the bead model predicts at slowed places."""
     wider = max(section.wider for section in sections)
     if law is None or not wider > 0.0:
         return ""

@@ -75,7 +75,7 @@ def _curve_points(motion: Motion, beads: Sequence[Bead], end: Integers, share: A
 
 
 def _piece_counts(motion: Motion, cell: Cell, chord_error: float) -> Integers:
-    """(n,) into how many pieces the segment that ends at each row is cut; 1 where it is none of a bead."""
+    """Return the number of pieces (n,) for the segment that ends at each row; 1 outside of beads."""
     counts = np.ones(len(motion), dtype=np.int64)
     inside = (
         motion.deposit[1:] & (motion.point[1:] > 0) & motion.reachable[1:] & motion.reachable[:-1]
@@ -241,7 +241,9 @@ def _remove_returns(motion: Motion, keep: Mask, min_distance: float, off: float)
 
 
 def _sparse(clock: Array) -> Mask:
-    """Which points (n,) of a bead stay where none may come less than 1 after another on a clock; both ends stay."""
+    """Return which points (n,) of a bead stay so that they are at least 1 apart on a clock; both
+    ends stay.
+    """
     keep: Mask = np.r_[True, np.diff(np.floor(clock)) > 0.0] & (clock <= clock[-1] - 1.0)
     keep[0] = keep[-1] = True
     rows = np.flatnonzero(keep)

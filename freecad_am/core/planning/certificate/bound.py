@@ -44,7 +44,7 @@ GROUPED = 0.002  # of the objective: maximum loss by grouping steps
 
 @dataclass(frozen=True, eq=False)
 class Optimality:
-    """What a joint path costs and what no rotation can go below: objective and bound (B,) of each bead."""
+    """The objective of a joint path and its lower bound over all rotations, (B,) for each bead."""
 
     objective: Array
     bound: Array
@@ -162,7 +162,7 @@ def _displacement_cost(task: Task, points: Points, path: BeadPath) -> float:
 
 
 def _displacement_bound(task: Task, points: Points, path: BeadPath, objective: float) -> float:
-    """What eq. 17 of one bead cannot go below; `objective` is what its path takes."""
+    """Return a lower bound of eq. 17 for one bead; `objective` is the cost of its path."""
     target, best = (1.0 - BOUND_TOLERANCE) * objective, 0.0
     for number, count in enumerate(ROTATIONS):
         value, first_lattice = _through(task, points, path, count, objective, np.zeros(count), None)

@@ -38,9 +38,11 @@ def close_gaps(
 
 
 def closed(task: Task, path: BeadPath) -> BeadPath:
-    """The path with the best course of the rotation that is found, where it is better: limits, condition and range of the
-    rotation kept, a joined bead still joined, links clear where they are to be. Paths that were
-    given, or do not serve as they are, stay."""
+    """Return the path with the best rotation course that the search finds, if it is better.
+
+    The course keeps limits, condition and range of the rotation, joined beads and link clearance.
+    Given paths and infeasible paths stay unchanged.
+    """
     if (
         task.parameters.objective != "displacement"
         or path.reason == given.GIVEN

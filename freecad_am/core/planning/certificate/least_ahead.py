@@ -126,7 +126,9 @@ def _least(
 
 
 def _neighbours(lattice: Lattice, i: int, next_lattice: Lattice, j: int, max_cost: float) -> Index:
-    """By how many rotations a step may go on that takes less than `max_cost`, and one more at both ends."""
+    """Return the rotation offsets of steps that cost less than `max_cost`, and one more at both
+    ends.
+    """
     cell = lattice.count // COARSE
     radius = np.sqrt(max_cost) + 0.5 * cell * (lattice.rate[i] + next_lattice.rate[j])
     from_, to = lattice.flat[i], next_lattice.flat[j]

@@ -33,8 +33,11 @@ MAX_SPEED_SHARE = 0.9  # of its largest speed, what an external axis may be aske
 
 @dataclass(frozen=True, eq=False)
 class Bound:
-    """What holds at one set of changes of v numbers. objective, with `slope` (v,). margins: (r,), shares as limits and
-    condition have them, 0 where just kept, with `margin_slopes` (r, v). hard: (h,), kept where >= 0, with `hard_slopes`."""
+    """Objective and constraints at one set of v changes.
+
+    objective: with `slope` (v,). margins: (r,), shares of limits and condition, 0 at the limit,
+    with `margin_slopes` (r, v). hard: (h,), kept where >= 0, with `hard_slopes` (h, v).
+    """
 
     objective: float
     slope: Array
@@ -214,8 +217,10 @@ def set_external_values(points: Points, cell: Cell, values: Array) -> Points:
 
 
 def external_rates(cell: Cell, position: Array, joints: Array) -> list[Array]:
-    """For each external axis d q / d e (T, axes), the tool staying where it is on the part; position (T, 3) in the part,
-    joints (T, axes)."""
+    """Return d q / d e (T, axes) for each external axis, with the tool fixed on the part.
+
+    position: (T, 3) in the part. joints: (T, axes).
+    """
     robot_axes, count = cell.robot.chain.axes, cell.machine.chain.axes
     stands = cell.station @ frames.inverse(cell.mount)
     jacobian = jac.jacobian(cell.machine.chain, joints, position @ stands[:3, :3].T + stands[:3, 3])
@@ -266,7 +271,7 @@ class Seen:
         self.found: Bound | None = None
 
     def bound_at(self, x: Array) -> Bound | None:
-        """What holds with changes x (v,)."""
+        """Return objective and constraints for changes x (v,)."""
         if x.tobytes() != self.key:
             self.key, self.found = x.tobytes(), self.freedom.look(x)
         return self.found

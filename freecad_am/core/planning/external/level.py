@@ -94,7 +94,9 @@ def levelled(cell: Cell, toolpath: Toolpath, whole_turns: bool = False) -> Level
 
 
 def standing(cell: Cell, toolpath: Toolpath) -> list[Issue]:
-    """What leans more than allowed where no external axis turns the part: at most one issue of a bead."""
+    """Report beads that lean more than allowed although no external axis turns the part, one issue
+    per bead.
+    """
     up, issues = cell.machine.base[:3, :3] @ cell.up, list[Issue]()
     allowed = allowed_by_layer(toolpath.parts)
     for layer, index, bead in toolpath:
@@ -176,7 +178,7 @@ def farthest_from_vertical(cell: Cell, paths: Sequence[BeadPath]) -> float:
 
 
 def axes_figures(cell: Cell, paths: Sequence[BeadPath]) -> dict[str, object]:
-    """How far each external axis turns in all along the deposit, deg, or slides, mm."""
+    """Return the total travel of each external axis along the deposit, deg or mm."""
     external = cell.external
     assert external is not None
     turned = np.zeros(external.axes)

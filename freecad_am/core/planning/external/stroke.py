@@ -91,7 +91,9 @@ def chosen(cell: Cell, courses: Sequence[Array], previous: Array) -> Array:
 
 
 def limits_of(cell: Cell) -> tuple[Index, Array, Array]:
-    """Which of the external values turn the part, and their limits (k,), the reserve taken off."""
+    """Return the indices of the external axes that turn the part, and their limits (k,) less the
+    reserve.
+    """
     assert cell.external is not None
     rows = cell.external.turned
     axes = cell.robot.chain.axes + rows
@@ -170,7 +172,10 @@ def _split_bead(
 
 
 def _share(bead: Bead, last_point: int, section: Bead) -> float:
-    """Where the end of a piece is in the segment of a bead that ends at its point `last_point`, counted on round after round."""
+    """Return the position of a piece's end in the bead segment that ends at point `last_point`.
+
+    `last_point` counts on over several rounds. The position is a share of the segment.
+    """
     if not bead.closed:
         return 1.0
     end = 1 + (last_point - 1) % (len(bead) - 1)
@@ -275,7 +280,9 @@ class _Ways:
 
     @cached_property
     def furthest(self) -> Index:
-        """(ways, n) the last point to which each way has room from a point on, the one before that where it has none."""
+        """(ways, n) the last point that each way reaches within its stroke from a point; the
+        previous point if none.
+        """
         count = self.fits.shape[1]
         without = np.where(self.fits, count, np.arange(count))
         return np.asarray(np.minimum.accumulate(without[:, ::-1], axis=1)[:, ::-1] - 1)
@@ -347,7 +354,7 @@ class _Ways:
 
 
 def _overlap_points(bead: Bead, start: int, overlap: float) -> int:
-    """How many points a closed bead, begun at one of its own, has where it runs on."""
+    """Return the number of overlap points of a closed bead that begins at its point `start`."""
     if overlap <= 0.0:
         return 0
     along = np.cumsum(np.roll(lengths(np.diff(bead.points, axis=0)), -start))

@@ -82,8 +82,11 @@ def _follow_track(
     window: float,
     offset: float,
 ) -> list[Bead]:
-    """The beads with the robot at most half a window from `offset` the deposit along the track, all mm, as far as the track
-    goes."""
+    """Return the beads with the robot within half a window of `offset` from the deposit along the
+    track, mm.
+
+    The track's limits bound its motion.
+    """
     external = cell.external
     assert external is not None and external.slides is not None
     axis = cell.robot.chain.axes + external.slides

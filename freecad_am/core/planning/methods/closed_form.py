@@ -52,8 +52,12 @@ RACES = 2.0  # times its largest speed at which an axis does; below that the bea
 
 
 class _Run(NamedTuple):
-    """A bead or a piece of one as it is run, with its axis values (n, 5), and whether it keeps the limits. bent: where it is
-    not straight between two points, the later one's number, mm off the bead and rad off its direction."""
+    """A bead or a piece of one in final form, with its axis values (n, 5); fits: whether it keeps
+    the limits.
+
+    bent: a segment that is not straight: number of its end point, deviation from the bead, mm, and
+    from the direction, rad.
+    """
 
     bead: Bead
     axes: Array
@@ -106,8 +110,10 @@ def _within_stroke(task: Task, bead: Bead, previous: Array) -> list[_Run]:
 
 
 def _run(task: Task, bead: Bead, previous: Array) -> _Run:
-    """The bead in the turns and the branch that suit best after axes (5,), past poles with the directions asked for where
-    that can be run."""
+    """Return the bead in the turns and the branch that suit best after axes (5,).
+
+    It passes poles with the requested directions if possible.
+    """
     runs: list[tuple[bool, bool, float, _Run]] = []
     for pole in POLES[:1] if task.lock is not None else POLES:
         run = _finer(task, bead, previous, pole)

@@ -240,7 +240,9 @@ def returning(toolpath: Toolpath, paths: Sequence[BeadPath]) -> frozenset[tuple[
 
 
 def _letter(axis: str) -> str:
-    """How a controller writes an axis: X for mx, which keeps clear of the x of the part, A for a."""
+    """Return the controller's letter of an axis: X for mx, which has the m because x is a part
+    coordinate, A for a.
+    """
     return (axis[1:] if len(axis) == 2 and axis[0] == "m" else axis).upper()
 
 

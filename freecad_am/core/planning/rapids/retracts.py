@@ -117,10 +117,10 @@ class Ways(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Leg:
-    """A way off a bead that the machine can go.
+    """A retract from a bead within the machine's limits.
 
-    joints: (m, axes) at the ends of its moves, outwards, counted on from the bead. position: (m, 3) mm, the tip there.
-    height: mm. choice: how it differs from the way asked for.
+    joints: (m, axes) at the ends of its moves, outwards, unwrapped from the bead. position: (m, 3)
+    mm, the tip there. height: mm. choice: its difference from the requested retract.
     """
 
     joints: Array
@@ -131,8 +131,11 @@ class Leg:
 
 @dataclass(frozen=True)
 class Failure:
-    """Why the way asked for cannot be gone: LIMIT, UNREACHABLE or SINGULAR, the index of the limit among the labels of the
-    limits, the value there and the bound, rad or mm, or the condition and the least allowed."""
+    """The reason why the requested retract is impossible: LIMIT, UNREACHABLE or SINGULAR.
+
+    label: index of the limit among the labels of the limits. value, bound: of the limit, rad or mm,
+    or of the condition.
+    """
 
     kind: str
     label: int = 0
@@ -241,7 +244,9 @@ class Retracts:
 
     @cached_property
     def sound(self) -> Mask:
-        """(n,) whether the end itself is reached within limits; where it is not, the bead has an issue of its own."""
+        """(n,) whether the end itself is within reach and limits; otherwise the bead has an issue
+        already.
+        """
         reachable = np.flatnonzero(np.isfinite(self.ends.joints).all(axis=1))
         sound = np.zeros(len(self.ends.phi), dtype=bool)
         sound[reachable] = (
@@ -297,7 +302,7 @@ class Retracts:
         return legs, failures
 
     def asked(self, end_numbers: Index, height: Array) -> list[Leg]:
-        """The ways asked for, whether the machine can go them or not; NaN where they cannot be reached."""
+        """The requested retracts, possible or not; NaN out of reach."""
         joints, position = self._courses(self._ways(end_numbers, height, (DEFAULT_CHOICE,)), 1)
         return [
             Leg(joints[k], position[k], float(height[k]), DEFAULT_CHOICE)
@@ -356,7 +361,9 @@ class Retracts:
         )
 
     def _possible(self, candidates: Ways) -> Mask:
-        """Which ways lead away, and turn no further than the rotation about the tool axis may; five axes leave no turn."""
+        """Return which retracts lead away and keep the range of the tool rotation; five-axis
+        machines have none.
+        """
         turned = (candidates.turn != 0.0) | (candidates.lean != 0.0).any(axis=1)
         possible: Mask = np.isfinite(candidates.direction).all(axis=1)
         if self.branch is None:
@@ -410,7 +417,7 @@ class Retracts:
         return raw + TURN * np.cumsum(np.round((previous - raw) / TURN), axis=1), tip
 
     def _stray(self, candidates: Ways, joints: Array) -> Array:
-        """How far (k,) mm the tip leaves the straight way while the machine runs straight in its joints."""
+        """Return the distance (k,) of the tip from the straight path on straight joint moves, mm."""
         course = np.concatenate([self.ends.joints[candidates.end, None], joints], axis=1)
         between = course[:, :-1, None] + BETWEEN[:, None] * np.diff(course, axis=1)[:, :, None]
         chain = self.cell.machine.chain

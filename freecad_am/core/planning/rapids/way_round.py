@@ -87,7 +87,7 @@ PULLS = np.array([0.0, 0.03, 0.1, 0.3])  # of the way from a place to halfway be
 
 @dataclass(frozen=True, eq=False)
 class Ranges:
-    """Where joints are looked for: low, high (axes,), and the largest speed of each axis."""
+    """The search space of the joints: low, high (axes,), and the largest speed of each axis."""
 
     low: Array
     high: Array

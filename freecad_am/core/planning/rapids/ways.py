@@ -95,7 +95,9 @@ class RapidWays:
         return [end for end in (2 * k - 1, 2 * k) if end in self.legs]
 
     def _way(self, k: int, legs: Mapping[int, Leg | None], round_: Array | None = None) -> Way:
-        """Way k by legs; round_: (m, axes) the places by which it leads from one to the other, where it is not straight."""
+        """Return rapid k built from its legs; round_: (m, axes) via points between the legs, if it
+        has a detour.
+        """
         previous = self.beads[k - 1] if k else None
         path = self.beads[k] if k < len(self.beads) else None
         retract, onto = legs.get(2 * k - 1), legs.get(2 * k)
@@ -271,7 +273,7 @@ class RapidWays:
         return self.beads[min(k, len(self.beads) - 1)]
 
     def reasons(self, k: int) -> list[str]:
-        """What the nozzle meets on way k."""
+        """Return the obstacles that the nozzle hits on rapid k."""
         moves = self._moves(k, self.ways[k])
         names = self.obstacles.names(moves)
         if self.cell.part_moves or self.cell.external_links:
@@ -285,7 +287,7 @@ class RapidWays:
         return names
 
     def arm_issue(self, k: int) -> Issue | None:
-        """What a link comes too near on way k, where one does."""
+        """Report the obstacle that a link comes too near on rapid k, if any."""
         if self.arm is None:
             return None
         _, touched = check_moves(self.arm, *self._moves(k, self.ways[k]))
@@ -436,7 +438,7 @@ def _raised(rapids: RapidWays) -> list[Issue]:
 
 
 def _others(rapids: RapidWays) -> list[Issue]:
-    """A note about other ways taken because the machine cannot go those asked for."""
+    """Return a note about other rapids, taken because the machine cannot do the requested ones."""
     cleared = {end for k in (*rapids.raised, *rapids.led.ways) for end in rapids.ends(k)}
     changed_legs: list[tuple[int, Leg]] = [
         (end, leg)

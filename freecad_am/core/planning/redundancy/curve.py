@@ -50,9 +50,12 @@ class Followed:
 
 @dataclass(frozen=True)
 class Sums:
-    """A curve in figures. lost, wound: points that the planner objects to, and those whose axes run out of turns. margin,
-    condition: the least. ratio: the largest share of a joint speed, at the speed that is asked for. displacement: eq. 17 of
-    all beads, NaN out of reach."""
+    """The summary of a curve.
+
+    lost, wound: numbers of points that the planner rejects, and of points with axes out of turns.
+    margin, condition: the least values. ratio: the largest share of a joint speed, at the requested
+    speed. displacement: eq. 17 summed over the beads, NaN out of reach.
+    """
 
     lost: int
     wound: int
@@ -79,7 +82,7 @@ def durations(beads: Sequence[Bead], point_indices: Sequence[Integers] | None = 
 
 
 def follow(task: Task, points: Points, thresholds: Array, lasts: Array, phi: Array) -> Followed:
-    """What the rotations phi (T,), rad, ask of the machine; lasts (T,) s as of `durations`."""
+    """Return the machine state for the rotations phi (T,), rad; lasts (T,) s from `durations`."""
     joints = task.joints(points, phi)
     condition, margin = task.condition(points, phi, joints), task.given_rows.margin(joints)
     speed = np.abs(steps(joints, points)) / np.where(lasts > 0.0, lasts, np.inf)[:, None]
@@ -173,8 +176,10 @@ def pull(task: Task, points: Points, bead: int, degree: int, handle: int) -> Arr
 
 @dataclass(frozen=True)
 class Compared:
-    """What one method of planning makes of the beads, before rapid moves and added points. issues: what forbids it and what
-    else there is to say; seconds: what the planning took."""
+    """The result of one planning method for the beads, before rapids and added points.
+
+    issues: errors and notes. seconds: planning time.
+    """
 
     name: str
     paths: tuple[BeadPath, ...]

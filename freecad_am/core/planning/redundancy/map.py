@@ -290,7 +290,7 @@ def value_of(cell: Cell, tool: Array, phi: Array, axis: str) -> Array:
 
 
 def in_turns(values: Array, starts: Mask) -> Array:
-    """Values (C,) rad counted on along each bead from where it starts, which is within half a turn of 0."""
+    """Return the values (C,) rad unwrapped along each bead, from a start within half a turn of 0."""
     step = np.diff(values, prepend=values[:1])
     step = shortest(step)
     step[starts] = 0.0

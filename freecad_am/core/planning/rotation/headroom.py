@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How near each point of planned beads is to what the machine cannot do, and where it is nearest."""
+"""The margins of planned beads to limits, condition and joint speeds, and the worst places."""
 
 from __future__ import annotations
 

@@ -213,7 +213,9 @@ class _Bead:
         )
 
     def rank_solution(self, coefficients: Array) -> tuple[float, float]:
-        """By how much the constraints are violated at worst, and the objective: the less the better."""
+        """Return the ranking key of a solution: worst violation of a constraint, then the
+        objective; less is better.
+        """
         state = self.state(coefficients)
         worst = float(np.nan_to_num(state.constraints, nan=-1.0).min())
         violated = max(0.0, -worst) if np.isfinite(state.objective[0]) else np.inf

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What coefficients of polynomials give: objective, constraints, and how these change with them."""
+"""The state for polynomial coefficients: objective, constraints, and their derivatives."""
 
 from __future__ import annotations
 
@@ -233,7 +233,9 @@ def _predicted(
 
 
 def _between(values: Array, points: Points) -> Array:
-    """What values (T, axes) change by from the point before; 0 at the first point of a bead."""
+    """Return the change of the values (T, axes) from the previous point; 0 at the first point of a
+    bead.
+    """
     change = np.zeros_like(values)
     np.subtract(values[1:], values[:-1], out=change[1:])
     change[points.starts] = 0.0

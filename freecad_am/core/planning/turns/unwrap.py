@@ -89,10 +89,11 @@ def _turns(task: Task, path: BeadPath, before: Array) -> Array:
 
 
 def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:
-    """A closed bead started where the turning axis has room, and the index of the new start.
+    """Return a closed bead from a start at which the turning axis has enough stroke, and the
+    start's index.
 
-    joints: (n, axes) counted on over the bead as it is. The bead itself where no axis turns or where no start helps, and
-    where an external axis that waits at its limit does not come round.
+    joints: (n, axes) unwrapped over the bead. The bead is unchanged if no axis turns, if no start
+    helps, or if an external axis waits at its limit and does not close.
     """
     axis = turning_axis(task, joints)
     if axis is None or not bead.closed or not _come_round(bead):
@@ -150,7 +151,9 @@ def pieces(task: Task, bead: Bead, joints: Array, more: int = 0) -> list[slice]:
 
 
 def _cut(along: Array, rising: bool, low: float, high: float) -> list[slice]:
-    """The pieces of an axis (n,) that runs up, or down, each as far as the axis has room; one where that does not help."""
+    """Return the pieces of an axis (n,) that runs up or down, each as long as its stroke; one if
+    cutting does not help.
+    """
     cuts = [0]
     while True:
         turns = (
@@ -183,7 +186,7 @@ def seam_notes(moved: list[int], split: list[int]) -> list[Issue]:
 
 
 def seam_note(layers: list[int]) -> Issue:
-    """Says that seams were moved to find room for a limited axis."""
+    """Return the note that seams were moved to suit a limited axis."""
     return Issue(
         NOTE,
         "SEAM_MOVED",
@@ -193,7 +196,7 @@ def seam_note(layers: list[int]) -> Issue:
 
 
 def split_note(layers: list[int]) -> Issue:
-    """Says that beads were split because an axis lacks the stroke."""
+    """Return the warning that beads were split because an axis lacks the stroke."""
     return Issue(
         WARNING,
         "BEAD_SPLIT",
