@@ -34,7 +34,7 @@ def wizard(person):
     ):
         os.remove(path)
     for left in list(module._open):
-        left._to_be_lost = lambda: True
+        left._confirm_discard = lambda: True
         left.close()
     person.idle()
 

@@ -84,7 +84,7 @@ def test_warnings_of_a_job_that_is_ready_are_pointed_to(person, hemisphere):
     toolpath = api.make_toolpath(document, feature, cell)
     path = api.make_joint_path(document, toolpath, cell)
     assert "are not deposited" in toolpath.Message
-    proposal.tell_next([cell, feature, toolpath, path])
+    proposal.report_next_steps([cell, feature, toolpath, path])
     assert (
         "Read the warnings first: double-click Toolpath."
         in person.window.statusBar().currentMessage()

@@ -73,7 +73,7 @@ class ProposingPanel(PreviewPanel):
     def _widget(self, key: str) -> Any:
         return self.places[key][0].widget
 
-    def _tell_of_machine(self, text: str) -> None:
+    def _show_machine_problem(self, text: str) -> None:
         """Show a problem of the machine."""
         raise NotImplementedError
 
@@ -129,10 +129,10 @@ class ProposingPanel(PreviewPanel):
         try:
             self.of_machine = worker.result()
         except AmError as error:
-            self._tell_of_machine(translated(error.message))
+            self._show_machine_problem(translated(error.message))
             return
         except Exception as error:  # unexpected
-            self._tell_of_machine(f"{type(error).__name__}: {error}")
+            self._show_machine_problem(f"{type(error).__name__}: {error}")
             return
         proposal = self.of_machine.get(current)
         default = CellParameters()
@@ -215,7 +215,7 @@ class ProposingPanel(PreviewPanel):
         except AmError:  # the preview reports it
             return
         except Exception as error:  # unexpected
-            self._tell_of_machine(f"{type(error).__name__}: {error}")
+            self._show_machine_problem(f"{type(error).__name__}: {error}")
             return
         if self._all_held() != entered:  # something else was entered meanwhile
             self._ask_for_job()

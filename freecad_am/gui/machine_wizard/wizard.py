@@ -401,14 +401,14 @@ class MachineWizard(QtGui.QWizard):
 
     def reject(self) -> None:
         """Handle Cancel, Esc and the close button: ask before entries are lost."""
-        if not self._entered() or self._to_be_lost():
+        if not self._entered() or self._confirm_discard():
             super().reject()
 
     def _entered(self) -> bool:
         """Whether there is something to lose."""
         return self.draft is not None or self.source_page.has_entries()
 
-    def _to_be_lost(self) -> bool:
+    def _confirm_discard(self) -> bool:
         box = QtGui.QMessageBox
         answer = box.question(
             self,

@@ -345,22 +345,22 @@ class JobPanel:
         if job.parts and not job.missing:
             with contextlib.suppress(AmError):  # reported when the job is made
                 self.background.start(
-                    left_out(job, self.sizes.bead_width()), self._look_at_left_out
+                    left_out(job, self.sizes.bead_width()), self._receive_left_out
                 )
 
-    def _look_at_left_out(self, worker: Worker) -> None:
+    def _receive_left_out(self, worker: Worker) -> None:
         with contextlib.suppress(
             AmError, Cancelled, RuntimeError
         ):  # so is this; or the panel is closed
-            self._tell_left_out(worker.result())
+            self._show_left_out(worker.result())
 
-    def _tell_left_out(self, issues: Sequence[Issue]) -> None:
+    def _show_left_out(self, issues: Sequence[Issue]) -> None:
         self.left_out.setText("\n".join(sentence(issue.message) for issue in issues))
         self.left_out.setVisible(bool(issues))
 
     def _show(self) -> None:
         """Show the interpretation of the selection and missing inputs."""
-        self._tell_left_out(())
+        self._show_left_out(())
         job = self.found
         if job.kind:
             self.kind.setCurrentIndex(self.kind.findData(job.choice))
@@ -450,7 +450,7 @@ class JobPanel:
             stages = [obj for obj in api.stages_of(self.document) if obj.Name not in old_names]
             proposal.show_alone(stages)
             proposal.show_machine(stages, bool(self.stands.chosen()))
-            proposal.tell_next(stages, self.found.layers)
+            proposal.report_next_steps(stages, self.found.layers)
             return True
         return False
 

@@ -222,7 +222,7 @@ LOOK_AT = (ARM_NEAR, LOW_MARGIN)  # codes of notes shown with the result
 SHOWN_MS = 15000  # ms that the status bar shows the next step
 
 
-def tell_next(stages: list[Any], proposed: str = "") -> None:
+def report_next_steps(stages: list[Any], proposed: str = "") -> None:
     """Show the result with its status and the next steps. proposed: proposed layers, if any."""
     wrong = next((obj for obj in stages if obj.Status != UP_TO_DATE), None)
     if wrong is not None:

@@ -373,7 +373,7 @@ class CellNodes:
 
     def _set_machine(self, value: CellParameters, rest_pose: Rest | None) -> None:
         """Pose the machine; rebuild its nodes only if its appearance changed."""
-        looks = () if rest_pose is None else _looks(value, rest_pose)
+        looks = () if rest_pose is None else _appearance(value, rest_pose)
         if rest_pose is None or looks != self.looks:
             self.links.removeAllChildren()
             self.machine = None
@@ -390,7 +390,7 @@ class CellNodes:
             self.external_links.pose(rest_pose.stands)
 
 
-def _looks(value: CellParameters, rest_pose: Rest) -> tuple[Any, ...]:
+def _appearance(value: CellParameters, rest_pose: Rest) -> tuple[Any, ...]:
     """What the nodes of a machine are made of: its links as they are at zero, of machines with rotary axes the sizes that
     they are drawn to fit, and the files a user gave the links."""
     chain = rest_pose.machine.chain

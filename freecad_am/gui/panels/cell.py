@@ -86,7 +86,7 @@ class CellPanel(ProposingPanel):
         try:
             machine = machines.load(name, user_machines.folders())
         except InputError as error:
-            self._tell_of_machine(translated(error.message))
+            self._show_machine_problem(translated(error.message))
             return
         if self.unknown and self.unknown == self.notes[MACHINE].text():
             self.show_note(MACHINE, "")
@@ -106,7 +106,7 @@ class CellPanel(ProposingPanel):
             without = (PLATFORM,) if self._holds(EXTERNAL) in (NONE, "") else ()
         self.leave_out(without, also_entered=True)
 
-    def _tell_of_machine(self, text: str) -> None:
+    def _show_machine_problem(self, text: str) -> None:
         """Show a problem of the machine until the panel follows another one."""
         self.unknown = text
         self.show_note(MACHINE, text)

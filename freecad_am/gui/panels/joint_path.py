@@ -120,7 +120,7 @@ class JointPathPanel(PreviewPanel):
                 *_figures(judgement),
                 *(translated(issue.message) for issue in drawing.size),
                 *stale_lines(drawing.stale),
-                _looked_at(drawing.sample),
+                _preview_extent(drawing.sample),
             ]
         )
 
@@ -210,7 +210,7 @@ def _figures(judgement: Judgement) -> list[str]:
     ]
 
 
-def _looked_at(sample: Sampled) -> str:
+def _preview_extent(sample: Sampled) -> str:
     """Return how many points the preview covers and that OK plans the rest."""
     if sample.is_complete:
         return tr("Preview of all points; OK also checks the rapids.")

@@ -54,7 +54,7 @@ class Noted:
         note.setText(text)
         note.setVisible(bool(text))
 
-    def tell_error(self, error: AmError) -> None:
+    def show_error(self, error: AmError) -> None:
         """Under the field it belongs to, which is brought into sight and gets the focus; else at the top."""
         key, text = self._locate(error)
         if not key:

@@ -447,7 +447,7 @@ class StagePanel(Noted):
                 )
                 recorded.change(self.obj, {**inputs, **changed})
         except AmError as error:
-            self.tell_error(error)
+            self.show_error(error)
         except Cancelled:
             self.say(tr("Cancelled: the document is unchanged."))
         except ReferenceError:

@@ -39,7 +39,7 @@ class PreferencesPage:
         self._new_work()
         self._process()
         self._folders()
-        self._looks()
+        self._add_appearance()
         self.column.addStretch(1)
 
     def _group(self, title: str) -> Any:
@@ -111,7 +111,7 @@ class PreferencesPage:
         rows.addRow(label, line)
         return edit
 
-    def _looks(self) -> None:
+    def _add_appearance(self) -> None:
         rows = self._group(tr("Looks"))
         self.unit, self.ramp = QtGui.QComboBox(), QtGui.QComboBox()
         self.unit.setObjectName("speedUnit")

@@ -54,7 +54,7 @@ def add_stage_entries(menu: Any, obj: Any) -> None:
         obj.JointPath if kind == "program" else obj if kind in ("toolpath", "joint path") else None
     )
     if path is not None:
-        _add(menu, "ShowPath", tr("Show path layer by layer"), lambda: _look_at(path))
+        _add(menu, "ShowPath", tr("Show path layer by layer"), lambda: _show_path(path))
 
 
 def _next_tools(kind: str) -> list[tuple[str, str]]:
@@ -184,7 +184,7 @@ def _tool(name: str, obj: Any) -> None:
     Gui.runCommand(f"RoboticAM_{name}")
 
 
-def _look_at(path: Any) -> None:
+def _show_path(path: Any) -> None:
     from ..path import dock
 
     dock.show(path)

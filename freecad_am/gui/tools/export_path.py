@@ -132,7 +132,7 @@ class ExportPanel:
         self.file_note.setWordWrap(True)
         set_role(self.file_note, INVALID)
         self.grid.insertRow(self.grid.getWidgetPosition(self.file_row)[0] + 1, "", self.file_note)
-        self._tell_file("")
+        self._note_file("")
         connect(self.file, "textChanged(QString)", self._file_anew)
         column.addWidget(self.error)
         column.addLayout(self.grid)
@@ -143,7 +143,7 @@ class ExportPanel:
     def _follow(self, *_: Any) -> None:
         """Show the fields of the kind that is chosen, and a file name that fits."""
         kind = self.kind.currentData()
-        self._tell_file("")
+        self._note_file("")
         for widget, is_shown in (
             (self.file_row, kind in _FILES),
             (self.rapids, kind in (STEP, DXF)),
@@ -188,27 +188,27 @@ class ExportPanel:
         self.error.setText(text)
         self.error.setVisible(bool(text))
 
-    def _tell_file(self, text: str) -> None:
+    def _note_file(self, text: str) -> None:
         """Show a problem of the file under its field."""
         self.file_note.setText(text)
         self.file_note.setVisible(bool(text))
 
     def _file_anew(self, *_: Any) -> None:
         """Clear the note once the file changes."""
-        self._tell_file("")
+        self._note_file("")
 
     # ---- called by FreeCAD
 
     def accept(self) -> bool:
         """Write or make it; True closes the panel, an error is shown in it."""
         self.say("")
-        self._tell_file("")
+        self._note_file("")
         kind = self.kind.currentData()
         try:
             recorded.act(self.paths[self.path.currentIndex()], *self._call(kind))
         except AmError as error:
             if kind in _FILES and error.where == self.file.text().strip():
-                self._tell_file(translated(error.message))
+                self._note_file(translated(error.message))
             else:
                 self.say(translated_error(error))
         except Cancelled:
