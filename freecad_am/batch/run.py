@@ -383,7 +383,7 @@ def _write(
     with stages.timed("document", session):
         job_document.save(stages.document, files.path(job.name + outputs.DOCUMENT_ENDING))
     report_job = for_report.job(job, stages)
-    report = made.made(
+    report = made.make_report(
         report_job, results, cell, lambda stage: stages.timed(stage, session), session.progress
     )
     report.content["timing_s"] = {**stages.timing, "total": time.perf_counter() - started}

@@ -20,14 +20,14 @@ class Entry:
 
     title: str
     along: Callable[[Source, Rows], Charts] | None = None
-    of: Callable[[Source, tuple[int, int]], Charts] | None = None
+    from_layers: Callable[[Source, tuple[int, int]], Charts] | None = None
     machine: bool = False
     lacking: str = "these layers have nothing to show"
 
 
 def _fit(source: Source, layers: tuple[int, int]) -> Charts:
-    found = source.model
-    return () if found is None else (fit(*found, source.process.bead_width),)
+    model = source.model
+    return () if model is None else (fit(*model, source.process.bead_width),)
 
 
 _NO_PLANES = "only solids in planar layers have sections and volumes of layers"
@@ -45,14 +45,16 @@ PICTURES = {
     "deposit": Entry("Deposit rate", joints.deposit),
     "spacing": Entry(
         "Distance between layers",
-        of=joints.spacing,
+        from_layers=joints.spacing,
         lacking="none of these layers rests on another",
     ),
-    "volumes": Entry("Volume by layer", of=joints.by_layer, lacking=_NO_PLANES),
-    "section": Entry("Section of the last layer", of=joints.section, lacking=_NO_PLANES),
-    "heights": Entry("Predicted heights", of=joints.heights, lacking=_NO_MODEL),
-    "spread": Entry("Predicted widths and speeds", of=joints.spread, lacking=_NO_MODEL),
-    "fit": Entry("Fit of the bead widths", of=_fit, lacking=_NO_MODEL),
+    "volumes": Entry("Volume by layer", from_layers=joints.by_layer, lacking=_NO_PLANES),
+    "section": Entry("Section of the last layer", from_layers=joints.section, lacking=_NO_PLANES),
+    "heights": Entry("Predicted heights", from_layers=joints.heights, lacking=_NO_MODEL),
+    "spread": Entry(
+        "Predicted widths and speeds", from_layers=joints.distributions, lacking=_NO_MODEL
+    ),
+    "fit": Entry("Fit of the bead widths", from_layers=_fit, lacking=_NO_MODEL),
 }
 
 
@@ -69,6 +71,6 @@ def picture(
     if entry.along is not None:
         charts = entry.along(source, rows(source, over, layers))
     else:
-        assert entry.of is not None
-        charts = entry.of(source, layers or (0, len(source.toolpath.layers) - 1))
+        assert entry.from_layers is not None
+        charts = entry.from_layers(source, layers or (0, len(source.toolpath.layers) - 1))
     return Picture(name, entry.title, charts, "" if charts else entry.lacking)

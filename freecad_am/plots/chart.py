@@ -117,12 +117,12 @@ class Chart:
             return 0.0, 1.08 * float(self.bars.heights.max(initial=0.0)) or 1.0
         values = [curve.y for curve in self.curves]
         low, high = _ends(values, [value for value, _ in self.marks])
-        near = [
+        limits = [
             end
             for end in self.limits
             if np.isfinite(end) and max(abs(low), abs(high)) >= SHOWN_FROM * abs(end)
         ]
-        return _padded(*_ends(values, [*(value for value, _ in self.marks), *near]))
+        return _padded(*_ends(values, [*(value for value, _ in self.marks), *limits]))
 
 
 @dataclass(frozen=True)
@@ -149,25 +149,27 @@ def together(title: str, charts: Sequence[Chart]) -> Chart:
     )
 
 
-def _ends(values: Sequence[Array], more: Sequence[float]) -> tuple[float, float]:
-    known = [one[np.isfinite(one)] for one in (*values, np.asarray(more, float))]
-    known = [one for one in known if len(one)]
-    if not known:
+def _ends(values: Sequence[Array], extra: Sequence[float]) -> tuple[float, float]:
+    finite = [series[np.isfinite(series)] for series in (*values, np.asarray(extra, float))]
+    finite = [series for series in finite if len(series)]
+    if not finite:
         return 0.0, 1.0
-    return float(min(one.min() for one in known)), float(max(one.max() for one in known))
+    return float(min(series.min() for series in finite)), float(
+        max(series.max() for series in finite)
+    )
 
 
 def _padded(low: float, high: float) -> tuple[float, float]:
-    more = PAD * (high - low)
-    if more <= 1e-9 * max(abs(low), abs(high), 1e-3):  # as good as constant
-        more = 0.05 * max(abs(low), abs(high)) or 0.5
-    return low - more, high + more
+    padding = PAD * (high - low)
+    if padding <= 1e-9 * max(abs(low), abs(high), 1e-3):  # as good as constant
+        padding = 0.05 * max(abs(low), abs(high)) or 0.5
+    return low - padding, high + padding
 
 
 STEPS = 60
 
 
-def fit(measured: Measured, model: BeadModel, wanted: float | None = None) -> Chart:
+def fit(measured: Measured, model: BeadModel, target: float | None = None) -> Chart:
     """Curves and dots coloured by radius; `wanted` is a width drawn across, mm."""
     speed = np.linspace(*model.speeds, STEPS)
     radii = np.unique(measured.radius)
@@ -185,7 +187,7 @@ def fit(measured: Measured, model: BeadModel, wanted: float | None = None) -> Ch
                 DOTS,
             )
         )
-    marks = () if wanted is None else ((wanted, f"asked: {wanted:g}"),)
+    marks = () if target is None else ((target, f"asked: {target:g}"),)
     return Chart(
         "Width of beads",
         Quantity("travel speed", "mm/min"),
@@ -208,11 +210,11 @@ def in_units(picture: Picture, scale: Scale) -> Picture:
     """A picture in other units. scale: for values of up to a number, how many of the other unit make one, and its name."""
     travel = picture.name in TRAVEL
     return replace(
-        picture, charts=tuple(of_chart(chart, scale, travel) for chart in picture.charts)
+        picture, charts=tuple(convert_chart(chart, scale, travel) for chart in picture.charts)
     )
 
 
-def of_chart(chart: Chart, scale: Scale, travel: bool = False) -> Chart:
+def convert_chart(chart: Chart, scale: Scale, travel: bool = False) -> Chart:
     """A chart in other units. travel: its speeds are those of the deposition point."""
     x = _in_unit(chart.x, chart.across(), travel, scale)
     y = (

@@ -41,58 +41,58 @@ _VIEWS = (
 X = Quantity("across", "mm")
 
 
-def charts(found: DeviationMap, allowance: float) -> tuple[Chart, ...]:
+def charts(deviations: DeviationMap, allowance: float) -> tuple[Chart, ...]:
     """The part from the sides on which places face the eye, the spread of deviations, and the layers."""
-    maps = [chart for view in _VIEWS if (chart := _map(found, view)) is not None]
-    return (*maps, _spread(found, allowance), *_layers(found, allowance))
+    maps = [chart for view in _VIEWS if (chart := _map(deviations, view)) is not None]
+    return (*maps, _histogram(deviations, allowance), *_layers(deviations, allowance))
 
 
-def _map(found: DeviationMap, view: _View) -> Chart | None:
+def _map(deviations: DeviationMap, view: _View) -> Chart | None:
     """What faces the eye, the most inside drawn last; of the view from below what no other one shows."""
-    seen = found.normals @ np.asarray(view.eye) > FACING
+    facing = deviations.normals @ np.asarray(view.eye) > FACING
     if view is _VIEWS[-1]:
-        for other in _VIEWS[:-1]:
-            seen &= found.normals @ np.asarray(other.eye) <= FACING
-    if not seen.any():
+        for earlier in _VIEWS[:-1]:
+            facing &= deviations.normals @ np.asarray(earlier.eye) <= FACING
+    if not facing.any():
         return None
-    x, y = found.places @ np.asarray(view.across), found.places @ view.up
-    number = band_of(found.beyond, step_of(found.beyond))
+    x, y = deviations.places @ np.asarray(view.across), deviations.places @ view.up
+    number = band_of(deviations.beyond, step_of(deviations.beyond))
     dots = [
         Curve(band.text, x[rows], y[rows], css(band.colour), DOTS)
-        for k, band in reversed(list(enumerate(bands(step_of(found.beyond)))))
-        if (rows := seen & (number == k)).any()
+        for k, band in reversed(list(enumerate(bands(step_of(deviations.beyond)))))
+        if (rows := facing & (number == k)).any()
     ]
     names = tuple(
-        (float(x[k]), float(y[k]), name_of(k)) for k in range(len(found.worst)) if seen[k]
+        (float(x[k]), float(y[k]), name_of(k)) for k in range(len(deviations.worst)) if facing[k]
     )
     return Chart(
         view.title, X, Quantity("up in the picture", "mm"), tuple(dots), plane=True, names=names
     )
 
 
-def _spread(found: DeviationMap, allowance: float) -> Chart:
+def _histogram(deviations: DeviationMap, allowance: float) -> Chart:
     marks = [(allowance, "allowance")] + ([(0.0, "the part")] if allowance else [])
     return Chart(
         "Deposit beyond the faces",
         Quantity("beyond the faces", "mm"),
         Quantity("share of the area", "%"),
-        bars=Bars("share", found.edges, 100.0 * found.shares),
+        bars=Bars("share", deviations.edges, 100.0 * deviations.shares),
         upright=tuple(marks),
     )
 
 
-def _layers(found: DeviationMap, allowance: float) -> tuple[Chart, ...]:
-    known = np.flatnonzero(np.isfinite(found.layers[:, 0]))
-    if len(known) < 2:
+def _layers(deviations: DeviationMap, allowance: float) -> tuple[Chart, ...]:
+    layers = np.flatnonzero(np.isfinite(deviations.layers[:, 0]))
+    if len(layers) < 2:
         return ()
-    least, mean = found.layers[known].T
-    number = known.astype(np.float64)
+    smallest, mean = deviations.layers[layers].T
+    number = layers.astype(np.float64)
     return (
         Chart(
             "Layer by layer",
             Quantity("layer"),
             Quantity("beyond the faces", "mm"),
-            (Curve("least", number, least, 1, MARKED), Curve("mean", number, mean, 0, MARKED)),
+            (Curve("least", number, smallest, 1, MARKED), Curve("mean", number, mean, 0, MARKED)),
             marks=((allowance, "allowance"),),
         ),
     )

@@ -26,23 +26,23 @@ def envelope(x: Array, y: Array, columns: int, low: float, high: float) -> Index
     x never falls. NaN in y is kept where it is to be seen as a gap. One point beyond either end is kept, for the lines that
     lead there.
     """
-    first = max(int(np.searchsorted(x, low, side="left")) - 1, 0)
+    start = max(int(np.searchsorted(x, low, side="left")) - 1, 0)
     end = min(int(np.searchsorted(x, high, side="right")) + 1, len(x))
-    rows = np.arange(first, end)
+    rows = np.arange(start, end)
     if len(rows) <= POINTS_KEPT * columns:
         return rows
-    column = np.clip(np.floor((x[first:end] - low) / (high - low) * columns), -1, columns).astype(
+    column = np.clip(np.floor((x[start:end] - low) / (high - low) * columns), -1, columns).astype(
         np.intp
     )
     begins = np.concatenate([[0], np.flatnonzero(np.diff(column)) + 1])
     ends = np.concatenate([begins[1:], [len(rows)]]) - 1
-    known = np.flatnonzero(np.isfinite(y[first:end]))
-    rising = known[np.lexsort((y[first:end][known], column[known]))]
+    finite = np.flatnonzero(np.isfinite(y[start:end]))
+    rising = finite[np.lexsort((y[start:end][finite], column[finite]))]
     cuts = np.flatnonzero(np.diff(column[rising])) + 1
-    least = rising[np.concatenate([[0], cuts])] if len(rising) else rising
+    smallest = rising[np.concatenate([[0], cuts])] if len(rising) else rising
     largest = rising[np.concatenate([cuts, [len(rising)]]) - 1] if len(rising) else rising
-    kept: Index = rows[np.unique(np.concatenate([begins, ends, least, largest]))]
-    return kept
+    points: Index = rows[np.unique(np.concatenate([begins, ends, smallest, largest]))]
+    return points
 
 
 RING = {"linestyle": "none", "marker": "o", "markersize": 8.0, "fillstyle": "none"}
@@ -67,14 +67,14 @@ def named(axes: Any, chart: Chart, colour: str, size: float) -> None:
 
 DPI = 100.0
 # of a frame, in pixels: what is left free at its sides, above for its title, below for its scale
-LEFT, RIGHT, ABOVE, BELOW, BARE = 66.0, 14.0, 24.0, 37.0, 6.0
+LEFT_MARGIN, RIGHT_MARGIN, TOP_MARGIN, BOTTOM_MARGIN, BARE_MARGIN = 66.0, 14.0, 24.0, 37.0, 6.0
 NUMBERS = 12.0  # above a frame that has the numbers of layers
 KEYS = 12.0  # of a row of names of curves, where they have no room beside the title
 TEXT, TITLE, SMALL_TEXT = 7.6, 8.6, 6.4  # points
 CHARACTER = 6.0  # pixels, about, of a text
 TITLE_SCALE = 1.2  # of a title, which is larger
 MOST_BORDERS, FEW_WRONG = 80, 40
-APART = 26.0  # pixels between the numbers of layers, at least
+MIN_LABEL_GAP = 26.0  # pixels between the numbers of layers, at least
 BORDER, FRAME, FORBIDDEN, WANTED, BEAD = 0.35, 0.5, 0.13, 0.14, 0.35  # opacities
 Range = tuple[float, float]
 
@@ -106,7 +106,7 @@ def figure(
     """Charts one below the other, width times height pixels at 100 to the inch; where they count the same across, only the
     last one has the numbers. The same charts make the same figure."""
     window = window or Window()
-    made = Figure(
+    drawing = Figure(
         figsize=(width / DPI, height / DPI), dpi=DPI, facecolor=look.paper, edgecolor="none"
     )
     shared = share(charts)
@@ -115,26 +115,27 @@ def figure(
         if shared
         else None
     )
-    places, top = [], 0.0
-    across_pixels = max(width - LEFT - RIGHT, 20.0)
+    panels, top = [], 0.0
+    across_pixels = max(width - LEFT_MARGIN - RIGHT_MARGIN, 20.0)
     numbers = [
         chart.borders is not None and (number == 0 or not shared)
         for number, chart in enumerate(charts)
     ]
     above = [
-        ABOVE + NUMBERS * there + KEYS * len(_rows_of_keys(chart, look, across_pixels))
-        for chart, there in zip(charts, numbers, strict=True)
+        TOP_MARGIN + NUMBERS * has_numbers + KEYS * len(_rows_of_keys(chart, look, across_pixels))
+        for chart, has_numbers in zip(charts, numbers, strict=True)
     ]
     fixed = sum(above) + sum(
-        BELOW if _numbered(shared, number, charts) else BARE for number in range(len(charts))
+        BOTTOM_MARGIN if _numbered(shared, number, charts) else BARE_MARGIN
+        for number in range(len(charts))
     )
     tall = max((height - fixed) / len(charts), 12.0)
     for number, chart in enumerate(charts):
         numbered = _numbered(shared, number, charts)
-        place = _to_scale(
+        panel = _to_scale(
             chart,
             Place(
-                LEFT,
+                LEFT_MARGIN,
                 top + above[number],
                 across_pixels,
                 tall,
@@ -142,10 +143,10 @@ def figure(
                 window.up.get(number) or chart.up(),
             ),
         )
-        _Frame(made, chart, look, place, width, height, numbered, numbers[number]).draw()
-        places.append(place)
-        top += above[number] + tall + (BELOW if numbered else BARE)
-    return made, tuple(places)
+        _Frame(drawing, chart, look, panel, width, height, numbered, numbers[number]).draw()
+        panels.append(panel)
+        top += above[number] + tall + (BOTTOM_MARGIN if numbered else BARE_MARGIN)
+    return drawing, tuple(panels)
 
 
 def share(charts: Sequence[Chart]) -> bool:
@@ -157,15 +158,15 @@ def _numbered(shared: bool, number: int, charts: Sequence[Chart]) -> bool:
     return not shared or number == len(charts) - 1
 
 
-def _to_scale(chart: Chart, place: Place) -> Place:
+def _to_scale(chart: Chart, panel: Place) -> Place:
     """A place that shows more of one side where x and y are drawn to the same scale."""
     if not chart.plane:
-        return place
-    (left, right), (low, high) = place.across, place.up
-    scale = max((right - left) / place.width, (high - low) / place.height)
-    more = 0.5 * (scale * place.width - right + left), 0.5 * (scale * place.height - high + low)
+        return panel
+    (left, right), (low, high) = panel.across, panel.up
+    scale = max((right - left) / panel.width, (high - low) / panel.height)
+    margin = 0.5 * (scale * panel.width - right + left), 0.5 * (scale * panel.height - high + low)
     return replace(
-        place, across=(left - more[0], right + more[0]), up=(low - more[1], high + more[1])
+        panel, across=(left - margin[0], right + margin[0]), up=(low - margin[1], high + margin[1])
     )
 
 
@@ -187,36 +188,36 @@ def _rows_of_keys(chart: Chart, look: Look, width: float) -> list[list[Curve]]:
     if len(named) < 2 or CHARACTER * TITLE_SCALE * len(_titled(chart, look)) + sum(widths) <= width:
         return []
     rows: list[list[Curve]] = []
-    left = 0.0
+    room = 0.0
     for curve, needed in zip(named, widths, strict=True):
-        if not rows or needed > left:
+        if not rows or needed > room:
             rows.append([])
-            left = width
+            room = width
         rows[-1].append(curve)
-        left -= needed
+        room -= needed
     return rows
 
 
 @dataclass(frozen=True)
 class _Frame:
-    made: Figure
+    figure: Figure
     chart: Chart
     look: Look
-    place: Place
+    panel: Place
     width: int
     height: int
     numbered: bool
     layers: bool
 
     def draw(self) -> None:
-        place = self.place
-        bottom = 1.0 - (place.top + place.height) / self.height
-        axes = self.made.add_axes(
-            (place.left / self.width, bottom, place.width / self.width, place.height / self.height),
+        panel = self.panel
+        bottom = 1.0 - (panel.top + panel.height) / self.height
+        axes = self.figure.add_axes(
+            (panel.left / self.width, bottom, panel.width / self.width, panel.height / self.height),
             facecolor="none",
         )
-        axes.set_xlim(*place.across)
-        axes.set_ylim(*place.up)
+        axes.set_xlim(*panel.across)
+        axes.set_ylim(*panel.up)
         self._scales(axes)
         self._grounds(axes)
         self._borders(axes)
@@ -233,10 +234,10 @@ class _Frame:
     def _scales(self, axes: Any) -> None:
         for spine in axes.spines.values():
             spine.set(color=self.look.soft, linewidth=0.7, alpha=FRAME)
-        across = max(3, min(10, int(self.place.width / 75.0)))
-        up = max(2, min(6, int(self.place.height / 26.0)))
-        for axis, most in ((axes.xaxis, across), (axes.yaxis, up)):
-            axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 2.5, 5, 10]))
+        across = max(3, min(10, int(self.panel.width / 75.0)))
+        up = max(2, min(6, int(self.panel.height / 26.0)))
+        for axis, count in ((axes.xaxis, across), (axes.yaxis, up)):
+            axis.set_major_locator(MaxNLocator(count, steps=[1, 2, 2.5, 5, 10]))
             numbers = ScalarFormatter(useOffset=False)
             numbers.set_powerlimits((-4, 6))
             axis.set_major_formatter(numbers)
@@ -254,19 +255,19 @@ class _Frame:
         axes.set_axisbelow(True)
         if self.numbered:
             self._text(
-                self.place.left + 0.5 * self.place.width,
-                self.place.top + self.place.height + 30.0,
+                self.panel.left + 0.5 * self.panel.width,
+                self.panel.top + self.panel.height + 30.0,
                 self.chart.x.label,
                 ha="center",
             )
         label = (
             self.chart.y.unit
-            if self.place.height < CHARACTER * len(self.chart.y.label)
+            if self.panel.height < CHARACTER * len(self.chart.y.label)
             else self.chart.y.label
         )
         self._text(
             12.0,
-            self.place.top + 0.5 * self.place.height,
+            self.panel.top + 0.5 * self.panel.height,
             label,
             rotation=90.0,
             ha="center",
@@ -275,8 +276,8 @@ class _Frame:
 
     def _grounds(self, axes: Any) -> None:
         """What limits forbid, and the band that is wanted."""
-        (low, high), (least, most) = self.place.up, self.chart.limits
-        for start, end in ((low, min(least, high)), (max(most, low), high)):
+        (low, high), (lower, upper) = self.panel.up, self.chart.limits
+        for start, end in ((low, min(lower, high)), (max(upper, low), high)):
             if np.isfinite(end - start) and end > start:
                 axes.add_patch(
                     Rectangle(
@@ -311,11 +312,11 @@ class _Frame:
         chart = self.chart
         if chart.borders is None or chart.layers is None:
             return
-        low, high = self.place.across
-        seen = np.flatnonzero((chart.borders >= low) & (chart.borders <= high))
-        seen = seen[:: -(-len(seen) // MOST_BORDERS) or 1]
-        x = np.repeat(chart.borders[seen], 3)
-        y = np.tile([0.0, 1.0, np.nan], len(seen))
+        low, high = self.panel.across
+        borders = np.flatnonzero((chart.borders >= low) & (chart.borders <= high))
+        borders = borders[:: -(-len(borders) // MOST_BORDERS) or 1]
+        x = np.repeat(chart.borders[borders], 3)
+        y = np.tile([0.0, 1.0, np.nan], len(borders))
         axes.add_line(
             Line2D(
                 x,
@@ -329,18 +330,18 @@ class _Frame:
         )
         if not self.layers:
             return
-        last = -np.inf
-        for number in seen:
+        end = -np.inf
+        for number in borders:
             share = (float(chart.borders[number]) - low) / (high - low)
-            text = ("{}" if last >= 0.0 else self.look.words.layer).format(chart.layers[number])
-            if share * self.place.width >= last + APART:
+            text = ("{}" if end >= 0.0 else self.look.words.layer).format(chart.layers[number])
+            if share * self.panel.width >= end + MIN_LABEL_GAP:
                 self._text(
-                    self.place.left + share * self.place.width,
-                    self.place.top - 4.0,
+                    self.panel.left + share * self.panel.width,
+                    self.panel.top - 4.0,
                     text,
                     size=SMALL_TEXT,
                 )
-                last = share * self.place.width + CHARACTER * len(text)
+                end = share * self.panel.width + CHARACTER * len(text)
 
     def _curve(self, axes: Any, curve: Curve) -> None:
         colour = self.look.colour(curve.colour)
@@ -352,7 +353,7 @@ class _Frame:
             return
         if curve.kind == OUTLINE:
             to_points = (
-                72.0 / DPI * self.place.width / (self.place.across[1] - self.place.across[0])
+                72.0 / DPI * self.panel.width / (self.panel.across[1] - self.panel.across[0])
             )
             style = (
                 {"linewidth": to_points * curve.width, "alpha": BEAD}
@@ -370,35 +371,35 @@ class _Frame:
                 )
             )
             return
-        rows = envelope(curve.x, curve.y, int(self.place.width), *self.place.across)
+        rows = envelope(curve.x, curve.y, int(self.panel.width), *self.panel.across)
         x, y = curve.x[rows], curve.y[rows]
         dots = (
             {"marker": "o", "markersize": 2.6}
-            if curve.kind == MARKED and len(x) < 0.2 * self.place.width
+            if curve.kind == MARKED and len(x) < 0.2 * self.panel.width
             else {}
         )
         axes.add_line(Line2D(x, y, color=colour, linewidth=1.1, **dots, **style))
         wrong = self.chart.wrong(y)
         if wrong.any():  # with dots where they are few: one alone makes no line
-            few = {"marker": "o", "markersize": 2.6} if wrong.sum() <= FEW_WRONG else {}
+            marker = {"marker": "o", "markersize": 2.6} if wrong.sum() <= FEW_WRONG else {}
             axes.add_line(
                 Line2D(
                     x,
                     np.where(wrong, y, np.nan),
                     color=self.look.bad,
                     linewidth=2.2,
-                    **few,
+                    **marker,
                     **style,
                 )
             )
 
     def _marks(self, axes: Any) -> None:
-        low, high = self.place.up
+        low, high = self.panel.up
         for value, name in self.chart.marks:
             if low <= value <= high:
                 self._across(axes, value, self.look.soft, name, left=True)
         for value, name in self.chart.upright:
-            start, end = self.place.across
+            start, end = self.panel.across
             if start <= value <= end:
                 axes.add_line(
                     Line2D(
@@ -412,8 +413,8 @@ class _Frame:
                 )
                 share = (value - start) / (end - start)
                 self._text(
-                    self.place.left + share * self.place.width + 4.0,
-                    self.place.top + 10.0,
+                    self.panel.left + share * self.panel.width + 4.0,
+                    self.panel.top + 10.0,
                     name,
                     size=SMALL_TEXT,
                 )
@@ -430,11 +431,11 @@ class _Frame:
                 linestyle="--",
             )
         )
-        low, high = self.place.up
-        down = self.place.top + (high - value) / (high - low) * self.place.height
-        above = down - self.place.top > 11.0
+        low, high = self.panel.up
+        down = self.panel.top + (high - value) / (high - low) * self.panel.height
+        above = down - self.panel.top > 11.0
         self._text(
-            self.place.left + (4.0 if left else self.place.width - 4.0),
+            self.panel.left + (4.0 if left else self.panel.width - 4.0),
             down - 3.0 if above else down + 10.0,
             name,
             color=colour,
@@ -444,10 +445,10 @@ class _Frame:
 
     def _title(self) -> None:
         words = self.look.words
-        down = self.place.top - (7.0 + NUMBERS if self.layers else 7.0)
-        rows = _rows_of_keys(self.chart, self.look, self.place.width)
+        down = self.panel.top - (7.0 + NUMBERS if self.layers else 7.0)
+        rows = _rows_of_keys(self.chart, self.look, self.panel.width)
         self._text(
-            self.place.left,
+            self.panel.left,
             down - KEYS * len(rows),
             _titled(self.chart, self.look),
             size=TITLE,
@@ -455,11 +456,11 @@ class _Frame:
             color=self.look.bad if self.chart.wrong_count else self.look.ink,
         )
         named = _named(self.chart)
-        right = self.place.left + self.place.width
-        least, most = self.chart.limits
+        right = self.panel.left + self.panel.width
+        lower, upper = self.chart.limits
         if len(named) < 2:
-            ends = [f"{end:.6g}" for end in (least, most) if np.isfinite(end)]
-            if np.isfinite(most):
+            ends = [f"{end:.6g}" for end in (lower, upper) if np.isfinite(end)]
+            if np.isfinite(upper):
                 word = words.limits if len(ends) == 2 else words.limit
                 self._text(
                     right, down, word.format(*ends, self.chart.y.unit), ha="right", size=SMALL_TEXT
@@ -492,4 +493,4 @@ class _Frame:
             "parse_math": False,
             **style,
         }
-        self.made.text(left / self.width, 1.0 - down / self.height, text, **style)
+        self.figure.text(left / self.width, 1.0 - down / self.height, text, **style)

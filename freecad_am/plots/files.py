@@ -21,7 +21,7 @@ from .chart import DOTS, Picture
 from .look import VARIABLES
 
 INCH = 100.0  # pixels
-LEAST = 700, 450  # pixels that words beside the map have room in
+MIN_SIZE = 700, 450  # pixels that words beside the map have room in
 FONT_SIZE = 8.0  # points
 
 
@@ -49,9 +49,9 @@ class Cells:
 
 def figure(cells: Cells, width: int, height: int) -> Figure:
     """The map as a figure of so many pixels, LEAST at least."""
-    size = max(width, LEAST[0]) / INCH, max(height, LEAST[1]) / INCH
-    made = Figure(figsize=size, dpi=INCH, layout="constrained")
-    axes = made.add_subplot()
+    size = max(width, MIN_SIZE[0]) / INCH, max(height, MIN_SIZE[1]) / INCH
+    drawing = Figure(figsize=size, dpi=INCH, layout="constrained")
+    axes = drawing.add_subplot()
     axes.imshow(cells.colours, origin="lower", aspect="auto", interpolation="nearest")
     if cells.hatched.any():
         axes.contourf(
@@ -66,12 +66,14 @@ def figure(cells: Cells, width: int, height: int) -> Figure:
     count, wide = cells.hatched.shape
     axes.set_xlim(-0.5, wide - 0.5)
     axes.set_ylim(-0.5, count - 0.5)
-    axes.set_xticks([place for place, _ in cells.columns], [text for _, text in cells.columns])
-    axes.set_yticks([place for place, _ in cells.rows], [text for _, text in cells.rows])
+    axes.set_xticks(
+        [position for position, _ in cells.columns], [text for _, text in cells.columns]
+    )
+    axes.set_yticks([position for position, _ in cells.rows], [text for _, text in cells.rows])
     axes.tick_params(labelsize=FONT_SIZE)
     axes.set_xlabel(cells.title)
     axes.set_ylabel(cells.up)
-    made.colorbar(
+    drawing.colorbar(
         ScalarMappable(Normalize(cells.low, cells.high), ListedColormap(cells.ramp)),
         ax=axes,
         label=cells.scale,
@@ -84,7 +86,7 @@ def figure(cells: Cells, width: int, height: int) -> Figure:
     if swatches:
         above = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0)}
         axes.legend(handles=swatches, ncols=2, frameon=False, fontsize=FONT_SIZE, **above)
-    return made
+    return drawing
 
 
 KINDS = ("png", "svg", "pdf")
@@ -100,7 +102,7 @@ _SETTINGS = {
     "text.usetex": False,
     "path.simplify": True,
 }
-SHARP = 150  # dots per inch of PNG
+PNG_DPI = 150  # dots per inch of PNG
 _ROWS_AT_ONCE = 20_000
 
 
@@ -109,7 +111,10 @@ def image(figure: Figure, kind: str) -> bytes:
     stream = io.BytesIO()
     with matplotlib.rc_context(_SETTINGS):
         figure.savefig(
-            stream, format=kind, dpi=SHARP if kind == "png" else figure.dpi, metadata=_UNDATED[kind]
+            stream,
+            format=kind,
+            dpi=PNG_DPI if kind == "png" else figure.dpi,
+            metadata=_UNDATED[kind],
         )
     return stream.getvalue()
 
@@ -156,24 +161,26 @@ def values(picture: Picture) -> Iterator[str]:
     """
     curves = [(chart, curve) for chart in picture.charts for curve in chart.curves]
     if curves and all(curve.x is curves[0][1].x for _, curve in curves):
-        chart, first = curves[0]
+        chart, common = curves[0]
         alone = len({curve.name for _, curve in curves}) == len(curves)
-        named = [] if first.layer is None else ["layer"]
+        named = [] if common.layer is None else ["layer"]
         yield (
             ",".join(
                 [
                     _header(chart.x.name, chart.x.unit),
                     *named,
                     *(
-                        _header(curve.name if alone else f"{one.title} {curve.name}", one.y.unit)
-                        for one, curve in curves
+                        _header(
+                            curve.name if alone else f"{owner.title} {curve.name}", owner.y.unit
+                        )
+                        for owner, curve in curves
                     ),
                 ]
             )
             + "\n"
         )
-        layers = [] if first.layer is None else [first.layer]
-        yield from _table([first.x, *(curve.y for _, curve in curves)], layers)
+        layers = [] if common.layer is None else [common.layer]
+        yield from _table([common.x, *(curve.y for _, curve in curves)], layers)
         return
     yield "chart,curve,from,to,value\n"
     for chart, curve in curves:
@@ -187,17 +194,17 @@ def values(picture: Picture) -> Iterator[str]:
             )
 
 
-def _table(columns: list[Array], whole: list[Integers]) -> Iterator[str]:
+def _table(columns: list[Array], integers: list[Integers]) -> Iterator[str]:
     for start in range(0, len(columns[0]), _ROWS_AT_ONCE):
-        part = slice(start, start + _ROWS_AT_ONCE)
-        texts = [[_text(value) for value in column[part].tolist()] for column in columns]
-        texts[1:1] = [[str(value) for value in column[part].tolist()] for column in whole]
+        rows = slice(start, start + _ROWS_AT_ONCE)
+        texts = [[_text(value) for value in column[rows].tolist()] for column in columns]
+        texts[1:1] = [[str(value) for value in column[rows].tolist()] for column in integers]
         yield "".join(",".join(row) + "\n" for row in zip(*texts, strict=True))
 
 
 def _rows(name: str, columns: list[Array]) -> Iterator[str]:
-    for piece in _table(columns, []):
-        yield "".join(name + line + "\n" for line in piece.splitlines())
+    for chunk in _table(columns, []):
+        yield "".join(name + line + "\n" for line in chunk.splitlines())
 
 
 def _text(value: float) -> str:

@@ -37,16 +37,16 @@ class Rows:
     borders: Array
     layers: Integers
 
-    def at(self, values: Array) -> Array:
+    def select(self, values: Array) -> Array:
         """(k, ...) values (n, ...) of rows, such as where the axes are."""
-        found: Array = values[self.index]
-        return found
+        selected: Array = values[self.index]
+        return selected
 
-    def along(self, values: Array) -> Array:
+    def select_rates(self, values: Array) -> Array:
         """(k, ...) values (n, ...) of the segments that end at the rows, such as speeds; 0 where it stands."""
-        found = values[self.index]
-        found[self.standing] = 0.0
-        return found
+        selected = values[self.index]
+        selected[self.standing] = 0.0
+        return selected
 
 
 def rows(source: Source, over: str = TIME, layers: tuple[int, int] | None = None) -> Rows:
@@ -63,20 +63,25 @@ def rows(source: Source, over: str = TIME, layers: tuple[int, int] | None = None
             times.total,
         )
     else:
-        way = np.cumsum(
+        length = np.cumsum(
             np.nan_to_num(
                 np.linalg.norm(
                     np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1
                 )
             )
         )
-        x, units, total = way[index], LENGTHS, float(way[-1]) if len(way) else 0.0
+        x, units, total = length[index], LENGTHS, float(length[-1]) if len(length) else 0.0
     unit, name = next((size, name) for size, name in units if total >= 3.0 * size or size == 1.0)
     x = np.maximum.accumulate(x / unit)  # sums of times fall by rounding
     layer = motion.layer[index]
     if layers is not None:
-        taken = (layer >= layers[0]) & (layer <= layers[1])
-        index, x, standing, layer = index[taken], x[taken], standing[taken], layer[taken]
+        selected = (layer >= layers[0]) & (layer <= layers[1])
+        index, x, standing, layer = (
+            index[selected],
+            x[selected],
+            standing[selected],
+            layer[selected],
+        )
     starts = np.flatnonzero(np.diff(layer, prepend=-1))
     return Rows(index, x, standing, layer, Quantity(over, name), x[starts], layer[starts])
 
@@ -93,9 +98,9 @@ def angles(source: Source, rows: Rows) -> tuple[Chart, ...]:
     """A chart per axis, and per sum of axes that has limits of its own."""
     cell = _cell(source)
     limits, units, values = cell.limits, cell.machine.units, cell.machine.unit_values
-    joints = rows.at(source.motion.joints)
+    joints = rows.select(source.motion.joints)
     charts = [
-        _of_axis(
+        _axis_chart(
             rows,
             axis,
             limits.labels[axis] + ("" if np.isfinite(low) or np.isfinite(high) else CONTINUOUS),
@@ -113,7 +118,9 @@ def angles(source: Source, rows: Rows) -> tuple[Chart, ...]:
         label = limits.labels[limits.axes + number]
         sums = np.degrees(joints @ coefficients)
         charts.append(
-            _of_axis(rows, limits.axes + number, label, Quantity("angle", "deg"), sums, ends, LINE)
+            _axis_chart(
+                rows, limits.axes + number, label, Quantity("angle", "deg"), sums, ends, LINE
+            )
         )
     return tuple(charts)
 
@@ -123,7 +130,7 @@ def speeds(source: Source, rows: Rows) -> tuple[Chart, ...]:
     return _rates(
         source,
         rows,
-        rows.along(source.rates.speed),
+        rows.select_rates(source.rates.speed),
         "speed",
         "/s",
         _cell(source).machine.max_speed,
@@ -134,14 +141,14 @@ def speeds(source: Source, rows: Rows) -> tuple[Chart, ...]:
 
 def accelerations(source: Source, rows: Rows) -> tuple[Chart, ...]:
     """A chart per axis, while depositing, at the points within beads."""
-    most = _cell(source).machine.max_acceleration
+    limits = _cell(source).machine.max_acceleration
     return _rates(
         source,
         rows,
-        rows.at(source.rates.acceleration),
+        rows.select(source.rates.acceleration),
         "acceleration",
         "/s²",
-        most,
+        limits,
         LINE,
         NO_ACCELERATION,
     )
@@ -149,14 +156,16 @@ def accelerations(source: Source, rows: Rows) -> tuple[Chart, ...]:
 
 def jerks(source: Source, rows: Rows) -> tuple[Chart, ...]:
     """A chart per axis, while depositing."""
-    most = _cell(source).machine.max_jerk
-    return _rates(source, rows, rows.along(source.rates.jerk), "jerk", "/s³", most, STEP, NO_JERK)
+    limits = _cell(source).machine.max_jerk
+    return _rates(
+        source, rows, rows.select_rates(source.rates.jerk), "jerk", "/s³", limits, STEP, NO_JERK
+    )
 
 
 def shares(source: Source, rows: Rows) -> tuple[Chart, ...]:
     """The speeds of all axes while depositing, as shares of the largest they can do, in one chart."""
     machine = _cell(source).machine
-    values = 100.0 * np.abs(rows.along(source.rates.speed)) / machine.max_speed
+    values = 100.0 * np.abs(rows.select_rates(source.rates.speed)) / machine.max_speed
     largest = float(np.nanmax(values, initial=0.0))
     top = (
         max(1.12 * largest, 125.0) if largest > 40.0 else 1.12 * largest or 1.0
@@ -185,9 +194,9 @@ def condition(source: Source, rows: Rows) -> tuple[Chart, ...]:
         or not np.isfinite(source.condition).any()
     ):
         return ()
-    values, least = rows.at(source.condition), rows.at(source.threshold)
+    values, threshold = rows.select(source.condition), rows.select(source.threshold)
     curves = (
-        _curve(rows, "least allowed", least, "bad", LINE),
+        _curve(rows, "least allowed", threshold, "bad", LINE),
         _curve(rows, "condition", values, 0, LINE),
     )
     top = 1.15 * float(np.nanmax(values, initial=0.05))
@@ -209,19 +218,19 @@ def _rates(
     values: Array,
     name: str,
     per: str,
-    most: Array,
+    limits: Array,
     kind: str,
     unlimited: str,
 ) -> tuple[Chart, ...]:
     machine = _cell(source).machine
-    shown, ends = values / machine.unit_values, most / machine.unit_values
+    scaled, ends = values / machine.unit_values, limits / machine.unit_values
     return tuple(
-        _of_axis(
+        _axis_chart(
             rows,
             axis,
             label,
             Quantity(name, machine.units[axis] + per),
-            shown[:, axis],
+            scaled[:, axis],
             (-end, end),
             kind,
             unlimited if np.isinf(end) else "",
@@ -230,7 +239,7 @@ def _rates(
     )
 
 
-def _of_axis(
+def _axis_chart(
     rows: Rows,
     axis: int,
     title: str,
@@ -271,11 +280,11 @@ LEAST_PART = 1e-3  # of the largest layer; a share of less means nothing
 
 def travel(source: Source, rows: Rows) -> tuple[Chart, ...]:
     """The speed of the deposition point, as asked for and, where the machine cannot keep it, what it becomes."""
-    motion, kept = source.motion, source.feed
+    motion, feed = source.motion, source.feed
     speed = np.where(motion.point > 0, motion.speed, np.nan)
     rapid, deposit = (
-        rows.along(np.where(some, values, np.nan))
-        for some, values in (
+        rows.select_rates(np.where(mask, values, np.nan))
+        for mask, values in (
             (~motion.deposit, motion.speed),
             (motion.deposit, speed),
         )
@@ -285,8 +294,8 @@ def travel(source: Source, rows: Rows) -> tuple[Chart, ...]:
         [Curve("rapid", rows.x, rapid, "soft", STEP, rows.layer)] if (~motion.deposit).any() else []
     )
     curves.append(Curve("deposit", rows.x, deposit, 2, STEP, rows.layer))
-    if kept is not None and (kept.slowed & motion.deposit).any():
-        slowed = rows.along(np.where(kept.slowed & motion.deposit, kept.achieved, np.nan))
+    if feed is not None and (feed.slowed & motion.deposit).any():
+        slowed = rows.select_rates(np.where(feed.slowed & motion.deposit, feed.achieved, np.nan))
         slowed[rows.standing] = np.nan
         curves.append(Curve("as the axes can", rows.x, slowed, "bad", STEP, rows.layer))
     top = 1.12 * float(np.nanmax([np.nanmax(curve.y, initial=0.0) for curve in curves])) or 1.0
@@ -310,65 +319,74 @@ def deposit(source: Source, rows: Rows) -> tuple[Chart, ...]:
         KG_PER_HOUR * mass, motion.duration, out=np.zeros_like(mass), where=motion.duration > 0.0
     )
     so_far = np.cumsum(mass)
-    most = float(rate.max(initial=0.0))
+    highest = float(rate.max(initial=0.0))
     return (
         Chart(
             "Deposit rate",
             rows.quantity,
             Quantity("rate", "kg/h"),
-            (Curve("rate", rows.x, rows.along(rate), 2, STEP, rows.layer),),
+            (Curve("rate", rows.x, rows.select_rates(rate), 2, STEP, rows.layer),),
             borders=rows.borders,
             layers=rows.layers,
-            span=(0.0, 1.12 * most or 1.0),
+            span=(0.0, 1.12 * highest or 1.0),
         ),
         Chart(
             "Deposited mass",
             rows.quantity,
             Quantity("mass", "g"),
-            (Curve("mass", rows.x, rows.at(so_far), 3, LINE, rows.layer),),
+            (Curve("mass", rows.x, rows.select(so_far), 3, LINE, rows.layer),),
             borders=rows.borders,
             layers=rows.layers,
         ),
     )
 
 
-def distances(values: Array, asked: float, band: float | None = None, name: str = "") -> Chart:
+def distances(
+    values: Array, layer_height: float, band: float | None = None, name: str = ""
+) -> Chart:
     """How the local distances (n,) mm between layers are spread about the layer height, and the band they may lie in. name:
     of the feature, where there are several."""
-    low, high = float(values.min(initial=asked)), float(values.max(initial=asked))
-    pad = max(0.15 * (high - low), 0.002 * asked)
+    low, high = float(values.min(initial=layer_height)), float(values.max(initial=layer_height))
+    pad = max(0.15 * (high - low), 0.002 * layer_height)
     edges = np.linspace(low - pad, high + pad, BINS + 1)
     share = np.histogram(values, edges)[0] * (100.0 / max(len(values), 1))
     title = Text("{}: distance", name) if name else "Distance"
     return Chart(
-        Text("{} to the layer before (asked: {:g} mm)", Word(title), asked),
+        Text("{} to the layer before (asked: {:g} mm)", Word(title), layer_height),
         Quantity("local distance", "mm"),
         Quantity("share of the points", "%"),
         bars=Bars("share", edges, share),
-        band=None if band is None else (asked * (1.0 - band), asked * (1.0 + band)),
-        upright=((asked, "layer height"),),
+        band=None if band is None else (layer_height * (1.0 - band), layer_height * (1.0 + band)),
+        upright=((layer_height, "layer height"),),
     )
 
 
 def spacing(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
     """`distances` of layers; none where no layer lies on another."""
     values, layer = source.distances
-    taken = values[(layer >= layers[0]) & (layer <= layers[1])]
-    return (distances(taken, source.toolpath.layer_height, source.band),) if len(taken) else ()
+    selected = values[(layer >= layers[0]) & (layer <= layers[1])]
+    return (
+        (distances(selected, source.toolpath.layer_height, source.band),) if len(selected) else ()
+    )
 
 
-def spread(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
+def distributions(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
     """How travel speeds, bead widths and heights are spread over the length; none without a bead model."""
-    found = source.segments(layers)
-    if not len(found.length):
+    segments = source.segments(layers)
+    if not len(segments.length):
         return ()
     return (
-        _histogram("Travel speed", Quantity("travel speed", "mm/min"), found.speed, found.length),
         _histogram(
-            "Predicted width of the bead", Quantity("width", "mm"), found.width, found.length
+            "Travel speed", Quantity("travel speed", "mm/min"), segments.speed, segments.length
         ),
         _histogram(
-            "Predicted height of the bead", Quantity("height", "mm"), found.height, found.length
+            "Predicted width of the bead", Quantity("width", "mm"), segments.width, segments.length
+        ),
+        _histogram(
+            "Predicted height of the bead",
+            Quantity("height", "mm"),
+            segments.height,
+            segments.length,
         ),
     )
 
@@ -388,7 +406,10 @@ def height_charts(figures: dict[str, Any] | None, layers: tuple[int, int]) -> tu
     )
     if figures is None or not rows:
         return ()
-    x, asked = np.array([row["layer"] for row in rows], float), float(figures["layer_height_mm"])
+    x, layer_height = (
+        np.array([row["layer"] for row in rows], float),
+        float(figures["layer_height_mm"]),
+    )
 
     def curve(name: str, values: list[float], colour: int) -> Curve:
         return Curve(name, x, np.array(values), colour, MARKED)
@@ -406,7 +427,7 @@ def height_charts(figures: dict[str, Any] | None, layers: tuple[int, int]) -> tu
             layer,
             Quantity("height", "mm"),
             tuple(spread),
-            marks=((asked, f"layer height {asked:g} mm"),),
+            marks=((layer_height, f"layer height {layer_height:g} mm"),),
         ),
         Chart(
             "Sum of the heights, off the layers",
@@ -425,26 +446,29 @@ def by_layer(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
     end = (
         layers[1] + 1 if layers[1] + 1 < len(source.toolpath.layers) else None
     )  # with what is left out at the top
-    part, deposited = (values[layers[0] : end] / MM3_PER_CM3 for values in source.slabs)
-    if not len(part):
+    part_volume, deposited = (values[layers[0] : end] / MM3_PER_CM3 for values in source.slabs)
+    if not len(part_volume):
         return ()
-    x, layer = np.arange(layers[0], layers[0] + len(part), dtype=float), Quantity("layer")
+    x, layer = np.arange(layers[0], layers[0] + len(part_volume), dtype=float), Quantity("layer")
     share = np.divide(
         100.0 * deposited,
-        part,
-        out=np.full(len(part), np.nan),
-        where=part > LEAST_PART * part.max(),
+        part_volume,
+        out=np.full(len(part_volume), np.nan),
+        where=part_volume > LEAST_PART * part_volume.max(),
     )
-    whole = 100.0 * deposited.sum() / max(part.sum(), 1e-300)
+    percent = 100.0 * deposited.sum() / max(part_volume.sum(), 1e-300)
     return (
         Chart(
             "Volume by layer",
             layer,
             Quantity("volume", "cm³"),
-            (Curve("part", x, part, "soft", MARKED), Curve("deposited", x, deposited, 0, MARKED)),
+            (
+                Curve("part", x, part_volume, "soft", MARKED),
+                Curve("deposited", x, deposited, 0, MARKED),
+            ),
         ),
         Chart(
-            Text("Deposited of the part: {:.4g} %", whole),
+            Text("Deposited of the part: {:.4g} %", percent),
             layer,
             Quantity("share", "%"),
             (Curve("share", x, share, 0, MARKED),),

@@ -74,9 +74,9 @@ VARIABLES = {
 
 def shade(share: float) -> str:
     """A colour of the scale at 0 to 1, as #rrggbb."""
-    at = min(max(share, 0.0), 1.0) * (len(_SCALE) - 1)
-    low = min(int(at), len(_SCALE) - 2)
+    level = min(max(share, 0.0), 1.0) * (len(_SCALE) - 1)
+    low = min(int(level), len(_SCALE) - 2)
     red, green, blue = (
-        (_SCALE[low] + (at - low) * (_SCALE[low + 1] - _SCALE[low])).round().astype(int)
+        (_SCALE[low] + (level - low) * (_SCALE[low + 1] - _SCALE[low])).round().astype(int)
     )
     return f"#{red:02x}{green:02x}{blue:02x}"

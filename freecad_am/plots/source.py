@@ -84,16 +84,16 @@ class Source:
         """(n,) mm, the local distances between layers that are known, beads that close gaps left out; the layer of each."""
         beads = list(self.toolpath)
         local = spacing.local_distances(self.toolpath)
-        taken = [
+        selected = [
             values for (_, _, bead), values in zip(beads, local, strict=True) if not bead.closing
         ]
         layers = [np.full(len(bead), layer) for layer, _, bead in beads if not bead.closing]
         values, layer = (
-            np.concatenate([*taken, np.zeros(0)]),
+            np.concatenate([*selected, np.zeros(0)]),
             np.concatenate([*layers, np.zeros(0, np.int64)]),
         )
-        known = np.isfinite(values)
-        return values[known], layer[known].astype(np.int64)
+        finite = np.isfinite(values)
+        return values[finite], layer[finite].astype(np.int64)
 
     @cached_property
     def model(self) -> tuple[Measured, BeadModel] | None:

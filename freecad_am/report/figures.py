@@ -108,8 +108,8 @@ def build(
         "layer_heights": []
         if toolpath.uneven is None
         else [
-            {"layer": int(layer), "least_mm": float(least), "largest_mm": float(largest)}
-            for layer, least, largest in toolpath.uneven
+            {"layer": int(layer), "least_mm": float(smallest), "largest_mm": float(largest)}
+            for layer, smallest, largest in toolpath.uneven
         ],
         "unsupported_mm": toolpath.unsupported,
         "on_part": None
@@ -144,54 +144,56 @@ def features(
     compared: Sequence[list[dict[str, Any]]],
 ) -> list[dict[str, Any]]:
     """The key `features`: what each of several features comes to. compared: of each, how else its wall may be cut."""
-    found = []
-    for one, (part, numbers), balance, rows_of_wall in zip(
+    entries = []
+    for feature, (path, numbers), balance, rows_of_wall in zip(
         of_job, toolpath.parts, balances, compared, strict=True
     ):
         rows = motion.deposit & np.isin(motion.layer, numbers)
-        found.append(
+        entries.append(
             {
-                "name": one.name,
-                "kind": family_of(one.strategy).kind,
+                "name": feature.name,
+                "kind": family_of(feature.strategy).kind,
                 "layers": [int(number) for number in numbers],
                 "counts": {
-                    "layers": len(part.layers),
-                    "beads": part.bead_count,
+                    "layers": len(path.layers),
+                    "beads": path.bead_count,
                     "points": int(rows.sum()),
                 },
-                "length_mm": part.length,
-                "layer_height_mm": part.layer_height,
-                "bead_width_mm": part.bead_width,
-                "chord_error_mm": part.chord_error,
+                "length_mm": path.length,
+                "layer_height_mm": path.layer_height,
+                "bead_width_mm": path.bead_width,
+                "chord_error_mm": path.chord_error,
                 "deposit_s": float(np.nan_to_num(motion.duration)[rows & motion.moves].sum()),
-                "spacing_mm": spread(layer_spacing.between_layers(part)),
-                "unsupported_mm": part.unsupported,
+                "spacing_mm": summarize(layer_spacing.between_layers(path)),
+                "unsupported_mm": path.unsupported,
                 "deposit": deposit_balance.as_dict(balance),
                 "spacing_comparison": rows_of_wall,
-                "beads": None if one.process.bead_model == "none" else notes.beads(part, numbers),
+                "beads": None
+                if feature.process.bead_model == "none"
+                else notes.beads(path, numbers),
             }
         )
-    return found
+    return entries
 
 
 def add_joints(
     report: dict[str, Any], planned: JointPath, cell: Cell, joints: JointParameters, seconds: float
 ) -> None:
     """Add the figures of the joint path, over the deposit; `seconds` is what planning it took, comparison included."""
-    others: list[dict[str, Any]] = [dict(entry) for entry in planned.comparison]
+    compared: list[dict[str, Any]] = [dict(entry) for entry in planned.comparison]
     report["joints"] = {
         "method": planned.method,
         "objective": planned.objective,
         "feasible": planned.feasible,
         **criteria.path_figures(planned, cell, joints),
-        "planning_time_s": seconds - sum(float(entry["planning_time_s"]) for entry in others),
+        "planning_time_s": seconds - sum(float(entry["planning_time_s"]) for entry in compared),
         "branch": list(planned.branch),
         "limits": planned.limits,
         "stopped": _reasons(planned),
         **({} if planned.optimality is None else {"optimality": planned.optimality}),
         **({} if cell.external is None else {"external": _external(cell, planned, joints)}),
     }
-    report["comparison"] = others
+    report["comparison"] = compared
     report["machine"] = {
         "id": cell.machine.id,
         "title": cell.machine.title,
@@ -206,12 +208,12 @@ def add_joints(
 
 def _external(cell: Cell, planned: JointPath, joints: JointParameters) -> dict[str, object]:
     """What the external axes do, and where they were optimised the same figures of the rule that they began with."""
-    found = level.figures(cell, planned)
+    axis_figures = level.figures(cell, planned)
     if planned.of_level is None:
-        return found
+        return axis_figures
     task = Task(cell, opw.branch_index(planned.branch), joints)
     return {
-        **found,
+        **axis_figures,
         "rule": OPTIMISED,
         **optimised.figures(task, planned.beads),
         "level": planned.of_level,
@@ -234,7 +236,7 @@ def speed_ratio(motion: Motion, cell: Cell) -> Array:
     return ratio
 
 
-def spread(spacing: Sequence[Array]) -> dict[str, float | None]:
+def summarize(spacing: Sequence[Array]) -> dict[str, float | None]:
     """Least, mean and largest of all values, None where there are none."""
     if not spacing:
         return {"min": None, "mean": None, "max": None}

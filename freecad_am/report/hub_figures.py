@@ -17,7 +17,7 @@ from ..core.types import Array
 from ..plots.look import shade
 from . import svg
 
-WIDE, EDGES = 388.0, 68.0  # of a picture, between and beside its frame
+FRAME_WIDTH, EDGES = 388.0, 68.0  # of a picture, between and beside its frame
 AXES = (("around the hub, mm", "along it, mm"), ("x, mm", "y, mm"))
 PIECES = 6  # colours along a bead
 
@@ -27,21 +27,21 @@ def layer_plots(solids: SolidsOnHub, toolpath: Toolpath) -> list[str]:
 
     A layer that is too narrow for a bead has none, and no picture.
     """
-    found = []
+    plots = []
     runs = _runs(toolpath.layers)
     by_group = np.array_split(np.arange(len(runs)), len(solids.groups))
     if len(runs) != len(solids.groups):  # solid by solid: the first of each group
         counts = np.cumsum([0, *(len(group.bodies) for group in solids.groups)])
-        by_group = [np.array([first]) for first in counts[:-1] if first < len(runs)]
-    for group, mine in zip(solids.groups, by_group):
-        run = runs[int(mine[0])]
-        places = dict.fromkeys((0, len(run) // 2))
-        found += [
-            _flat(group, toolpath.layers[run[place]], place, toolpath.layer_height)
-            for place in places
-            if toolpath.layers[run[place]].beads
+        by_group = [np.array([start]) for start in counts[:-1] if start < len(runs)]
+    for group, indices in zip(solids.groups, by_group):
+        run = runs[int(indices[0])]
+        numbers = dict.fromkeys((0, len(run) // 2))
+        plots += [
+            _flat(group, toolpath.layers[run[number]], number, toolpath.layer_height)
+            for number in numbers
+            if toolpath.layers[run[number]].beads
         ]
-    return found
+    return plots
 
 
 def _runs(layers: Sequence[Layer]) -> list[range]:
@@ -50,24 +50,24 @@ def _runs(layers: Sequence[Layer]) -> list[range]:
     return [range(start, end) for start, end in zip(starts, [*starts[1:], len(layers)])]
 
 
-def _flat(group: Group, layer: Layer, place: int, height: float) -> str:
+def _flat(group: Group, layer: Layer, index: int, height: float) -> str:
     base, lines = group.base, [group.base.inside(bead.points) for bead in layer.beads]
     if isinstance(base.surface, Guide):
-        plane = between(base.surface, place * height, (place + 1) * height, 0.0)
+        plane = between(base.surface, index * height, (index + 1) * height, 0.0)
         lines = [plane.unroll(line) for line in lines]
     else:
-        surface = base.surface.offset(place * height)
+        surface = base.surface.offset(index * height)
         middle = middle_azimuth(base, np.vstack([bead.points for bead in layer.beads]))
         lines = [surface.unroll(line, middle) for line in lines]
     low, high = np.vstack(lines).min(axis=0), np.vstack(lines).max(axis=0)
     pad = 0.03 * float((high - low).max())
     ratio = float((high[1] - low[1] + 2.0 * pad) / (high[0] - low[0] + 2.0 * pad))
     plot = svg.Plot(
-        f"{group.base.name}, layer {place}, laid flat",
+        f"{group.base.name}, layer {index}, laid flat",
         (low[0] - pad, high[0] + pad),
         (low[1] - pad, high[1] + pad),
         *AXES[isinstance(base.surface, (Plane, Guide))],
-        height=int(np.clip(EDGES + ratio * WIDE, 140.0, 620.0)),
+        height=int(np.clip(EDGES + ratio * FRAME_WIDTH, 140.0, 620.0)),
     )
     speeds = np.concatenate([bead.speed[1:] for bead in layer.beads])
     slow, fast = float(speeds.min()), float(speeds.max())
@@ -96,6 +96,6 @@ def _coloured(plot: svg.Plot, bead: Bead, line: Array, slow: float, fast: float)
     """A bead in runs of like speed."""
     level = np.round(PIECES * (bead.speed[1:] - slow) / (fast - slow)).astype(int)
     cuts = [0, *(np.flatnonzero(np.diff(level)) + 1).tolist(), len(level)]
-    for first, last in zip(cuts, cuts[1:]):
-        part = line[first : last + 1]
-        plot.curve(part[:, 0], part[:, 1], shade(level[first] / PIECES), "", 1.4)
+    for start, end in zip(cuts, cuts[1:]):
+        stretch = line[start : end + 1]
+        plot.curve(stretch[:, 0], stretch[:, 1], shade(level[start] / PIECES), "", 1.4)

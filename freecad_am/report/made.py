@@ -35,7 +35,7 @@ class Made:
     toolpath: Toolpath
     motion: Motion
     results: Results
-    shown: Sequence[OfFeature]
+    features: Sequence[OfFeature]
     cell: Cell | None
 
     def page(self) -> str:
@@ -56,9 +56,9 @@ class Made:
             source = Source(self.toolpath, self.motion, process, self.cell, condition, threshold)
         platform = self.job.cell.platform_diameter if self.job.cell else None
         alone = len(self.job.features) == 1 and family_of(self.job.features[0].strategy).filled
-        found = self.job.features[0].shape() if alone else None
-        solids = found if isinstance(found, SolidsOnHub) else None
-        return page.render(page.Content(self.content, source, self.shown, platform, solids))
+        shape = self.job.features[0].shape() if alone else None
+        solids = shape if isinstance(shape, SolidsOnHub) else None
+        return page.render(page.Content(self.content, source, self.features, platform, solids))
 
 
 def as_run(results: Results, cell: Cell | None) -> tuple[Toolpath, Motion]:
@@ -70,55 +70,61 @@ def as_run(results: Results, cell: Cell | None) -> tuple[Toolpath, Motion]:
     return results.planned.joint_path.toolpath(results.toolpath), results.planned.motion
 
 
-def made(job: Job, results: Results, cell: Cell | None, timed: Timed, tell: Tell) -> Made:
+def make_report(job: Job, results: Results, cell: Cell | None, timed: Timed, tell: Tell) -> Made:
     """The report of a job. timed: takes the time of a step by its name, tell: says what is done. `timing_s` stays empty."""
     toolpath, motion = as_run(results, cell)
     with timed("report"):
-        found = figures.build(job.name, toolpath, motion, job.process, results.issues)
+        content = figures.build(job.name, toolpath, motion, job.process, results.issues)
         if results.planned is not None and cell is not None:
-            figures.add_joints(found, results.planned.joint_path, cell, job.joints, results.seconds)
+            figures.add_joints(
+                content, results.planned.joint_path, cell, job.joints, results.seconds
+            )
         balances = [
-            deposit_balance.toolpath_balance(one.shape(), part, one.process.bead_width)
-            for one, (part, _) in zip(job.features, toolpath.parts, strict=True)
+            deposit_balance.toolpath_balance(feature.shape(), path, feature.process.bead_width)
+            for feature, (path, _) in zip(job.features, toolpath.parts, strict=True)
         ]
-        found["deposit"] = deposit_balance.as_dict(deposit_balance.sum_balances(balances))
+        content["deposit"] = deposit_balance.as_dict(deposit_balance.sum_balances(balances))
     with timed("preflight"):  # after what can be done while some of it is still looked for
-        found["preflight"] = [one.as_dict() for one in results.preflight()]
+        content["preflight"] = [promise.as_dict() for promise in results.preflight()]
     distances = results.distances()
-    found["spacing_mm"] = figures.spread(distances)
+    content["spacing_mm"] = figures.spread(distances)
     with timed("spacing_comparison"):
-        shown = compared_walls(job, toolpath, distances)
+        walls = compared_walls(job, toolpath, distances)
         if not toolpath.features:
-            found["spacing_comparison"] = with_motion(job, shown[0], results, cell, tell)
+            content["spacing_comparison"] = add_motion(job, walls[0], results, cell, tell)
     if toolpath.features:
-        found["features"] = figures.features(
-            job.features, toolpath, motion, balances, [list(one.rows) for one in shown]
+        content["features"] = figures.features(
+            job.features, toolpath, motion, balances, [list(wall.rows) for wall in walls]
         )
-    found["programs"] = sorted(results.programs)
-    return Made(found, job, toolpath, motion, results, shown, cell)
+    content["programs"] = sorted(results.programs)
+    return Made(content, job, toolpath, motion, results, walls, cell)
 
 
 def compared_walls(job: Job, toolpath: Toolpath, distances: Sequence[Array]) -> list[OfFeature]:
     """Of each feature what the page shows, with what other spacings of a wall would be: nothing for other families.
     distances: between all layers."""
-    found = []
-    for one, (part, _) in zip(job.features, toolpath.parts, strict=True):
-        apart = spacing.between_layers(part) if toolpath.features else distances
-        shown = OfFeature(
-            one.name if toolpath.features else "", part, apart, getattr(one.strategy, "band", None)
+    walls = []
+    for feature, (path, _) in zip(job.features, toolpath.parts, strict=True):
+        gaps = spacing.between_layers(path) if toolpath.features else distances
+        wall = OfFeature(
+            feature.name if toolpath.features else "",
+            path,
+            gaps,
+            getattr(feature.strategy, "band", None),
         )
-        if family_of(one.strategy).kind == "surface":
+        if family_of(feature.strategy).kind == "surface":
             from . import spacing_comparison  # slow to import, and only walls need it
 
-            compared = spacing_comparison.compare(one.shape(), one.strategy)
-            shown = shown._replace(
-                compared=compared, rows=spacing_comparison.rows(compared, one.strategy, part, apart)
+            compared = spacing_comparison.compare(feature.shape(), feature.strategy)
+            wall = wall._replace(
+                compared=compared,
+                rows=spacing_comparison.rows(compared, feature.strategy, path, gaps),
             )
-        found.append(shown)
-    return found
+        walls.append(wall)
+    return walls
 
 
-def with_motion(
+def add_motion(
     job: Job, wall: OfFeature, results: Results, cell: Cell | None, tell: Tell
 ) -> list[dict[str, Any]]:
     """The rows about the wall of a single feature, with how the robot moves where that was asked for."""
@@ -130,8 +136,8 @@ def with_motion(
         rows[0]["motion"] = spacing_comparison.motion_of(
             planned.joint_path, planned.motion, cell, job.joints
         )
-        others = spacing_comparison.motions(job, tell)
+        motions = spacing_comparison.motions(job, tell)
         for row in rows[1:]:
-            found = others.get(row["method"])
-            row["reason" if isinstance(found, str) else "motion"] = found or row["motion"]
+            motion = motions.get(row["method"])
+            row["reason" if isinstance(motion, str) else "motion"] = motion or row["motion"]
     return rows

@@ -29,7 +29,7 @@ from ..objects.toolpath import features_of, strategy_of
 from ..objects.work import progress
 from . import units
 from .figures import Feature, Job, Results
-from .made import Made, made
+from .made import Made, make_report
 
 KINDS = ("toolpath", "joint path", "program")
 PROGRAMS = "program"  # the folder that commands write programs into
@@ -43,13 +43,13 @@ def reported(obj: Any) -> Callable[[], str]:
     """
     toolpath, path, program = _stages(obj)
     features = features_of(toolpath)
-    stages = [one for one in (*features, toolpath, path, program) if one is not None]
+    stages = [stage for stage in (*features, toolpath, path, program) if stage is not None]
     check_current(obj)
     settings = None if program is None else program.Proxy.parameters(program, ProgramParameters)
-    read = None if program is None else preflight.read_back_of(program)
+    read_back = None if program is None else preflight.read_back_of(program)
     survey = functools.cache(preflight.survey_of(toolpath, path, settings))
     promised = preflight.prepared(
-        toolpath, path, settings, read, () if program is None else issues_of(program), survey
+        toolpath, path, settings, read_back, () if program is None else issues_of(program), survey
     )
     job, folders = _job(toolpath, path), tuple(user_machines.folders())
     results = Results(
@@ -61,7 +61,7 @@ def reported(obj: Any) -> Callable[[], str]:
         lambda: survey().distances,
         promised,
     )
-    spent = {one.Proxy.kind.replace(" ", "_"): one.Seconds for one in stages}
+    spent = {stage.Proxy.kind.replace(" ", "_"): stage.Seconds for stage in stages}
 
     # read now: a scheme that is chosen while the page is drawn is that of the next one
     page_units = units.ReportUnits(in_user_units, scale_of) if window_is_open() else units.METRIC
@@ -117,7 +117,7 @@ def _job(toolpath: Any, path: Any) -> Job:
 
 def _name(toolpath: Any) -> str:
     """What the job is called: as its group, else as the document."""
-    group = next((one for one in toolpath.InList if is_group(one)), toolpath.Document)
+    group = next((parent for parent in toolpath.InList if is_group(parent)), toolpath.Document)
     return str(group.Label)
 
 
@@ -130,12 +130,12 @@ def _files(program: Any) -> list[str]:
 def _issues(features: list[Any], toolpath: Any, path: Any, program: Any) -> list[Issue]:
     """Those of all stages, as a command tells them: a toolpath repeats those about its wall, and what is told of heights at
     the speeds as run stands for what was told at those asked for."""
-    found = [issue for feature in features for issue in issues_of(feature)]
-    found += [issue for issue in issues_of(toolpath) if issue not in found]
+    issues = [issue for feature in features for issue in issues_of(feature)]
+    issues += [issue for issue in issues_of(toolpath) if issue not in issues]
     later = [] if path is None else list(issues_of(path))
     if any(issue.code == HEIGHTS for issue in later):
-        found = [issue for issue in found if issue.code != HEIGHTS]
-    return [*found, *later, *(() if program is None else issues_of(program))]
+        issues = [issue for issue in issues if issue.code != HEIGHTS]
+    return [*issues, *later, *(() if program is None else issues_of(program))]
 
 
 def _steps(job: Job, results: Results, cell: cells.Cell | None) -> Made:
@@ -150,4 +150,4 @@ def _steps(job: Job, results: Results, cell: cells.Cell | None) -> Made:
         yield
 
     progress.report(0.0, "measuring the path")
-    return made(job, results, cell, timed, lambda _: None)
+    return make_report(job, results, cell, timed, lambda _: None)

@@ -29,9 +29,9 @@ from .tables import (
     table_of,
 )
 from .turned import columns
-from .turned.columns import policy, style, turned
+from .turned.columns import build_viewer, policy, style
 
-_WHOLE = (
+_PER_METHOD = (
     ("feasible", "feasible"),
     ("objective_value", "objective"),
     ("condition_min", "smallest condition"),
@@ -88,19 +88,19 @@ def render(content: Content) -> str:
     """The page."""
     report = content.report
     name, status = escape(report["name"]), report["status"]
-    pictures, shown = Pictures(content.source), _shown(content)
+    pictures, path_rows = Pictures(content.source), _select_rows(content)
     toolpath = content.toolpath
     width = (
         content.source.process.bead_width if toolpath.bead_width is None else toolpath.bead_width
     )
-    path = turned(shown, toolpath, width, content.platform_diameter)
+    path = build_viewer(path_rows, toolpath, width, content.platform_diameter)
     sections = [
         f'<header><h1>{name}</h1><span class="status {status}">{status}</span></header>'
-        f'<p class="sub">{escape(_subtitle(content))}</p>{_cards(report)}{places.findings(report["issues"], shown)}',
+        f'<p class="sub">{escape(_subtitle(content))}</p>{_cards(report)}{places.findings(report["issues"], path_rows)}',
         f"<h2>Path</h2>{path.element}",
         f'<figure id="path-still">{view.picture(toolpath, content.platform_diameter)}<figcaption>The beads, coloured by '
         "layer; short strokes show the build direction.</figcaption></figure>",
-        places.preflight(report["preflight"], shown),
+        places.preflight(report["preflight"], path_rows),
         "" if pictures.modules else f'<p class="sub">{MISSING}</p>',
         *_joints(content, pictures),
         ""
@@ -108,10 +108,10 @@ def render(content: Content) -> str:
         else scan_figures.section(content.toolpath.fitted, content.toolpath.frame),
         ""
         if content.toolpath.predicted is None
-        else predicted_figures.section(content.toolpath.predicted, pictures.predicted(), shown),
+        else predicted_figures.section(content.toolpath.predicted, pictures.predicted(), path_rows),
         _process(content, pictures),
-        _on_hub(content, pictures),
-        *(_spacings(one) for one in content.features if one.rows),
+        _hub_layers(content, pictures),
+        *(_spacings(feature) for feature in content.features if feature.rows),
         _spacing_motion(report),
         _comparison(report),
         _totals(report),
@@ -131,13 +131,13 @@ def render(content: Content) -> str:
     )
 
 
-def _shown(content: Content) -> columns.Shown:
+def _select_rows(content: Content) -> columns.Shown:
     """The rows of the path to turn, with their joints where there is a machine."""
     machine = content.report["machine"] if content.source.cell is not None else None
     return (
-        columns.shown(content.source, machine["labels"], machine["units"])
+        columns.select_rows(content.source, machine["labels"], machine["units"])
         if machine
-        else columns.shown(content.source)
+        else columns.select_rows(content.source)
     )
 
 
@@ -210,11 +210,11 @@ def _joint_table(content: Content) -> str:
 
 def _process(content: Content, pictures: Pictures) -> str:
     plots = pictures.process(content.features)
-    shown = f"<h2>Layers and path</h2>{grid_of(plots)}" if plots else ""
-    return shown + classes_of(content.report["classes"])
+    section = f"<h2>Layers and path</h2>{grid_of(plots)}" if plots else ""
+    return section + classes_of(content.report["classes"])
 
 
-def _on_hub(content: Content, pictures: Pictures) -> str:
+def _hub_layers(content: Content, pictures: Pictures) -> str:
     """Layers of solids on a hub laid flat, and what the bead model makes of them."""
     if content.solids is None:
         return ""
@@ -222,20 +222,22 @@ def _on_hub(content: Content, pictures: Pictures) -> str:
     return f"<h2>Layers laid flat</h2>{grid_of(plots)}"
 
 
-def _spacings(of: OfFeature) -> str:
+def _spacings(wall: OfFeature) -> str:
     """What each spacing of a wall costs: the paper's plots and the figures."""
-    rows, toolpath = of.rows, of.toolpath
-    done = [one for one in of.compared if isinstance(one, Compared)]
+    rows, toolpath = wall.rows, wall.toolpath
+    compared = [result for result in wall.compared if isinstance(result, Compared)]
     height = toolpath.layer_height
-    plots = wall_figures.distance_plots(done, height) if done else []
+    plots = wall_figures.distance_plots(compared, height) if compared else []
     plots += [
-        wall_figures.step_plot(one, height) for one in done if one.method == "constant-distance"
+        wall_figures.step_plot(result, height)
+        for result in compared
+        if result.method == "constant-distance"
     ]
     plots.append(wall_figures.deposit_plot(toolpath, local_distances(toolpath)))
-    both = wall_figures.both_paths(done)
-    if both:
-        both = (
-            f'<figure style="margin-top:10px">{both}<figcaption>Both paths: along the lines up the wall, and at a '
+    overlay = wall_figures.both_paths(compared)
+    if overlay:
+        overlay = (
+            f'<figure style="margin-top:10px">{overlay}<figcaption>Both paths: along the lines up the wall, and at a '
             "constant distance from the layer below.</figcaption></figure>"
         )
     cut = [row for row in rows if row["layers"] is not None]
@@ -249,10 +251,10 @@ def _spacings(of: OfFeature) -> str:
         for row in rows
         if row["reason"]
     )
-    name = f": {escape(of.name)}" if of.name else ""
+    name = f": {escape(wall.name)}" if wall.name else ""
     return (
         f'<h2>What spacing costs{name}</h2><p class="sub">Distance of each point to the nearest point of the layer below, '
-        f"around the wall; every curve is a layer, dark ones first.</p>{grid_of(plots)}{both}{table}{reasons}"
+        f"around the wall; every curve is a layer, dark ones first.</p>{grid_of(plots)}{overlay}{table}{reasons}"
     )
 
 
@@ -260,7 +262,7 @@ def _spacing_motion(report: dict[str, Any]) -> str:
     rows = [row for row in report["spacing_comparison"] if row["motion"]]
     if len(rows) < 2:
         return ""
-    whole = [("", [row["method"] for row in rows])] + [
+    totals = [("", [row["method"] for row in rows])] + [
         (word, [figure_text(row["motion"][key]) for row in rows]) for key, word in _MOTION
     ]
     axes = [("", ["", *axis_names(report)])] + [
@@ -271,7 +273,7 @@ def _spacing_motion(report: dict[str, Any]) -> str:
         for key, word in _MOTION_PER_AXIS
         for number, row in enumerate(rows)
     ]
-    return f"<h2>What spacing gains in motion</h2>{table_of(whole)}{table_of(axes)}"
+    return f"<h2>What spacing gains in motion</h2>{table_of(totals)}{table_of(axes)}"
 
 
 def _totals(report: dict[str, Any]) -> str:
@@ -310,15 +312,15 @@ def _criteria(report: dict[str, Any]) -> str:
 
 
 def _optimality(report: dict[str, Any]) -> str:
-    known = report["joints"].get("optimality")
-    if known is None:
+    optimality = report["joints"].get("optimality")
+    if optimality is None:
         return ""
-    name, value, least = (
+    name, value, bound = (
         escape(report["joints"]["objective"]),
-        figure_text(known["objective"]),
-        figure_text(known["bound"]),
+        figure_text(optimality["objective"]),
+        figure_text(optimality["bound"]),
     )
-    return f" {name}, bead by bead: {value}; no rotation about the tool goes below {least}, a gap of {known['gap']:.1%}."
+    return f" {name}, bead by bead: {value}; no rotation about the tool goes below {bound}, a gap of {optimality['gap']:.1%}."
 
 
 def _comparison(report: dict[str, Any]) -> str:
@@ -326,8 +328,8 @@ def _comparison(report: dict[str, Any]) -> str:
     if not report["comparison"]:
         return ""
     methods = [report["joints"], *report["comparison"]]
-    whole = [("", [entry["method"] for entry in methods])] + [
-        (word, [figure_text(entry.get(key)) for entry in methods]) for key, word in _WHOLE
+    totals = [("", [entry["method"] for entry in methods])] + [
+        (word, [figure_text(entry.get(key)) for entry in methods]) for key, word in _PER_METHOD
     ]
     axes = [("", ["", *axis_names(report)])] + [
         (
@@ -337,7 +339,7 @@ def _comparison(report: dict[str, Any]) -> str:
         for key, word in _PER_AXIS
         for number, entry in enumerate(methods)
     ]
-    return f"<h2>Comparison of the methods</h2>{table_of(whole)}{table_of(axes)}"
+    return f"<h2>Comparison of the methods</h2>{table_of(totals)}{table_of(axes)}"
 
 
 def _programs(programs: list[str]) -> str:

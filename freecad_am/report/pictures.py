@@ -11,14 +11,14 @@ from types import ModuleType
 import numpy as np
 
 from ..plots import deviation, joints
-from ..plots.chart import Chart, fit, of_chart, together
+from ..plots.chart import Chart, convert_chart, fit, together
 from ..plots.joints import Rows, rows
 from ..plots.look import PAGE
 from ..plots.source import Source
 from . import units
 from .of_feature import OfFeature
 
-HALF, WHOLE, TALL, MAP = 460, 940, 230, 330  # pixels
+HALF, FULL_WIDTH, TALL, MAP = 460, 940, 230, 330  # pixels
 MISSING = "The plots are left out, because matplotlib is not installed here; install python3-matplotlib and plan again."
 
 
@@ -59,26 +59,29 @@ class Pictures:
             jerks,
             *joints.condition(self.source, self.rows),
         )
-        return self._drawn(charts, WHOLE)
+        return self._draw(charts, FULL_WIDTH)
 
     def process(self, features: Sequence[OfFeature]) -> list[str]:
         """Distances between the layers of each feature, speed along the path, deposit rate and mass."""
         source = self.source
-        first = [
+        distances = [
             joints.distances(
-                np.concatenate(one.spacing), one.toolpath.layer_height, one.band, one.name
+                np.concatenate(feature.spacing),
+                feature.toolpath.layer_height,
+                feature.band,
+                feature.name,
             )
-            for one in features
-            if one.spacing
+            for feature in features
+            if feature.spacing
         ]
         return self._half(
-            (*first, *joints.travel(source, self.rows), *joints.deposit(source, self.rows))
+            (*distances, *joints.travel(source, self.rows), *joints.deposit(source, self.rows))
         )
 
     def beads(self) -> list[str]:
         """What a bead model predicts, and its fit."""
         source = self.source
-        charts = (*joints.spread(source, self.layers), *joints.heights(source, self.layers))
+        charts = (*joints.distributions(source, self.layers), *joints.heights(source, self.layers))
         if charts and source.model is not None:
             charts = (*charts, fit(*source.model, source.process.bead_width))
         return self._half(charts)
@@ -88,24 +91,24 @@ class Pictures:
         shape = self.source.toolpath.predicted
         if shape is None or shape.deviation is None:
             return []
-        found = deviation.charts(shape.deviation, shape.allowance)
-        tall = sum(chart.plane for chart in found)
-        return [*self._drawn(found[:tall], HALF, MAP), *self._half(found[tall:])]
+        charts = deviation.charts(shape.deviation, shape.allowance)
+        tall = sum(chart.plane for chart in charts)
+        return [*self._draw(charts[:tall], HALF, MAP), *self._half(charts[tall:])]
 
     def _half(self, charts: Sequence[Chart], travel: bool = True) -> list[str]:
-        return self._drawn(charts, HALF, travel=travel)
+        return self._draw(charts, HALF, travel=travel)
 
-    def _drawn(
+    def _draw(
         self, charts: Sequence[Chart], width: int, height: int = TALL, travel: bool = False
     ) -> list[str]:
         if self.modules is None:
             return []
         draw, files = self.modules
-        shown = [
-            replace(of_chart(chart, units.scale, travel), title=units.message(chart.title))
+        converted = [
+            replace(convert_chart(chart, units.scale, travel), title=units.message(chart.title))
             for chart in charts
         ]
         return [
             files.inline(draw.figure([chart], PAGE, width, height)[0], chart.title)
-            for chart in shown
+            for chart in converted
         ]

@@ -16,7 +16,7 @@ _MOST_ISSUES = 200
 _MARKS = {True: ("good", "kept"), False: ("error", "broken"), None: ("unknown", "not checked")}
 
 
-def findings(issues: list[dict[str, Any]], shown: Shown) -> str:
+def findings(issues: list[dict[str, Any]], path_rows: Shown) -> str:
     """The table of findings, errors first; nothing without any."""
     if not issues:
         return ""
@@ -24,48 +24,54 @@ def findings(issues: list[dict[str, Any]], shown: Shown) -> str:
     for issue in sorted(
         issues, key=lambda entry: ("error", "warning", "note").index(entry["level"])
     )[:_MOST_ISSUES]:
-        place = place_of(issue, shown)
+        link = place_of(issue, path_rows)
         rows.append(
             f'<tr><td class="{issue["level"]}">{issue["level"]}</td><td class="text">{escape(issue["code"])}</td>'
-            f'<td class="place">{place}</td><td class="text">{escape(units.message(issue["message"]))}</td></tr>'
+            f'<td class="place">{link}</td><td class="text">{escape(units.message(issue["message"]))}</td></tr>'
         )
-    more = (
+    note = (
         f"<p>{len(issues) - len(rows)} more stand in report.json.</p>"
         if len(issues) > len(rows)
         else ""
     )
     return (
-        f'<h2>Findings</h2><div class="table findings"><table>{"".join(rows)}</table></div>{more}'
+        f'<h2>Findings</h2><div class="table findings"><table>{"".join(rows)}</table></div>{note}'
     )
 
 
-def place_of(place: dict[str, Any], shown: Shown) -> str:
+def place_of(position: dict[str, Any], path_rows: Shown) -> str:
     """Layer, bead and point, as far as they are told; a click shows them in the path."""
     words = " ".join(
-        f"{word} {place[word]}" for word in ("layer", "bead", "point") if place[word] is not None
+        f"{word} {position[word]}"
+        for word in ("layer", "bead", "point")
+        if position[word] is not None
     )
-    row = shown.row_of(place["layer"], place["bead"], place["point"])
+    row = path_rows.row_of(position["layer"], position["bead"], position["point"])
     return words if row is None else f'<button data-row="{row}">{words}</button>'
 
 
-def preflight(promises: list[dict[str, Any]], shown: Shown) -> str:
+def preflight(promises: list[dict[str, Any]], path_rows: Shown) -> str:
     """Every promise with its mark: kept, broken, or not checked."""
     if not promises:
         return ""
     rows = []
-    for one in promises:
-        mark, word = _MARKS[one["ok"]]
-        where = "" if one["place"] is None else place_of(one["place"], shown)
-        worst = "" if one["worst"] is None else amount(one["worst"], one["unit"], figure_text)
-        sign = "\u2265" if one["at_least"] else "\u2264"
+    for promise in promises:
+        mark, word = _MARKS[promise["ok"]]
+        where = "" if promise["place"] is None else place_of(promise["place"], path_rows)
+        worst = (
+            ""
+            if promise["worst"] is None
+            else amount(promise["worst"], promise["unit"], figure_text)
+        )
+        sign = "\u2265" if promise["at_least"] else "\u2264"
         bound = (
             ""
-            if one["bound"] is None
-            else f"{sign} {amount(one['bound'], one['unit'], figure_text)}"
+            if promise["bound"] is None
+            else f"{sign} {amount(promise['bound'], promise['unit'], figure_text)}"
         )
         rows.append(
-            f'<tr><td class="{mark}">{word}</td><td class="text">{escape(units.message(one["promise"]))}</td><td>{units.text(worst)}</td>'
-            f'<td>{units.text(bound)}</td><td class="place">{where}</td><td class="text">{escape(units.message(one["how"]))}</td></tr>'
+            f'<tr><td class="{mark}">{word}</td><td class="text">{escape(units.message(promise["promise"]))}</td><td>{units.text(worst)}</td>'
+            f'<td>{units.text(bound)}</td><td class="place">{where}</td><td class="text">{escape(units.message(promise["how"]))}</td></tr>'
         )
     head = "".join(
         f"<th>{word}</th>"

@@ -54,17 +54,17 @@ def as_dict(fitted: Fitted) -> dict[str, Any]:
 def section(fitted: Fitted, frame: Array) -> str:
     """The section of the page: both pictures as seen along Z of the feature's frame (4, 4)."""
     factor, unit = units.scale(TOLERANCE, "mm")
-    before = _map(f"Layer {fitted.layer} as planned", fitted.places, fitted.off, frame)
-    after = _map(f"Layer {fitted.layer} as laid", fitted.laid, fitted.left, frame)
+    planned = _map(f"Layer {fitted.layer} as planned", fitted.places, fitted.off, frame)
+    deposited = _map(f"Layer {fitted.layer} as laid", fitted.laid, fitted.left, frame)
     return (
-        f"<h2>Fitted to {escape(fitted.file)}</h2>{grid_of([before, after])}"
+        f"<h2>Fitted to {escape(fitted.file)}</h2>{grid_of([planned, deposited])}"
         f'<p class="sub">How far the scan lies above the layer, {unit}: {key_of(factor * TOLERANCE)}</p>'
     )
 
 
-def _map(title: str, places: Array, off: Array, frame: Array) -> str:
-    some = np.unique(np.linspace(0, len(places) - 1, MAX_DOTS).astype(np.intp))
-    x, y = ((places[some] - frame[:3, 3]) @ frame[:3, :2]).T
+def _map(title: str, points: Array, off: Array, frame: Array) -> str:
+    rows = np.unique(np.linspace(0, len(points) - 1, MAX_DOTS).astype(np.intp))
+    x, y = ((points[rows] - frame[:3, 3]) @ frame[:3, :2]).T
     plot = Plot(
         f"{title}: {off.min():.3f} to {off.max():.3f} mm",
         (0.0, 1.0),
@@ -82,8 +82,8 @@ def _map(title: str, places: Array, off: Array, frame: Array) -> str:
         )
         for values, size in ((x, wide), (y, high))
     )
-    shades, number = [css(band.colour) for band in bands(TOLERANCE)], band_of(off[some], TOLERANCE)
-    plot.parts += [
+    shades, number = [css(band.colour) for band in bands(TOLERANCE)], band_of(off[rows], TOLERANCE)
+    plot.elements += [
         f'<circle cx="{px:.1f}" cy="{py:.1f}" r="{DOT}" fill="{shades[k]}"/>'
         for px, py, k in zip(
             plot.to_x(x).tolist(), plot.to_y(y).tolist(), number.tolist(), strict=True

@@ -42,12 +42,12 @@ _LINES = "the wall is not one surface with one closed parameter, whose lines suc
 _FRONTS = (
     "fronts follow no lines of the surface; leave strategy.method out to compare with such layers"
 )
-_OTHER = "not planned; choose it as strategy.spacing"
+_NOT_PLANNED = "not planned; choose it as strategy.spacing"
 _REASONS = {  # why a wall of several faces, an open or a trimmed one is not cut so
     "iso-parameter": _LINES,
     NORMAL: "the wall is not a tube of one surface closed around, whose sections have a centreline",
-    "constant-distance": _OTHER,
-    "smooth": _OTHER,
+    "constant-distance": _NOT_PLANNED,
+    "smooth": _NOT_PLANNED,
 }
 
 
@@ -62,19 +62,19 @@ def compare(wall: Any, strategy: Any) -> tuple[Compared | Refused, ...]:
 
 
 def rows(
-    found: Sequence[Compared | Refused],
+    compared: Sequence[Compared | Refused],
     strategy: Any,
     toolpath: Toolpath,
     distances: Sequence[Array],
 ) -> list[dict[str, Any]]:
     """The rows of report.json without motion; that of the method planned comes first."""
-    if not found:
+    if not compared:
         return []
-    known = {one.method: _row(one) for one in found}
-    own = strategy.spacing
-    if own not in known:  # a wall cut by this method alone
+    by_method = {result.method: _row(result) for result in compared}
+    planned = strategy.spacing
+    if planned not in by_method:  # a wall cut by this method alone
         spread = of_report.spread(distances)
-        known[own] = _empty(own) | {
+        by_method[planned] = _empty(planned) | {
             "layers": len(toolpath.layers),
             "min_mm": spread["min"],
             "mean_mm": spread["mean"],
@@ -83,8 +83,8 @@ def rows(
             **_corners(toolpath),
         }
     return [
-        row | {"planned": method == own}
-        for method, row in sorted(known.items(), key=lambda item: item[0] != own)
+        row | {"planned": method == planned}
+        for method, row in sorted(by_method.items(), key=lambda item: item[0] != planned)
     ]
 
 
@@ -102,10 +102,10 @@ def _corners(toolpath: Toolpath) -> dict[str, Any]:
     cornered = sum(
         turn > SMOOTH for layer, turn in sharpest.items() if layer
     )  # the first is the substrate's
-    most = max((turn for layer, turn in sharpest.items() if layer), default=0.0)
+    largest = max((turn for layer, turn in sharpest.items() if layer), default=0.0)
     return {
         "cornered_layers": int(cornered),
-        "corner_max_deg": float(np.degrees(most)) if most > SMOOTH else 0.0,
+        "corner_max_deg": float(np.degrees(largest)) if largest > SMOOTH else 0.0,
     }
 
 
@@ -129,16 +129,16 @@ def motion_of(
 
 def motions(job: Job, tell: Callable[[str], None]) -> dict[str, dict[str, Any] | str]:
     """The motion of every further spacing of `strategy.compare` of the one wall of a job, or why there is none."""
-    found: dict[str, dict[str, Any] | str] = {}
+    results: dict[str, dict[str, Any] | str] = {}
     for spacing in dict.fromkeys(job.features[0].strategy.compare):
         if spacing == job.features[0].strategy.spacing:
             continue
         tell(f"spacing comparison: {spacing} ...")
         try:
-            found[spacing] = _planned(job, spacing)
+            results[spacing] = _planned(job, spacing)
         except AmError as error:
-            found[spacing] = error.message
-    return found
+            results[spacing] = error.message
+    return results
 
 
 def _planned(job: Job, spacing: str) -> dict[str, Any]:
@@ -154,18 +154,18 @@ def _planned(job: Job, spacing: str) -> dict[str, Any]:
     return motion_of(path, motion, cell, job.joints)
 
 
-def _row(one: Compared | Refused) -> dict[str, Any]:
-    if isinstance(one, Refused):
-        return _empty(one.method) | {"reason": one.reason}
-    return _empty(one.method) | {
-        "layers": one.layers,
-        "min_mm": one.smallest,
-        "mean_mm": one.mean,
-        "max_mm": one.largest,
-        "length_mm": one.length,
-        "turn_max_deg_mm": float(np.degrees(one.turn)),
-        "cornered_layers": one.corners,
-        "corner_max_deg": float(np.degrees(one.corner)),
+def _row(wall: Compared | Refused) -> dict[str, Any]:
+    if isinstance(wall, Refused):
+        return _empty(wall.method) | {"reason": wall.reason}
+    return _empty(wall.method) | {
+        "layers": wall.layers,
+        "min_mm": wall.smallest,
+        "mean_mm": wall.mean,
+        "max_mm": wall.largest,
+        "length_mm": wall.length,
+        "turn_max_deg_mm": float(np.degrees(wall.turn)),
+        "cornered_layers": wall.corners,
+        "corner_max_deg": float(np.degrees(wall.corner)),
     }
 
 

@@ -12,9 +12,9 @@ from . import units
 
 def clock(seconds: float) -> str:
     """Seconds as hours, minutes and seconds."""
-    minutes, rest = divmod(round(seconds), 60)
+    minutes, remainder = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
-    return f"{hours} h {minutes:02d} min" if hours else f"{minutes} min {rest:02d} s"
+    return f"{hours} h {minutes:02d} min" if hours else f"{minutes} min {remainder:02d} s"
 
 
 def grid_of(plots: Iterable[str]) -> str:

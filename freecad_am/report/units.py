@@ -28,7 +28,7 @@ class ReportUnits:
     scale: Callable[[float, str], tuple[float, str]]
 
 
-METRIC = ReportUnits(str, lambda most, unit: (1.0, unit))
+METRIC = ReportUnits(str, lambda largest, unit: (1.0, unit))
 _units: ContextVar[ReportUnits] = ContextVar("units of the page", default=METRIC)
 
 
@@ -47,9 +47,9 @@ def text(words: str) -> str:
     return _units.get().text(words)
 
 
-def scale(most: float, unit: str) -> tuple[float, str]:
+def scale(largest: float, unit: str) -> tuple[float, str]:
     """How many of the page's unit make one `unit`, for values of up to `most`, and its name."""
-    return _units.get().scale(most, unit)
+    return _units.get().scale(largest, unit)
 
 
 def message(words: str) -> str:
@@ -60,22 +60,22 @@ def message(words: str) -> str:
     return put_values(words.template, values, text)
 
 
-def label(words: str, most: float) -> tuple[str, float]:
+def label(words: str, largest: float) -> tuple[str, float]:
     """A label such as 'local distance, mm' of values of up to `most`, in the unit of the page, and the factor of values."""
     match = _LABEL.fullmatch(words)
     if match is None:
         return words, 1.0
-    factor, unit = scale(most, match["unit"])
+    factor, unit = scale(largest, match["unit"])
     return f"{match['name'] or ''}{unit}", factor
 
 
 def row(words: str, cells: list[str], written: Callable[[float], str]) -> tuple[str, list[str]]:
     """A row of figures under a label with its unit, in the unit of the page."""
     values = [float(cell.replace(",", "")) for cell in cells if _FIGURE.fullmatch(cell)]
-    shown, factor = label(words, max(map(abs, values), default=0.0))
+    converted, factor = label(words, max(map(abs, values), default=0.0))
     if factor == 1.0:
         return words, cells
-    return shown, [
+    return converted, [
         written(factor * float(cell.replace(",", ""))) if _FIGURE.fullmatch(cell) else cell
         for cell in cells
     ]

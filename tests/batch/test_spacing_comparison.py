@@ -161,5 +161,5 @@ def test_parts_of_revolution_are_not_compared():
     toolpath = Toolpath((), np.eye(4), 2.0, 0.1, family="revolution")
     (shown,) = made.compared_walls(job, toolpath, ())
     assert (shown.name, shown.compared, shown.rows, shown.band) == ("", (), (), None)
-    assert made.with_motion(job, shown, planned, object(), None) == []
+    assert made.add_motion(job, shown, planned, object(), None) == []
     assert spacing_comparison.rows((), one.strategy, None, []) == []

@@ -178,7 +178,7 @@ def test_what_a_bead_model_predicts(modelled):
         ]
     assert drift.curves[0].y.tolist() == [row["drift_mm"] for row in told["layers"][1:]]
     assert height.curves[0].x.tolist() == [1.0, 2.0, 3.0] and height.marks[0][0] == 2.0
-    speed, width, _ = joints.spread(modelled, (0, 3))
+    speed, width, _ = joints.distributions(modelled, (0, 3))
     assert (
         speed.bars.heights.sum() == pytest.approx(100.0)
         and width.across()[0] < 4.8

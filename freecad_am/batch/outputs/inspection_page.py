@@ -70,7 +70,7 @@ def _map(result: Any) -> str:
         band_of(result.deviation[selected], result.tolerance),
     )
     px, py = plot.to_x(x), plot.to_y(up)
-    plot.parts += [
+    plot.elements += [
         f'<circle cx="{px[k]:.1f}" cy="{py[k]:.1f}" r="{_DOT}" fill="{shades[number[k]]}"/>'
         for k in order
     ]
@@ -106,13 +106,13 @@ def _histogram(result: Any) -> str:
     shades = [css(band.colour) for band in bands(result.tolerance)]
     number = band_of(0.5 * (edges[:-1] + edges[1:]), result.tolerance)
     lefts, top, ground = plot.to_x(edges), plot.to_y(counts), float(plot.to_y(np.zeros(1))[0])
-    plot.parts += [
+    plot.elements += [
         f'<rect x="{lefts[k]:.1f}" y="{top[k]:.1f}" width="{max(lefts[k + 1] - lefts[k] - 0.5, 0.5):.1f}" '
         f'height="{ground - top[k]:.1f}" fill="{shades[number[k]]}"/>'
         for k in range(len(counts))
     ]
     for limit in plot.to_x(np.array([-result.tolerance, result.tolerance])):
-        plot.parts.append(
+        plot.elements.append(
             f'<line class="asked" x1="{limit:.1f}" x2="{limit:.1f}" y1="{plot.top}" y2="{ground:.1f}"/>'
         )
     return plot.text()

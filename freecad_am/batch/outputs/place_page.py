@@ -107,7 +107,7 @@ def _map(placement: Placed, height: float, low: float, high: float) -> str:
         share = (pose_result.margin - low) / (high - low) if high > low else 1.0
         fill = _COLOURS[min(int(4.0 * max(share, 0.0)), 3)] if pose_result.feasible else _BEYOND
         edge = ' stroke="#c0182b" stroke-width="3"' if number == placement.best else ""
-        plot.parts.append(
+        plot.elements.append(
             f'<rect x="{x_left:.1f}" y="{top:.1f}" width="{right - x_left:.1f}" height="{bottom - top:.1f}" '
             f'fill="{fill}"{edge}><title>{escape(_pose_text(placement, number))}</title></rect>'
             f'<text class="tick" x="{0.5 * (x_left + right):.1f}" y="{0.5 * (top + bottom) + 4.0:.1f}" '

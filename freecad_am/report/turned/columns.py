@@ -55,19 +55,19 @@ class Shown:
     @property
     def box(self) -> tuple[Array, float]:
         """Least corner (3,) and step, mm, of the positions told in whole numbers."""
-        at = self.motion.position[self.rows]
-        low = at.min(axis=0)
-        return low, max(float((at.max(axis=0) - low).max()), 1e-6) / STEPS
+        positions = self.motion.position[self.rows]
+        low = positions.min(axis=0)
+        return low, max(float((positions.max(axis=0) - low).max()), 1e-6) / STEPS
 
     def blocks(self) -> list[list[int]]:
         """Of each stretch of rapids and of each bead: its layer, bead, the first of the rows shown, whether it is laid."""
         motion, starts = self.motion, _starts(self.motion)
-        first = np.searchsorted(self.rows, starts)
+        first_rows = np.searchsorted(self.rows, starts)
         table = np.column_stack(
-            (motion.layer[starts], motion.bead[starts], first, motion.deposit[starts])
+            (motion.layer[starts], motion.bead[starts], first_rows, motion.deposit[starts])
         )
-        found: list[list[int]] = table.astype(int).tolist()
-        return found
+        blocks: list[list[int]] = table.astype(int).tolist()
+        return blocks
 
     @cached_property
     def _beads(self) -> dict[tuple[int, int], tuple[int, int]]:
@@ -89,11 +89,11 @@ class Shown:
             bead = min((number for above, number in self._beads if above == layer), default=0)
         if (layer, bead) not in self._beads:
             return None
-        first, last = self._beads[layer, bead]
-        return int(np.searchsorted(self.rows, min(first + (point or 0), last), side="right")) - 1
+        start, end = self._beads[layer, bead]
+        return int(np.searchsorted(self.rows, min(start + (point or 0), end), side="right")) - 1
 
 
-def shown(source: Source, labels: Sequence[str] = (), units: Sequence[str] = ()) -> Shown:
+def select_rows(source: Source, labels: Sequence[str] = (), units: Sequence[str] = ()) -> Shown:
     """What a page shows of a job. labels, units: of the axes, deg or mm."""
     motion = source.motion
     rows = _thinned(motion)
@@ -102,7 +102,7 @@ def shown(source: Source, labels: Sequence[str] = (), units: Sequence[str] = ())
         Column(label, unit, values if unit == "mm" else np.degrees(values))
         for label, unit, values in zip(labels, units, joints.T)
     ]
-    columns = [Column(one.name, one.unit, one.values[rows]) for one in _columns(source)]
+    columns = [Column(column.name, column.unit, column.values[rows]) for column in _columns(source)]
     return Shown(motion, rows, source.times.arrive[rows], columns, axes)
 
 
@@ -110,7 +110,7 @@ def _columns(source: Source) -> list[Column]:
     """What may colour the path, all its rows (n,)."""
     motion, cell = source.motion, source.cell
     upright = np.degrees(np.arccos(np.clip(motion.tool @ source.toolpath.frame[:3, 2], -1.0, 1.0)))
-    found = [
+    columns = [
         Column("layer", "", motion.layer.astype(float)),
         _in_units("speed", "mm/s", from_next(motion.deposit, motion.point, motion.speed)),
         _in_units("width", "mm", motion.width),
@@ -118,20 +118,20 @@ def _columns(source: Source) -> list[Column]:
     ]
     if cell is not None:
         ratio = speed_ratios(motion.joints, motion.duration, cell.machine.max_speed).max(axis=1)
-        found += [
+        columns += [
             Column("joint margin", "%", 100.0 * cell.limits.smallest_share(motion.joints)),
             Column("joint speed", "%", 100.0 * from_next(motion.deposit, motion.point, ratio)),
         ]
     if source.condition is not None:
-        found.append(Column("condition", "", source.condition))
-    return [one for one in found if np.isfinite(one.values).any()]
+        columns.append(Column("condition", "", source.condition))
+    return [column for column in columns if np.isfinite(column.values).any()]
 
 
 def _in_units(name: str, unit: str, values: Array) -> Column:
     """A column in the units of the page."""
     finite = values[np.isfinite(values)]
-    factor, shown = units.scale(float(np.abs(finite).max(initial=0.0)), unit)
-    return Column(name, shown, factor * values)
+    factor, page_unit = units.scale(float(np.abs(finite).max(initial=0.0)), unit)
+    return Column(name, page_unit, factor * values)
 
 
 def _starts(motion: Motion) -> Integers:
@@ -144,15 +144,15 @@ def _starts(motion: Motion) -> Integers:
 
 def _thinned(motion: Motion) -> Integers:
     """The rows that are shown: all, or every k-th of each bead with its ends, as evenly as it goes."""
-    every = -(-len(motion) // MOST_ROWS)
-    if every <= 1:
+    stride = -(-len(motion) // MOST_ROWS)
+    if stride <= 1:
         return np.arange(len(motion))
     starts = _starts(motion)
     ends = np.append(starts[1:], len(motion)) - 1
     within = np.arange(len(motion)) - np.repeat(starts, np.diff(np.append(starts, len(motion))))
-    kept = within % every == 0
-    kept[ends] = True
-    return np.flatnonzero(kept)
+    is_kept = within % stride == 0
+    is_kept[ends] = True
+    return np.flatnonzero(is_kept)
 
 
 class Bytes:
@@ -165,21 +165,21 @@ class Bytes:
     def add(self, values: NDArray[Any], kind: str) -> dict[str, Any]:
         """Put in values as little-endian numbers of a kind of numpy; where they are, for the page."""
         data = np.ascontiguousarray(values, dtype=np.dtype(kind).newbyteorder("<")).tobytes()
-        place = {"at": self._size, "count": int(values.size), "kind": kind}
+        entry = {"at": self._size, "count": int(values.size), "kind": kind}
         data += b"\0" * (-len(data) % 4)
         self._parts.append(data)
         self._size += len(data)
-        return place
+        return entry
 
     def text(self) -> str:
         """All of them, in base64."""
         return base64.b64encode(b"".join(self._parts)).decode("ascii")
 
 
-def packed(of: Shown, into: Bytes) -> dict[str, Any]:
+def packed(path_rows: Shown, into: Bytes) -> dict[str, Any]:
     """The rows as bytes; where they are and how to read them."""
-    low, step = of.box
-    rows, motion = of.rows, of.motion
+    low, step = path_rows.box
+    rows, motion = path_rows.rows, path_rows.motion
     return {
         "rows": len(rows),
         "low": low.tolist(),
@@ -188,50 +188,51 @@ def packed(of: Shown, into: Bytes) -> dict[str, Any]:
         "build": into.add(np.rint(motion.build[rows] * _UNIT), "i2"),
         "tool": into.add(np.rint(motion.tool[rows] * _UNIT), "i2"),
         "laid": into.add(_deposited(motion, rows), "u1"),
-        "time": into.add(of.times, "f4"),
+        "time": into.add(path_rows.times, "f4"),
         "point": into.add(motion.point[rows], "u4"),
-        "blocks": of.blocks(),
+        "blocks": path_rows.blocks(),
         "columns": [
-            {**_column(one, into), **_coloured(one, _deposited(motion, rows))} for one in of.columns
+            {**_column(column, into), **_coloured(column, _deposited(motion, rows))}
+            for column in path_rows.columns
         ],
-        "axes": [_column(one, into) for one in of.axes],
+        "axes": [_column(column, into) for column in path_rows.axes],
     }
 
 
 def _deposited(motion: Motion, rows: Integers) -> Mask:
     """(k,) whether the way to a row, from the one shown before, is laid."""
-    found: Mask = motion.deposit[rows] & (motion.point[rows] > 0)
-    return found
+    deposited: Mask = motion.deposit[rows] & (motion.point[rows] > 0)
+    return deposited
 
 
 def _coloured(column: Column, deposited: Mask) -> dict[str, float]:
     """The least and the most value of what is laid, between which colours go."""
     values = column.values[deposited & np.isfinite(column.values)]
-    least, most = (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)
-    return {"least": least, "most": most}
+    low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)
+    return {"least": low, "most": high}
 
 
 def _column(column: Column, into: Bytes) -> dict[str, Any]:
-    known = np.isfinite(column.values)
+    finite = np.isfinite(column.values)
     low, high = (
-        (float(column.values[known].min()), float(column.values[known].max()))
-        if known.any()
+        (float(column.values[finite].min()), float(column.values[finite].max()))
+        if finite.any()
         else (0.0, 0.0)
     )
     if high - low <= _ROUND * max(1.0, abs(high)):
         high = low
     step = (high - low) / STEPS if high > low else 1.0
-    whole = np.where(known, np.rint((np.where(known, column.values, low) - low) / step), NONE)
+    levels = np.where(finite, np.rint((np.where(finite, column.values, low) - low) / step), NONE)
     return {
         "name": column.name,
         "unit": column.unit,
         "low": low,
         "high": high,
-        "values": into.add(whole, "u2"),
+        "values": into.add(levels, "u2"),
     }
 
 
-_HERE = Path(__file__).resolve().parent
+_FOLDER = Path(__file__).resolve().parent
 _SCRIPTS = ("camera.js", "pieces.js", "drawing.js", "viewer.js")
 _MOST_TRIANGLES = 30_000  # of the bodies around the path
 _SHADES = 32
@@ -260,21 +261,23 @@ class Turned:
     data: str
 
 
-def turned(of: Shown, toolpath: Toolpath, width: float, platform: float | None) -> Turned:
+def build_viewer(
+    path_rows: Shown, toolpath: Toolpath, width: float, platform: float | None
+) -> Turned:
     """The path of a job with the bodies around it. width: mm, of beads that tell none. platform: its diameter, mm, None
     without one."""
     into = Bytes()
-    facts = packed(of, into)
+    facts = packed(path_rows, into)
     bodies = [*toolpath.surroundings, *([disc(platform, toolpath.frame)] if platform else [])]
-    every = max(1, -(-sum(len(body.triangles) for body in bodies) // _MOST_TRIANGLES))
-    facts["bodies"] = [_body(body, every, into) for body in bodies]
-    facts["box"] = _box(of)
+    stride = max(1, -(-sum(len(body.triangles) for body in bodies) // _MOST_TRIANGLES))
+    facts["bodies"] = [_body(body, stride, into) for body in bodies]
+    facts["box"] = _box(path_rows)
     facts["length"] = units.scale(float(np.abs(facts["box"]).max()), "mm")
     facts["upright"] = toolpath.frame[:3, :3].T.tolist()
     facts["height"] = toolpath.layer_height
     facts["width"] = width
     facts["ramp"] = [shade(k / (_SHADES - 1)) for k in range(_SHADES)]
-    left_out = len(of.motion) - len(of.rows)
+    left_out = len(path_rows.motion) - len(path_rows.rows)
     note = f"; {left_out:,} points between are left out here" if left_out else ""
     caption = f"<figcaption>The path with its beads{note}. Underlined places in the tables are shown here.</figcaption>"
     data = json.dumps(facts, separators=(",", ":")).replace("<", "\\u003c")
@@ -288,14 +291,14 @@ def turned(of: Shown, toolpath: Toolpath, width: float, platform: float | None) 
 @lru_cache(maxsize=1)
 def script() -> str:
     """The script of the page, in a scope of its own."""
-    text = "".join((_HERE / name).read_text(encoding="utf-8") for name in _SCRIPTS)
+    text = "".join((_FOLDER / name).read_text(encoding="utf-8") for name in _SCRIPTS)
     return f"(() => {{\n{text}}})();\n"
 
 
 @lru_cache(maxsize=1)
 def style() -> str:
     """How the element looks."""
-    return (_HERE / "viewer.css").read_text(encoding="utf-8")
+    return (_FOLDER / "viewer.css").read_text(encoding="utf-8")
 
 
 def policy() -> str:
@@ -304,16 +307,16 @@ def policy() -> str:
     return f"default-src 'none'; style-src 'unsafe-inline'; script-src 'sha256-{digest}'"
 
 
-def _body(body: Body, every: int, into: Bytes) -> dict[str, Any]:
+def _body(body: Body, stride: int, into: Bytes) -> dict[str, Any]:
     """A body as bytes, of large ones each so many-th triangle."""
     return {
         "name": body.name,
         "vertices": into.add(body.vertices, "f4"),
-        "triangles": into.add(body.triangles[::every], "u4"),
+        "triangles": into.add(body.triangles[::stride], "u4"),
     }
 
 
-def _box(of: Shown) -> list[list[float]]:
+def _box(path_rows: Shown) -> list[list[float]]:
     """Least and largest corner of what is laid, which the view turns about."""
-    deposited = of.motion.position[of.motion.deposit]
+    deposited = path_rows.motion.position[path_rows.motion.deposit]
     return np.stack([deposited.min(axis=0), deposited.max(axis=0)]).tolist()
