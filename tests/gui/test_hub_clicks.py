@@ -199,7 +199,7 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
         "up to date"
     }
     assert opened.Toolpath.ViewObject.Colouring == "width"
-    assert [scale.title for scale in legend.shown(opened)] == ["joint margin"]
+    assert [scale.title for scale in legend.visible_scales(opened)] == ["joint margin"]
 
 
 def test_without_a_selection_solids_and_hub_are_waited_for(person, hand, blades):
@@ -339,16 +339,18 @@ def test_beads_are_told_by_kind_and_layers_by_solid(person, rotor):
     assert (
         closed.any()
         and not closed.all()
-        and [one for one, _ in scale.classes] == [colouring.CLOSED[0], colouring.OPEN[0]]
+        and [one for one, _ in scale.classes] == [colouring.CLOSED_BEAD[0], colouring.OPEN_BEAD[0]]
     )
-    assert (colours[closed] == colouring.CLOSED[1]).all() and (
-        colours[~closed] == colouring.OPEN[1]
+    assert (colours[closed] == colouring.CLOSED_BEAD[1]).all() and (
+        colours[~closed] == colouring.OPEN_BEAD[1]
     ).all()
     toolpath.ViewObject.Colouring = "kind of bead"
     person.idle()
     person.look()
     person.screenshot("hub_kinds")
-    assert person.screen_pixels(tuple(round(255 * part) for part in colouring.OPEN[1]), 6) > 100
+    assert (
+        person.screen_pixels(tuple(round(255 * part) for part in colouring.OPEN_BEAD[1]), 6) > 100
+    )
     _, scale = colouring.coloured(path, "width", 0.2)
     assert scale.classes == (colouring.NO_WIDTH,)
 

@@ -72,13 +72,15 @@ def test_inspected_by_clicks_undone_saved_and_opened_again(person, hand, part, p
     assert person.field(panel, "DeviationHistogram").isVisible()
     green, yellow = green_and_red(person)
     assert green > 500 and yellow > 100
-    assert [legend._lines((), scale) for scale in legend.shown(document)] == [["deviation, mm"]]
+    assert [legend._lines((), scale) for scale in legend.visible_scales(document)] == [
+        ["deviation, mm"]
+    ]
     person.screenshot("inspection")
     person.press("Ok")
     person.panel_closed()
     person.gui.runCommand("Std_Undo")
     person.idle(0.3)
-    assert document.getObject("Inspection") is None and legend.shown(document) == []
+    assert document.getObject("Inspection") is None and legend.visible_scales(document) == []
     person.gui.runCommand("Std_Redo")
     person.idle(0.3)
     assert min(green_and_red(person)) > 100
@@ -215,7 +217,9 @@ def test_a_predicted_deposit_is_shown_by_a_click_and_grows_as_high(person, hand,
     found = api.result(inspection)
     assert person.field(panel, "DeviationHistogram").isVisible()
     assert int(figures(panel, person)["Points"]) == len(found.deviation)
-    assert [legend._lines((), scale) for scale in legend.shown(document)] == [["deviation, mm"]]
+    assert [legend._lines((), scale) for scale in legend.visible_scales(document)] == [
+        ["deviation, mm"]
+    ]
     person.look()
     shades = {band.text: 255.0 * np.array(band.colour) for band in bands(1.0)}
     pixels = person.picture()

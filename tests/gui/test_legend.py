@@ -25,7 +25,9 @@ def shown(person):
     """The legends to be seen, each as title and unit."""
     document = App.ActiveDocument
     return (
-        [] if document is None else [(scale.title, scale.unit) for scale in legend.shown(document)]
+        []
+        if document is None
+        else [(scale.title, scale.unit) for scale in legend.visible_scales(document)]
     )
 
 
@@ -108,7 +110,7 @@ def test_two_legends_stand_side_by_side_with_their_names(person, toolpath):
     document = toolpath.Document
     second = api.make_toolpath(document, document.Feature, label="Other")
     person.idle()
-    assert [scale.title for scale in legend.shown(document)] == ["layer", "layer"]
+    assert [scale.title for scale in legend.visible_scales(document)] == ["layer", "layer"]
     first, other = toolpath.ViewObject.Proxy.legend, second.ViewObject.Proxy.legend
     assert (first.entry[0], other.entry[0]) == (
         ("Toolpath",),
@@ -134,11 +136,13 @@ def test_local_distances_are_told_by_colour(person, toolpath):
     assert np.isnan(distance[:first]).all() and (colours[:first] == colouring.NONE).all()
     near, far = distance < 4.0 - 1e-6, distance > 6.0 + 1e-6
     assert near.any() and far.any() and scale.below and scale.above and scale.without
-    assert (colours[near] == colouring.TOO_NEAR).all() and (colours[far] == colouring.TOO_FAR).all()
+    assert (colours[near] == colouring.BELOW_COLOUR).all() and (
+        colours[far] == colouring.ABOVE_COLOUR
+    ).all()
     within = (distance > 4.0 + 1e-6) & (distance < 6.0 - 1e-6)
     assert np.array_equal(colours[within], ramp((distance[within] - 4.0) / 2.0))
     assert [number for number, _ in scale.ticks] == pytest.approx([4.0, 4.5, 5.0, 5.5, 6.0])
-    assert scale.least == np.nanmin(distance) and scale.most == np.nanmax(distance)
+    assert scale.lowest == np.nanmin(distance) and scale.highest == np.nanmax(distance)
     _, undisturbed = colouring.coloured(path, "local distance", 0.2)
     assert not (undisturbed.below or undisturbed.above)
 

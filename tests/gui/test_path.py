@@ -144,9 +144,9 @@ def test_each_kind_of_bead_is_told(person, joint_path):
     kinds = ("", "contour", "zigzag", "line", "spiral", "centre", "closing")
     found = [colouring.class_of(dataclasses.replace(bead, kind=kind)) for kind in kinds]
     assert found == [
-        colouring.CLOSED,
-        colouring.CLOSED,
-        *3 * [colouring.OPEN],
+        colouring.CLOSED_BEAD,
+        colouring.CLOSED_BEAD,
+        *3 * [colouring.OPEN_BEAD],
         colouring.CENTRE,
         colouring.CLOSING,
     ]

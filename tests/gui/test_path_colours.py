@@ -48,21 +48,23 @@ def test_joint_paths_are_coloured_by_what_the_machine_has_left(person, joint_pat
     for kind in colouring.JOINT_KINDS:
         vobj.Colouring = kind
         person.idle()
-        assert [one.title for one in legend.shown(document)] == [kind]
+        assert [one.title for one in legend.visible_scales(document)] == [kind]
         person.screenshot(f"joint_path_{kind.replace(' ', '_')}")
 
 
 def test_what_the_machine_cannot_do_has_colours_of_its_own(person):
     values = np.array([np.nan, -0.1, 0.0, 0.5, 1.0, 1.4])
     colours, scale = colouring.by_machine(values, colouring.MARGIN)
-    assert (colours[0] == colouring.UNREACHABLE).all() and (colours[1] == colouring.TOO_NEAR).all()
+    assert (colours[0] == colouring.UNREACHABLE).all() and (
+        colours[1] == colouring.BELOW_COLOUR
+    ).all()
     assert (
         scale.text_at(0) == "joint margin unreachable" and scale.text_at(3) == "joint margin 50 %"
     )
     assert scale.without == "unreachable" and scale.below == "beyond a limit" and not scale.above
     colours, scale = colouring.by_machine(values, colouring.RATIO)
     assert (
-        (colours[5] == colouring.TOO_FAR).all()
+        (colours[5] == colouring.ABOVE_COLOUR).all()
         and scale.above == "faster than it can"
         and not scale.below
     )
@@ -73,7 +75,7 @@ def test_what_the_machine_cannot_do_has_colours_of_its_own(person):
     assert scale.text_at(1) == "condition unreachable"
     scale = colouring.by_machine(np.array([np.nan, -0.2]), colouring.MARGIN)[1]
     assert scale.classes == (
-        ("beyond a limit", colouring.TOO_NEAR),
+        ("beyond a limit", colouring.BELOW_COLOUR),
         ("unreachable", colouring.UNREACHABLE),
     )
     assert scale.ticks == () and scale.text_at(1) == "joint margin -20 %"
@@ -103,7 +105,7 @@ def test_the_legend_of_what_is_out_of_reach_altogether_says_so(person, hemispher
     path = api.make_joint_path(document, toolpath, cell)
     path.ViewObject.Colouring = kind
     person.idle(0.3)
-    (scale,) = legend.shown(document)
+    (scale,) = legend.visible_scales(document)
     assert (
         scale.title == kind
         and scale.ticks == ()

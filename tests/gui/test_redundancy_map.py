@@ -14,9 +14,9 @@ from freecad_am.core.planning.redundancy import curve as spin_curve
 from freecad_am.core.planning.redundancy import map
 from freecad_am.core.planning.redundancy import map as spin_map
 from freecad_am.core.simulation.achievable_feed import speed_ratios
-from freecad_am.gui.path.colouring import NONE, TOO_NEAR
+from freecad_am.gui.path.colouring import BELOW_COLOUR, NONE
 from freecad_am.gui.redundancy_map import tool as docks
-from freecad_am.gui.redundancy_map.cells import FINE
+from freecad_am.gui.redundancy_map.cells import FINE_STRIDE
 from freecad_am.gui.redundancy_map.dock import NAME
 from freecad_am.gui.redundancy_map.drawn.painting import TURN
 from freecad_am.objects.staleness import UP_TO_DATE
@@ -41,7 +41,9 @@ def opened(person, path):
     one = docks._open[0]
     person.until(lambda: one.canvas.painted is not None, "the cells", LONG)
     person.until(
-        lambda: one.board.looked.get(one.draft.branch) == FINE, "the links of the robot", LONG
+        lambda: one.board.looked.get(one.draft.branch) == FINE_STRIDE,
+        "the links of the robot",
+        LONG,
     )
     person.idle(0.2)
     return panel, one
@@ -107,7 +109,7 @@ def test_the_picture_is_what_core_computes(person, hemisphere):
             and (seen[y, x] == 20).all()
         )
         assert hatch or np.abs(seen[y, x] - wanted).max(axis=2).min() <= 3, (row, column)
-    for cells, colour in ((picture.past_limit, TOO_NEAR), (~picture.reachable, NONE)):
+    for cells, colour in ((picture.past_limit, BELOW_COLOUR), (~picture.reachable, NONE)):
         if cells.any():
             assert (canvas.painted.colours[cells] == np.round(255 * np.array(colour))).all()
     assert picture.past_limit.any()
@@ -135,7 +137,7 @@ def test_a_plan_that_moves_seams_is_shown_as_it_runs(person, hemisphere, overlap
     ]
     assert moved
     _, one = opened(person, path)
-    followed = one.draft.followed(live=False)
+    followed = one.draft.evaluate(live=False)
     sums = spin_curve.sums(followed)
     assert (sums.lost, sums.wound) == (0, 0) and sums.margin >= 0.0
     for bead, start, end in zip(planned.beads, one.source.starts, one.source.starts[1:]):
@@ -241,7 +243,7 @@ def test_the_curve_is_dragged_and_becomes_the_plan(person, hemisphere, hand):
     assert moved == pytest.approx(value + 0.5, abs=0.06)  # a pixel or two
     assert use.isEnabled() and len(one.draft.changed) == len(planned)
     person.screenshot("spin_map_dragged")
-    sums = spin_curve.sums(one.draft.followed(False))
+    sums = spin_curve.sums(one.draft.evaluate(False))
     assert one.figures.item(0, 1).text().split()[0] == str(sums.lost)
     wanted = one.draft.coefficients.copy()
     steps = doc.UndoCount
@@ -326,7 +328,7 @@ def test_one_rz_for_all_is_dragged_and_used(person, hemisphere, hand):
     assert one.draft.rz == pytest.approx(np.radians(20) - 0.7, abs=0.06)
     assert np.abs(values_of(one) - one.draft.rz).max() < 1e-6
     wanted = one.draft.rz
-    sums = spin_curve.sums(one.draft.followed(False))
+    sums = spin_curve.sums(one.draft.evaluate(False))
     hand.click(person.field(panel, "use"))
     person.until(lambda: path.Rz != "20.0 deg", "the plan", LONG)
     person.idle(0.3)
@@ -484,7 +486,9 @@ def test_external_axes_go_along_or_stand_across(person, hand, hemisphere, monkey
         lambda: one.board.across == 1 and one.canvas.painted is not None, "e2 across", LONG
     )
     person.until(
-        lambda: one.board.looked.get(one.draft.branch) == FINE, "the links of the robot", LONG
+        lambda: one.board.looked.get(one.draft.branch) == FINE_STRIDE,
+        "the links of the robot",
+        LONG,
     )
     planned = one.source.planned.beads[1].joints[point]
     assert one.board.place(0) == (*one.source.places[1], point)
@@ -557,7 +561,9 @@ def _two_against_each_other(person, hand, one, panel, point):
     box.activated.emit(box.currentIndex())
     person.until(lambda: one.board.up == 0 and one.canvas.painted is not None, "e1 upwards", LONG)
     person.until(
-        lambda: one.board.looked.get(one.draft.branch) == FINE, "the links of the robot", LONG
+        lambda: one.board.looked.get(one.draft.branch) == FINE_STRIDE,
+        "the links of the robot",
+        LONG,
     )
     planned = one.source.planned.beads[1]
     pair, picture = one.board.pair, one.board.pictures[one.draft.branch]

@@ -43,7 +43,7 @@ def test_a_sample_is_there_at_once(person, root, tmp_path, monkeypatch, name):
     assert api.result(document.Program).files
     blue, yellow = person.path_pixels()
     assert blue + yellow > 200, (blue, yellow)
-    assert legend.shown(document)
+    assert legend.visible_scales(document)
     person.screenshot(f"sample_{name}")
 
 

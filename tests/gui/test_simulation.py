@@ -18,7 +18,7 @@ from freecad_am.core.simulation.watch import ISSUE, LIMIT, SINGULAR, SLOWED, TOU
 from freecad_am.gui.simulation import dock as docks
 from freecad_am.gui.simulation import fields, tool
 from freecad_am.gui.simulation.player import run_of
-from freecad_am.gui.simulation.scene import SLOW, WRONG
+from freecad_am.gui.simulation.scene import SLOW_COLOUR, WRONG_COLOUR
 from freecad_am.gui.texts.in_language import link_touches
 from freecad_am.kdl.chain import KdlArm
 from freecad_am.objects.joint_path import Planned
@@ -263,7 +263,7 @@ def test_what_is_wrong_turns_red_and_findings_lead_to_it(person, hemisphere):
     assert simulation.scene.machine.bad[6]
     # on the path, past the limit red, too fast orange
     on_path = np.flatnonzero(simulation.run.motion.deposit)
-    for rows, colour in ((far, WRONG), ([fast], SLOW)):
+    for rows, colour in ((far, WRONG_COLOUR), ([fast], SLOW_COLOUR)):
         assert drawn(simulation, colour)[np.searchsorted(on_path, rows)].all()
     person.field(panel, "next_finding").click()
     simulation.player.go_to_row(len(simulation.run.motion) // 2)
@@ -284,7 +284,7 @@ def test_what_is_near_a_singularity_turns_red(person, hemisphere):
     deposit, near = run.motion.deposit, run.watch.condition < least * (1.0 - 1e-9)
     else_wrong = (run.watch.margin < -1e-6) | (run.watch.touching != -1)
     assert SINGULAR in {finding.kind for finding in run.watch.findings}
-    assert np.array_equal(drawn(simulation, WRONG), (near | else_wrong)[deposit])
+    assert np.array_equal(drawn(simulation, WRONG_COLOUR), (near | else_wrong)[deposit])
     calm = deposit & ~near & ~else_wrong & (run.watch.margin > 1.0)
     row, free = (int(np.flatnonzero(rows)[0]) for rows in (near & ~else_wrong, calm))
     for at, red in ((row, True), (free, False)):

@@ -26,8 +26,8 @@ KINDS = (LAYER, DISTANCE, TILT, SPEED, WIDTH, KIND)
 MARGIN, RATIO, CONDITION = marked("joint margin"), marked("joint speed"), marked("condition")
 JOINT_KINDS = (MARGIN, RATIO, CONDITION, *KINDS)
 UNREACHABLE = (0.90, 0.10, 0.20)
-TOO_NEAR, TOO_FAR, NONE = (0.89, 0.10, 0.16), (0.90, 0.24, 0.84), (0.55, 0.55, 0.57)
-CLOSED, OPEN = (
+BELOW_COLOUR, ABOVE_COLOUR, NONE = (0.89, 0.10, 0.16), (0.90, 0.24, 0.84), (0.55, 0.55, 0.57)
+CLOSED_BEAD, OPEN_BEAD = (
     (marked("contour, or closed"), (0.13, 0.40, 0.80)),
     (marked("fill, or open"), (0.93, 0.55, 0.10)),
 )
@@ -36,15 +36,15 @@ CENTRE, CLOSING = (
     (marked("closes a gap"), (0.80, 0.20, 0.55)),
 )
 _CLASSES = {
-    "contour": CLOSED,
-    "line": OPEN,
-    "zigzag": OPEN,
-    "spiral": OPEN,
+    "contour": CLOSED_BEAD,
+    "line": OPEN_BEAD,
+    "zigzag": OPEN_BEAD,
+    "spiral": OPEN_BEAD,
     "centre": CENTRE,
     "closing": CLOSING,
 }
 NO_WIDTH = (marked("no bead model"), NONE)
-FIRST = marked("first layer")
+FIRST_LAYER = marked("first layer")
 TICKS = 5
 _TOLERANCE = 1e-9
 _ROUNDED = 1e-9  # shares that differ by less are alike
@@ -64,8 +64,8 @@ class Scale:
     low: float
     high: float
     ticks: tuple[tuple[float, str], ...]
-    least: float
-    most: float
+    lowest: float
+    highest: float
     below: str = ""
     above: str = ""
     without: str = ""
@@ -122,15 +122,15 @@ def class_of(bead: Bead) -> tuple[str, Colour]:
     """What a bead is, and its colour: by its kind in a filling, else by whether it closes."""
     if bead.closing:
         return CLOSING
-    return _CLASSES.get(bead.kind, CLOSED if bead.closed else OPEN)
+    return _CLASSES.get(bead.kind, CLOSED_BEAD if bead.closed else OPEN_BEAD)
 
 
 def numbered(toolpath: Toolpath) -> list[int]:
     """The number of each layer, counted from what it stands on: anew where another solid is begun."""
-    found: list[int] = []
+    numbers: list[int] = []
     for layer in toolpath.layers:
-        found.append(0 if layer.first or not found else found[-1] + 1)
-    return found
+        numbers.append(0 if layer.first or not numbers else numbers[-1] + 1)
+    return numbers
 
 
 def _classed(
@@ -140,7 +140,9 @@ def _classed(
     colours = np.repeat(
         np.array([colour for _, colour in classes]), [len(bead) for bead in beads], axis=0
     )
-    present = tuple(one for one in (CLOSED, OPEN, CENTRE, CLOSING, NO_WIDTH) if one in classes)
+    present = tuple(
+        entry for entry in (CLOSED_BEAD, OPEN_BEAD, CENTRE, CLOSING, NO_WIDTH) if entry in classes
+    )
     return colours, Scale(title, "", 0.0, 0.0, (), 0.0, 0.0, classes=present)
 
 
@@ -154,7 +156,7 @@ def automatic(values: Array, title: str, unit: str) -> Scale:
         unit,
         low,
         high,
-        _texts(round_numbers(low, high, least=1.0 if title == LAYER else 0.0)),
+        _texts(round_numbers(low, high, min_step=1.0 if title == LAYER else 0.0)),
         low,
         high,
     )
@@ -163,17 +165,24 @@ def automatic(values: Array, title: str, unit: str) -> Scale:
 def _by_distance(toolpath: Toolpath, band: float) -> tuple[Array, Scale]:
     factor, unit = scale_of(toolpath.layer_height, "mm")
     values = factor * np.concatenate(local_distances(toolpath))
-    known = np.isfinite(values)
+    finite = np.isfinite(values)
     height, title = factor * toolpath.layer_height, DISTANCE
-    if not known.any():
+    if not finite.any():
         scale = Scale(
-            title, unit, height, height, ((height, f"{height:.4g}"),), height, height, without=FIRST
+            title,
+            unit,
+            height,
+            height,
+            ((height, f"{height:.4g}"),),
+            height,
+            height,
+            without=FIRST_LAYER,
         )
         return np.tile(np.array(NONE), (len(values), 1)), scale
     low, high = height * (1.0 - band), height * (1.0 + band)
-    found = values[known]
+    finite_values = values[finite]
     within = 1e-9 * height  # of rounding
-    below, above = known & (values < low - within), known & (values > high + within)
+    below, above = finite & (values < low - within), finite & (values > high + within)
     ticks = _texts(np.linspace(low, high, TICKS if high > low else 1))
     scale = Scale(
         title,
@@ -181,16 +190,16 @@ def _by_distance(toolpath: Toolpath, band: float) -> tuple[Array, Scale]:
         low,
         high,
         ticks,
-        float(found.min()),
-        float(found.max()),
+        float(finite_values.min()),
+        float(finite_values.max()),
         f"< {ticks[0][1]}" if below.any() else "",
         f"> {ticks[-1][1]}" if above.any() else "",
-        "" if known.all() else FIRST,
+        "" if finite.all() else FIRST_LAYER,
         values=values,
     )
-    colours = ramp(scale.share(np.where(known, values, height)))
-    for chosen, colour in ((below, TOO_NEAR), (above, TOO_FAR), (~known, NONE)):
-        colours[chosen] = colour
+    colours = ramp(scale.share(np.where(finite, values, height)))
+    for rows, colour in ((below, BELOW_COLOUR), (above, ABOVE_COLOUR), (~finite, NONE)):
+        colours[rows] = colour
     return colours, scale
 
 
@@ -200,23 +209,23 @@ def by_machine(values: Array, kind: str) -> tuple[Array, Scale]:
     values: (n,) shares, NaN where the machine does not reach the point. Margins and speeds are told in percent; beyond a
     limit, and faster than an axis can, is a colour of its own. Where nothing else is left there is no ramp.
     """
-    known = np.isfinite(values)
-    without = "" if known.all() else marked("unreachable")
+    finite = np.isfinite(values)
+    without = "" if finite.all() else marked("unreachable")
     unit, factor = ("", 1.0) if kind == CONDITION else ("%", 100.0)
-    shown = factor * values
-    below = known & (values < -_ROUNDED) & (kind == MARGIN)
-    above = known & (values > 1.0 + _ROUNDED) & (kind == RATIO)
-    within = known & ~below & ~above
+    scaled = factor * values
+    below = finite & (values < -_ROUNDED) & (kind == MARGIN)
+    above = finite & (values > 1.0 + _ROUNDED) & (kind == RATIO)
+    within = finite & ~below & ~above
     beyond, faster = (
         marked("beyond a limit") if below.any() else "",
         marked("faster than it can") if above.any() else "",
     )
     if within.any():
-        scale = automatic(shown[within], kind, unit)
+        scale = automatic(scaled[within], kind, unit)
     else:
-        only = ((faster, TOO_FAR), (beyond, TOO_NEAR), (without, UNREACHABLE))
+        only = ((faster, ABOVE_COLOUR), (beyond, BELOW_COLOUR), (without, UNREACHABLE))
         scale = Scale(
-            kind, unit, 0.0, 0.0, (), 0.0, 0.0, classes=tuple(one for one in only if one[0])
+            kind, unit, 0.0, 0.0, (), 0.0, 0.0, classes=tuple(entry for entry in only if entry[0])
         )
     scale = replace(
         scale,
@@ -224,11 +233,11 @@ def by_machine(values: Array, kind: str) -> tuple[Array, Scale]:
         above=faster,
         without=without,
         without_colour=UNREACHABLE,
-        values=shown,
+        values=scaled,
     )
-    colours = ramp(scale.share(np.where(within, shown, scale.low)))
-    for chosen, colour in ((below, TOO_NEAR), (above, TOO_FAR), (~known, UNREACHABLE)):
-        colours[chosen] = colour
+    colours = ramp(scale.share(np.where(within, scaled, scale.low)))
+    for rows, colour in ((below, BELOW_COLOUR), (above, ABOVE_COLOUR), (~finite, UNREACHABLE)):
+        colours[rows] = colour
     return colours, scale
 
 
@@ -239,12 +248,12 @@ def unknown(count: int, kind: str, why: str) -> tuple[Array, Scale]:
     )
 
 
-def round_numbers(low: float, high: float, least: float) -> Array:
+def round_numbers(low: float, high: float, min_step: float) -> Array:
     """About TICKS round numbers from low to high, apart by one, two or five times a power of ten, `least` or more."""
-    step = max(least, round_step((high - low) / TICKS, (1.0, 2.0, 5.0, 10.0)))
+    step = max(min_step, round_step((high - low) / TICKS, (1.0, 2.0, 5.0, 10.0)))
     numbers = np.arange(np.ceil(low / step - _TOLERANCE), np.floor(high / step + _TOLERANCE) + 1.0)
-    found: Array = numbers * step + 0.0  # no minus before zero
-    return found
+    rounded: Array = numbers * step + 0.0  # no minus before zero
+    return rounded
 
 
 def _texts(ticks: Array) -> tuple[tuple[float, str], ...]:

@@ -66,11 +66,11 @@ class Row:
         if value != self.box.value():
             self.box.setValue(value)  # which tells
 
-    def set(self, least: int, most: int, value: int) -> None:
+    def set(self, lowest: int, highest: int, value: int) -> None:
         """Bounds and value; tells nobody."""
         for widget in (self.slider, self.box):
             blocked = widget.blockSignals(True)
-            widget.setRange(least, most)
+            widget.setRange(lowest, highest)
             widget.setValue(value)
             widget.blockSignals(blocked)
         hold(self.box)  # as wide as its widest number so far
@@ -129,7 +129,7 @@ class PathForm(QtGui.QWidget):
         column.addWidget(self.facts)
         column.addStretch(1)
 
-    def enable(self, there: bool) -> None:
+    def enable(self, is_enabled: bool) -> None:
         """Whether there is a path to choose something of."""
         for widget in (
             self.controls,
@@ -139,7 +139,7 @@ class PathForm(QtGui.QWidget):
             self.single,
             self.all,
         ):
-            widget.setEnabled(there)
+            widget.setEnabled(is_enabled)
 
     def _choices(self) -> Any:
         lines = QtGui.QVBoxLayout()
@@ -161,13 +161,13 @@ class PathForm(QtGui.QWidget):
         return lines
 
 
-def offer(combo: Any, names: list[str], chosen: int, label: Callable[[str], str] = str) -> None:
+def offer(combo: Any, names: list[str], current: int, label: Callable[[str], str] = str) -> None:
     """Choices of a combo box, changed only where they differ."""
     if [combo.itemData(index) for index in range(combo.count())] != list(names):
         combo.clear()
         for name in names:
             combo.addItem(label(name), name)
-    combo.setCurrentIndex(chosen)
+    combo.setCurrentIndex(current)
 
 
 def _combo(name: str, help: str) -> Any:
@@ -189,29 +189,29 @@ def facts(rows: Rows, row: int) -> str:
     """
     index = rows.bead_of(row)
     bead, layer = rows.bead(index), int(rows.layers[index])
-    first, end = np.searchsorted(rows.layers, [layer, layer + 1])
-    at = row - int(rows.starts[index])
+    start, end = np.searchsorted(rows.layers, [layer, layer + 1])
+    point = row - int(rows.starts[index])
     length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
     time = float((length / bead.speed[1:]).sum())
-    x, y, z = bead.points[at]
-    low, high = rows.of_layers(layer, layer)
-    place = in_user_units(
-        tr("point {} (0 to {}) at {:.2f}, {:.2f}, {:.2f} mm").format(at, len(bead) - 1, x, y, z)
+    x, y, z = bead.points[point]
+    low, high = rows.layer_rows(layer, layer)
+    text = in_user_units(
+        tr("point {} (0 to {}) at {:.2f}, {:.2f}, {:.2f} mm").format(point, len(bead) - 1, x, y, z)
     )
-    if end - first > 1:
-        place = tr("point {} (0 to {}) of the layer, of the bead {}").format(
-            row - low, high - low - 1, place
+    if end - start > 1:
+        text = tr("point {} (0 to {}) of the layer, of the bead {}").format(
+            row - low, high - low - 1, text
         )
     return " · ".join(
         (
             tr("Layer {} (0 to {})").format(layer, rows.layer_count - 1),
             tr("bead {} (0 to {}), {}").format(
-                index - int(first), int(end - first) - 1, _kind(bead)
+                index - int(start), int(end - start) - 1, _kind(bead)
             ),
-            quantity_text(float(bead.speed[max(at, 1)]), "mm/s"),
+            quantity_text(float(bead.speed[max(point, 1)]), "mm/s"),
             in_user_units(tr("{:.4g} mm wide").format(float(rows.width[row]))),
             in_user_units(tr("{:.1f} mm long in {:.1f} s").format(float(length.sum()), time)),
-            place,
+            text,
         )
     )
 
@@ -247,7 +247,7 @@ class PathDock(Follower):
         self._build()
         self.dock.seen, self.dock.closed = self.fill, self._closed
         path_view.listen(lambda view: self.fill())
-        path_view.listen_to_clicks(self.dock.isVisible, self._picked)
+        path_view.listen_to_clicks(self.dock.isVisible, self._follow_click)
         watch.listen_to_language(self._speak)
         App.addDocumentObserver(self)
         Gui.Selection.addObserver(self)
@@ -276,10 +276,10 @@ class PathDock(Follower):
         self.form.directions.clicked.connect(
             lambda *_: self._set("ShowDirections", self.form.directions.isChecked())
         )
-        self.form.single.clicked.connect(lambda *_: self._moved(self.form.to))
+        self.form.single.clicked.connect(lambda *_: self._update_range(self.form.to))
         self.form.all.clicked.connect(self._show_all)
         for row in (self.form.from_, self.form.to, self.form.point):
-            row.moved = self._moved
+            row.moved = self._update_range
 
     # ---- what is looked at
 
@@ -302,14 +302,14 @@ class PathDock(Follower):
 
     def _object(self) -> Any:
         paths = _paths()
-        seen = [obj for obj in paths if obj.ViewObject.Visibility]
+        visible = [obj for obj in paths if obj.ViewObject.Visibility]
         if self.target is not None and self.target[0] in App.listDocuments():
-            found = App.getDocument(self.target[0]).getObject(self.target[1])
-            if _is_path(found) and (found.ViewObject.Visibility or not seen):
-                return found
-        found = (seen or paths)[-1] if paths else None
-        self.target = None if found is None else (found.Document.Name, found.Name)
-        return found
+            path = App.getDocument(self.target[0]).getObject(self.target[1])
+            if _is_path(path) and (path.ViewObject.Visibility or not visible):
+                return path
+        path = (visible or paths)[-1] if paths else None
+        self.target = None if path is None else (path.Document.Name, path.Name)
+        return path
 
     def _take(self, obj: Any) -> None:
         """Look at a path: it is made visible, and what lies at the same place is hidden."""
@@ -317,9 +317,9 @@ class PathDock(Follower):
         if not obj.ViewObject.Visibility:
             _show(obj, True)
             planned = getattr(obj, "Toolpath", None)
-            for other in _paths(obj.Document):
-                if other is planned or getattr(other, "Toolpath", None) is obj:
-                    _show(other, False)
+            for path in _paths(obj.Document):
+                if path is planned or getattr(path, "Toolpath", None) is obj:
+                    _show(path, False)
 
     def _chosen(self, index: int) -> None:
         paths = _paths()
@@ -343,11 +343,11 @@ class PathDock(Follower):
         obj, form = self._object(), self.form
         view = None if obj is None else obj.ViewObject.Proxy
         rows = None if view is None else view.rows
-        there = rows is not None and len(rows) > 0
-        form.enable(there)
+        has_rows = rows is not None and len(rows) > 0
+        form.enable(has_rows)
         paths = _paths()
         offer(form.choice, [path.Label for path in paths], paths.index(obj) if obj in paths else -1)
-        if not there:
+        if not has_rows:
             form.facts.show_text(
                 tr("There is no path to show yet: make a toolpath or a joint path.")
                 if obj is None
@@ -359,35 +359,37 @@ class PathDock(Follower):
             names = vobj.getEnumerationsOfProperty(name)
             offer(combo, names, names.index(getattr(vobj, name)), translated)
         form.directions.setChecked(vobj.ShowDirections)
-        first, last, count = view.shown or (0, rows.layer_count - 1, None)
-        low, high = rows.of_layers(last, last)
-        form.from_.set(0, rows.layer_count - 1, first)
-        form.to.set(0, rows.layer_count - 1, last)
+        from_layer, to_layer, count = view.shown or (0, rows.layer_count - 1, None)
+        low, high = rows.of_layers(to_layer, to_layer)
+        form.from_.set(0, rows.layer_count - 1, from_layer)
+        form.to.set(0, rows.layer_count - 1, to_layer)
         row = max(low, (high if count is None else low + count) - 1)
         form.point.set(0, max(high - low - 1, 0), row - low)
         text = "" if view.scale is None or view.scale.title == LAYER else view.scale.text_at(row)
         form.facts.show_text(" · ".join(filter(None, (text, facts(rows, row)))))
 
-    def _moved(self, row: Row) -> None:
+    def _update_range(self, row: Row) -> None:
         view, form = self.view(), self.form
         if self.filling or view is None or view.rows is None:
             return
-        first, last = form.from_.value(), form.to.value()
+        from_layer, to_layer = form.from_.value(), form.to.value()
         if form.single.isChecked():
-            first = last = first if row is form.from_ else last
-        elif first > last:
-            first, last = (first, first) if row is form.from_ else (last, last)
+            from_layer = to_layer = from_layer if row is form.from_ else to_layer
+        elif from_layer > to_layer:
+            from_layer, to_layer = (
+                (from_layer, from_layer) if row is form.from_ else (to_layer, to_layer)
+            )
         count = (
             form.point.value() + 1
             if row is form.point and form.point.value() < form.point.most()
             else None
         )
-        whole = (first, last, count) == (0, view.rows.layer_count - 1, None)
-        self._show(view, None if whole else (first, last, count))
+        is_complete = (from_layer, to_layer, count) == (0, view.rows.layer_count - 1, None)
+        self._show(view, None if is_complete else (from_layer, to_layer, count))
 
-    def _show(self, view: PathView, shown: tuple[int, int, int | None] | None) -> None:
+    def _show(self, view: PathView, stretch: tuple[int, int, int | None] | None) -> None:
         """Show a stretch of a path, and in the fields what it is."""
-        view.show(shown)
+        view.show(stretch)
         self.fill()
         redraw.views_with_fields(view.obj.Document.Name)
 
@@ -405,7 +407,7 @@ class PathDock(Follower):
                 if view.shown is not None:
                     view.show(None)
 
-    def _picked(self, view: PathView, row: int) -> None:
+    def _follow_click(self, view: PathView, row: int) -> None:
         """A point of a path was clicked in the 3D view: all up to it is shown."""
         rows, obj = view.rows, view.obj
         if rows is None or row >= len(rows):
@@ -413,8 +415,8 @@ class PathDock(Follower):
         self.target = (obj.Document.Name, obj.Name)
         layer = int(rows.layers[rows.bead_of(row)])
         begin = 0 if view.shown is None else min(view.shown[0], layer)
-        first = layer if self.form.single.isChecked() else begin
-        self._show(view, (first, layer, row + 1 - rows.of_layers(layer, layer)[0]))
+        start = layer if self.form.single.isChecked() else begin
+        self._show(view, (start, layer, row + 1 - rows.layer_rows(layer, layer)[0]))
 
     def go_to(self, obj: Any, layer: int, bead: int | None, point: int | None) -> None:
         """Open, and show a path up to a point of a bead of a layer, counted from 0; the layer alone where these are None."""
@@ -427,7 +429,7 @@ class PathDock(Follower):
         if bead is not None and bead < len(beads):
             start, end = rows.starts[beads[bead]], rows.starts[beads[bead] + 1]
             row = int(min(start + (point or 0), end - 1))
-        self._picked(obj.ViewObject.Proxy, row)
+        self._follow_click(obj.ViewObject.Proxy, row)
 
     def _set(self, name: str, value: Any) -> None:
         view = self.view()
@@ -439,17 +441,15 @@ class PathDock(Follower):
 
     def addSelection(self, document: str, name: str, *_: Any) -> None:
         """Something was selected."""
-        found = (
-            App.getDocument(document).getObject(name) if document in App.listDocuments() else None
-        )
-        if _is_path(found) and found.ViewObject.Visibility:
+        obj = App.getDocument(document).getObject(name) if document in App.listDocuments() else None
+        if _is_path(obj) and obj.ViewObject.Visibility:
             self.target = (document, name)
             self.fill()
 
 
 def _show(obj: Any, visible: bool) -> None:
     """Show or hide a path; to look at one does not count as a change of the document."""
-    groups = [one for one in obj.InListRecursive if GROUP_TOUCHED in one.PropertiesList]
+    groups = [parent for parent in obj.InListRecursive if GROUP_TOUCHED in parent.PropertiesList]
     changing = [(obj, VISIBILITY), (obj.ViewObject, VISIBILITY)]
     changing += [(group, GROUP_TOUCHED) for group in groups]
     for holder, name in changing:
@@ -475,15 +475,15 @@ _dock: PathDock | None = None
 
 def show(obj: Any = None) -> None:
     """Open the dock, of a path, of the selected one or that of the selected job or stage, or else of what is to be seen."""
-    _made().open(obj or next(filter(_is_path, job_selection()), None))
+    _get_dock().open(obj or next(filter(_is_path, job_selection()), None))
 
 
 def go_to(obj: Any, layer: int, bead: int | None, point: int | None) -> None:
     """Open the dock, and show a path up to a place, counted from 0."""
-    _made().go_to(obj, layer, bead, point)
+    _get_dock().go_to(obj, layer, bead, point)
 
 
-def _made() -> PathDock:
+def _get_dock() -> PathDock:
     global _dock
     if _dock is None:
         _dock = PathDock()

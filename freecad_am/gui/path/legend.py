@@ -23,7 +23,7 @@ from ..colours import ramp
 from ..nodes.lines import unshaded
 from ..preferences import watch
 from ..texts.in_language import tr, translated
-from .colouring import DISTANCE, TOO_FAR, TOO_NEAR, Scale
+from .colouring import ABOVE_COLOUR, BELOW_COLOUR, DISTANCE, Scale
 
 _FINE = 0.01  # mm; distances that differ by less are told to 1e-5 mm
 _MARGIN, _PAD, _BAR_WIDTH, _BAR_HEIGHT, _STEPS = 10, 9, 16, 150, 150
@@ -99,10 +99,10 @@ class Legend:
 
 
 def _look(legend: weakref.ref[Legend], action: Any) -> None:
-    there = legend()
+    target = legend()
     # the camera is not a node of the scene: rays of the mouse must not go through it
-    if there is not None and action.isOfType(coin.SoGLRenderAction.getClassTypeId()):
-        there.camera.doAction(action)
+    if target is not None and action.isOfType(coin.SoGLRenderAction.getClassTypeId()):
+        target.camera.doAction(action)
 
 
 def _picture(entry: Entry, left: int) -> Any:
@@ -135,9 +135,11 @@ def _lines(names: tuple[str, ...], scale: Scale) -> list[str]:
 
 
 def _foot(scale: Scale) -> str:
-    decimals = 3 if scale.most - scale.least > _FINE else 5
+    decimals = 3 if scale.highest - scale.lowest > _FINE else 5
     return (
-        f"{scale.least:.{decimals}f} … {scale.most:.{decimals}f}" if scale.title == DISTANCE else ""
+        f"{scale.lowest:.{decimals}f} … {scale.highest:.{decimals}f}"
+        if scale.title == DISTANCE
+        else ""
     )
 
 
@@ -165,10 +167,10 @@ def _width(names: tuple[str, ...], scale: Scale) -> int:
 def _height(names: tuple[str, ...], scale: Scale) -> int:
     if scale.classes:
         return 2 * _PAD + (len(_lines(names, scale)) + len(scale.classes)) * (_line() + 3)
-    more = [scale.below, scale.above, scale.without, _foot(scale)]
+    notes = [scale.below, scale.above, scale.without, _foot(scale)]
     return (
         2 * _PAD
-        + (len(_lines(names, scale)) + sum(map(bool, more))) * (_line() + 3)
+        + (len(_lines(names, scale)) + sum(map(bool, notes))) * (_line() + 3)
         + _BAR_HEIGHT
         + _line()
     )
@@ -185,7 +187,7 @@ def _draw(painter: Any, names: tuple[str, ...], scale: Scale) -> None:
     if scale.classes:
         return
     if scale.above:
-        _swatch(painter, left, top, TOO_FAR, scale.above)
+        _swatch(painter, left, top, ABOVE_COLOUR, scale.above)
         top += line + 3
     top += line // 2
     shares = np.linspace(1.0, 0.0, _STEPS) if scale.high > scale.low else np.full(_STEPS, 0.5)
@@ -199,7 +201,7 @@ def _draw(painter: Any, names: tuple[str, ...], scale: Scale) -> None:
         _text(painter, left + _BAR_WIDTH + 8, down - line // 2, text)
     painter.setRenderHint(QtGui.QPainter.Antialiasing, True)
     top += _BAR_HEIGHT + line // 2 + 3
-    for text, colour in ((scale.below, TOO_NEAR), (scale.without, scale.without_colour)):
+    for text, colour in ((scale.below, BELOW_COLOUR), (scale.without, scale.without_colour)):
         if text:
             _swatch(painter, left, top, colour, text)
             top += line + 3
@@ -217,7 +219,7 @@ def _text(painter: Any, left: int, top: int, text: str) -> None:
 
 
 def _colour(colour: Any) -> Any:
-    return QtGui.QColor.fromRgbF(*(float(part) for part in colour))
+    return QtGui.QColor.fromRgbF(*(float(channel) for channel in colour))
 
 
 # ---- which paths show theirs
@@ -248,20 +250,20 @@ def _renew() -> None:
 
 def _arrange(document: Any) -> None:
     """Show the legends of what is to be seen in a document side by side, with names where there are several."""
-    seen = []
+    visible = []
     for obj in document.Objects:
         view = getattr(obj.ViewObject, "Proxy", None)
         if isinstance(getattr(view, "legend", None), Legend):
             if view.scale is not None and obj.ViewObject.Visibility and obj.ViewObject.ShowLegend:
-                seen.append((obj.Label, view))
+                visible.append((obj.Label, view))
             else:
                 view.legend.hide()
     left = 0
-    for label, view in seen:
-        left += view.legend.show(((label,) if len(seen) > 1 else (), view.scale), left)
+    for label, view in visible:
+        left += view.legend.show(((label,) if len(visible) > 1 else (), view.scale), left)
 
 
-def shown(document: Any) -> list[Scale]:
+def visible_scales(document: Any) -> list[Scale]:
     """The scales whose legends are to be seen in a document."""
     legends = [
         getattr(getattr(obj.ViewObject, "Proxy", None), "legend", None) for obj in document.Objects

@@ -50,11 +50,11 @@ class ClickNode:
 
     def __init__(
         self,
-        wanted: Callable[[], bool],
-        seen: Callable[[], tuple[Array, float, float]],
+        is_active: Callable[[], bool],
+        visible_points: Callable[[], tuple[Array, float, float]],
         clicked: Callable[[int], None],
     ) -> None:
-        self.wanted, self.seen, self.clicked = wanted, seen, clicked
+        self.wanted, self.seen, self.clicked = is_active, visible_points, clicked
         self.node = coin.SoEventCallback()
         # pivy never gives back what it is handed here, so that is no more than a weak reference
         self.node.addEventCallback(
@@ -70,22 +70,22 @@ class ClickNode:
         ):
             self._wait(_sight(node.getAction()), _pair(event.getPosition()), QtGui.QCursor.pos())
 
-    def _wait(self, sight: Sight, place: Array, start: Any) -> None:
+    def _wait(self, sight: Sight, position: Array, start: Any) -> None:
         """Until the button is let go; a mouse that has moved by then has turned the view, or drawn a frame."""
         if (QtGui.QCursor.pos() - start).manhattanLength() > STILL:
             return
         if QtGui.QApplication.mouseButtons() & QtCore.Qt.LeftButton:
-            QtCore.QTimer.singleShot(LOOK_EVERY, lambda: self._wait(sight, place, start))
+            QtCore.QTimer.singleShot(LOOK_EVERY, lambda: self._wait(sight, position, start))
             return
-        found = nearest(*self.seen(), sight, place)
-        if found is not None:
-            self.clicked(found)
+        number = nearest(*self.seen(), sight, position)
+        if number is not None:
+            self.clicked(number)
 
 
 def _event(listener: weakref.ref[ClickNode], node: Any) -> None:
-    there = listener()
-    if there is not None:
-        there.event(node)
+    target = listener()
+    if target is not None:
+        target.event(node)
 
 
 def _sight(action: Any) -> Sight:
@@ -95,7 +95,9 @@ def _sight(action: Any) -> Sight:
     placed.apply(action.getCurPath())
     # held by names: pivy frees what they are read from
     model, screen, toward = placed.getMatrix(), volume.getMatrix(), volume.getProjectionDirection()
-    model, screen, toward = (np.array(one.getValue(), float) for one in (model, screen, toward))
+    model, screen, toward = (
+        np.array(matrix.getValue(), float) for matrix in (model, screen, toward)
+    )
     return Sight(model, screen, _pair(region.getViewportSizePixels()), toward)
 
 
@@ -104,25 +106,27 @@ def _pair(short: Any) -> Array:
     return np.array([short[0], short[1]], float)
 
 
-def nearest(points: Array, reach: float, width: float, sight: Sight, place: Array) -> int | None:
+def nearest(points: Array, reach: float, width: float, sight: Sight, position: Array) -> int | None:
     """The number of the point that is meant by a place on the screen (2,), px from its lower left; None where none is near.
 
     points: (n, 3). reach: mm about them that belongs to them. width: mm by which points may lie behind the foremost one,
     nearly.
     """
     world = points @ sight.to_world[:3, :3] + sight.to_world[3, :3]
-    shown = world @ sight.to_screen[:3] + sight.to_screen[3]
+    projected = world @ sight.to_screen[:3] + sight.to_screen[3]
     with np.errstate(divide="ignore", invalid="ignore"):
-        flat = 0.5 * (shown[:, :2] / shown[:, 3:] + 1.0) * sight.size
-    away = np.linalg.norm(flat - place, axis=1)
+        flat = 0.5 * (projected[:, :2] / projected[:, 3:] + 1.0) * sight.size
+    distance = np.linalg.norm(flat - position, axis=1)
     with np.errstate(divide="ignore"):
-        size = reach * 0.5 * sight.size[1] * np.linalg.norm(sight.to_screen[:3, 1]) / shown[:, 3]
-    near = np.flatnonzero((away <= np.maximum(REACH_PX, size)) & (shown[:, 3] > 0.0))
-    if not len(near):
+        size = (
+            reach * 0.5 * sight.size[1] * np.linalg.norm(sight.to_screen[:3, 1]) / projected[:, 3]
+        )
+    candidates = np.flatnonzero((distance <= np.maximum(REACH_PX, size)) & (projected[:, 3] > 0.0))
+    if not len(candidates):
         return None
-    depth = world[near] @ sight.toward
-    front = near[depth <= depth.min() + DEEP * width]
-    return int(front[np.argmin(away[front])])
+    depth = world[candidates] @ sight.toward
+    front = candidates[depth <= depth.min() + DEEP * width]
+    return int(front[np.argmin(distance[front])])
 
 
 LINES, TUBES = marked("lines"), marked("tubes")
@@ -180,7 +184,7 @@ class PathView(StageView):
         """Colours of all points. Raises InputError while undo brings back a result in parts."""
         raise NotImplementedError
 
-    def limited(self, first: int, end: int) -> None:
+    def limited(self, start: int, end: int) -> None:
         """Rows from `first` to before `end` are shown: show of what else is drawn what goes with them."""
 
     # ---- of the stage's view
@@ -188,7 +192,9 @@ class PathView(StageView):
     def scene(self, root: Any) -> None:
         self.path, self.legend = PathNodes(), legend.Legend()
         self.clicks = ClickNode(
-            lambda: any(wanted() for wanted, _ in _choosers), self._seen, self._clicked
+            lambda: any(is_active() for is_active, _ in _choosers),
+            self._visible_points,
+            self._clicked,
         )
         root.addChild(self.clicks.node)
         root.addChild(self.path.node)
@@ -222,16 +228,16 @@ class PathView(StageView):
         legend.renew_soon()
         self.path.style.lineWidth = max(1.0, vobj.LineWidth)
         self.path.look(vobj.Look == TUBES)
-        wanted = (
+        setting = (
             (max(1, vobj.DirectionStep), vobj.DirectionLength.Value)
             if vobj.ShowDirections
             else None
         )
-        if wanted is None:
+        if setting is None:
             self.path.hide_directions()
-        elif wanted != self.path.drawn_directions:
-            self.path.draw_directions(*wanted)
-        tell(self)
+        elif setting != self.path.drawn_directions:
+            self.path.draw_directions(*setting)
+        notify(self)
 
     def onChanged(self, vobj: Any, name: str) -> None:
         """A view property has changed."""
@@ -240,19 +246,19 @@ class PathView(StageView):
             if self.waiting and vobj.Visibility and not vobj.Object.Document.Restoring:
                 self.refresh()
             legend.renew_soon()
-            tell(self)
+            notify(self)
 
     def _colour(self, vobj: Any) -> None:
         """Colour the beads anew where that would be other colours."""
         preferred = preferences.ramp(), preferences.speed_unit(), scale_of(ORDINARY["mm"], "mm")
-        wanted = (self.drawn, vobj.Colouring, *preferred, *self.colours_depend_on(vobj.Object))
-        if self.rows is not None and len(self.rows) and wanted != self.coloured_by:
+        key = (self.drawn, vobj.Colouring, *preferred, *self.colours_depend_on(vobj.Object))
+        if self.rows is not None and len(self.rows) and key != self.coloured_by:
             try:
                 colours, self.scale = self.coloured(vobj.Object, vobj.Colouring)
             except InputError:  # within undo; it is drawn once all is back
                 return
             self.path.paint(colours)
-            self.coloured_by = wanted
+            self.coloured_by = key
 
     def preferences_changed(self) -> None:
         self.style(self.obj.ViewObject)
@@ -269,30 +275,30 @@ class PathView(StageView):
             return 0, 0
         if self.shown is None:
             return 0, len(self.rows)
-        first, end = self.rows.of_layers(*self.shown[:2])
+        start, end = self.rows.layer_rows(*self.shown[:2])
         if self.shown[2] is not None:
-            end = min(end, self.rows.of_layers(self.shown[1], self.shown[1])[0] + self.shown[2])
-        return first, end
+            end = min(end, self.rows.layer_rows(self.shown[1], self.shown[1])[0] + self.shown[2])
+        return start, end
 
-    def show(self, shown: tuple[int, int, int | None] | None) -> None:
+    def show(self, stretch: tuple[int, int, int | None] | None) -> None:
         """Show some layers, and of the last one some points; None for all."""
         rows = self.rows
         if rows is None:
             return
-        if shown is not None:
-            last = min(shown[1], rows.layer_count - 1)
-            shown = (min(shown[0], last), last, shown[2])
-        self.shown = shown
-        first, end = self.stretch()
-        self.path.show(first, end)
-        self.limited(first, end)
+        if stretch is not None:
+            last_layer = min(stretch[1], rows.layer_count - 1)
+            stretch = (min(stretch[0], last_layer), last_layer, stretch[2])
+        self.shown = stretch
+        start, end = self.stretch()
+        self.path.show(start, end)
+        self.limited(start, end)
         for listener in _followers:
             listener(self)
 
-    def reached(self) -> tuple[Array, Array] | None:
+    def last_point(self) -> tuple[Array, Array] | None:
         """The last point (3,) that is shown of a stretch, and the tool axis (3,) there; None where all is shown, or none."""
-        first, end = self.stretch()
-        if self.rows is None or self.shown is None or end <= first:
+        start, end = self.stretch()
+        if self.rows is None or self.shown is None or end <= start:
             return None
         index = self.rows.bead_of(end - 1)
         bead, row = self.rows.bead(index), end - 1 - int(self.rows.starts[index])
@@ -300,21 +306,21 @@ class PathView(StageView):
 
     # ---- clicks
 
-    def _seen(self) -> tuple[Array, float, float]:
+    def _visible_points(self) -> tuple[Array, float, float]:
         """The points that are shown, of tubes in their middle; how far these reach about them, and the width of beads."""
-        first, end = self.stretch()
-        if self.rows is None or end <= first:
+        start, end = self.stretch()
+        if self.rows is None or end <= start:
             return np.zeros((0, 3)), 0.0, 0.0
-        some, width = slice(first, end), float(self.rows.width[first:end].max())
+        rows, width = slice(start, end), float(self.rows.width[start:end].max())
         if not self.path.as_tubes:
-            return self.rows.points[some], 0.0, width
-        height = self.rows.height[some]
-        middle = self.rows.points[some] + 0.5 * height[:, None] * self.rows.build[some]
+            return self.rows.points[rows], 0.0, width
+        height = self.rows.height[rows]
+        middle = self.rows.points[rows] + 0.5 * height[:, None] * self.rows.build[rows]
         return middle, 0.5 * max(width, float(height.max())), width
 
     def _clicked(self, number: int) -> None:
-        for wanted, choose in _choosers:
-            if wanted():
+        for is_active, choose in _choosers:
+            if is_active():
                 choose(self, self.stretch()[0] + number)
 
 
@@ -327,9 +333,11 @@ _listeners: list[Callable[[PathView], None]] = []
 _followers: list[Callable[[PathView], None]] = []
 
 
-def listen_to_clicks(wanted: Callable[[], bool], choose: Callable[[PathView, int], None]) -> None:
+def listen_to_clicks(
+    is_active: Callable[[], bool], choose: Callable[[PathView, int], None]
+) -> None:
     """Call `choose` with a row of a path when that is clicked in a 3D view, as long as `wanted`."""
-    _choosers.append((wanted, choose))
+    _choosers.append((is_active, choose))
 
 
 def listen(listener: Callable[[PathView], None]) -> None:
@@ -342,7 +350,7 @@ def listen_to_stretches(follower: Callable[[PathView], None]) -> None:
     _followers.append(follower)
 
 
-def tell(view: PathView) -> None:
+def notify(view: PathView) -> None:
     """A path was drawn, changed, shown or hidden."""
     for listener in _listeners:
         listener(view)

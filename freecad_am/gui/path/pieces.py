@@ -75,13 +75,13 @@ class Rows:
         """One of the beads. The first one that is told of is read alone; who asks for another looks through them."""
         if self.read_bead is None or "beads" in vars(self):
             return self.beads[index]
-        alone = self._alone
+        alone = self._bead_cache
         if not alone:
             alone[index] = self.read_bead(index)
         return alone[index] if index in alone else self.beads[index]
 
     @cached_property
-    def _alone(self) -> dict[int, Bead]:
+    def _bead_cache(self) -> dict[int, Bead]:
         return {}
 
     @cached_property
@@ -94,29 +94,29 @@ class Rows:
         """Number of layers; there may be some without beads."""
         return int(self.layers[-1]) + 1 if len(self.layers) else 0
 
-    def of_layers(self, first: int, last: int) -> tuple[int, int]:
+    def layer_rows(self, from_layer: int, to_layer: int) -> tuple[int, int]:
         """First row of a layer, and the row after the last of another."""
-        low, high = np.searchsorted(self.layers, [first, last + 1])
+        low, high = np.searchsorted(self.layers, [from_layer, to_layer + 1])
         return int(self.starts[low]), int(self.starts[high])
 
     def bead_of(self, row: int) -> int:
         """The bead that a row belongs to."""
         return min(int(np.searchsorted(self.starts, row, side="right")) - 1, len(self.layers) - 1)
 
-    def counts(self, first: int, end: int) -> Index:
+    def counts(self, start: int, end: int) -> Index:
         """How many rows of each bead lie from `first` to before `end`."""
-        low, high = np.searchsorted(self.starts, [first, end], side="right")
-        return np.diff(np.unique(np.concatenate([[first], self.starts[low:high], [end]])))
+        low, high = np.searchsorted(self.starts, [start, end], side="right")
+        return np.diff(np.unique(np.concatenate([[start], self.starts[low:high], [end]])))
 
     @cached_property
     def cuts(self) -> Index:
         """Rows at which the path is cut into pieces: where beads begin, and within long ones."""
-        found = [0]
+        cuts = [0]
         for start, end in zip(self.starts, self.starts[1:], strict=False):
-            if end - found[-1] > PIECE and start > found[-1]:
-                found.append(int(start))
-            found.extend(range(found[-1] + PIECE, int(end) - PIECE // 2, PIECE))
-        return np.array([*found, len(self)] if len(self) > found[-1] else found, dtype=np.intp)
+            if end - cuts[-1] > PIECE and start > cuts[-1]:
+                cuts.append(int(start))
+            cuts.extend(range(cuts[-1] + PIECE, int(end) - PIECE // 2, PIECE))
+        return np.array([*cuts, len(self)] if len(self) > cuts[-1] else cuts, dtype=np.intp)
 
     # ---- tubes
 
@@ -149,10 +149,10 @@ class Rows:
         count = len(self.sections)
         return 8 if count <= FINER else 6 if count <= FINE else 4
 
-    def tube(self, first: int, end: int) -> tuple[tubes.Mesh, Index]:
+    def tube(self, start: int, end: int) -> tuple[tubes.Mesh, Index]:
         """Tubes from row `first` to before `end`, and the row of each of their sections."""
-        low, high = np.searchsorted(self.sections, [first, end])
-        rows = np.unique(np.concatenate([[first], self.sections[low:high], [end - 1]]))
+        low, high = np.searchsorted(self.sections, [start, end])
+        rows = np.unique(np.concatenate([[start], self.sections[low:high], [end - 1]]))
         bead = np.searchsorted(self.starts, rows, side="right")
         ends = np.append(np.diff(bead) > 0, True)
         across = tubes.Frames(*(column[rows] for column in self.frames))
@@ -224,24 +224,26 @@ class Look:
             self.seen = on
             self.node.whichChild = coin.SO_SWITCH_ALL if on else coin.SO_SWITCH_NONE
 
-    def show(self, first: int, end: int) -> None:
+    def show(self, start: int, end: int) -> None:
         """Draw the rows from `first` to before `end`."""
         self._switch(True)
-        chosen = np.flatnonzero((self.cuts[:-1] >= first) & (self.cuts[:-1] < end))
-        wanted = {int(index): min(self.joined(int(self.cuts[index + 1])), end) for index in chosen}
-        for index in self.drawn.keys() - wanted.keys():
+        indices = np.flatnonzero((self.cuts[:-1] >= start) & (self.cuts[:-1] < end))
+        targets = {
+            int(index): min(self.joined(int(self.cuts[index + 1])), end) for index in indices
+        }
+        for index in self.drawn.keys() - targets.keys():
             self.pieces.getChild(index).whichChild = coin.SO_SWITCH_NONE
-        self.drawn = {index: self._drawn(index, row) for index, row in wanted.items()}
+        self.drawn = {index: self._draw_piece(index, row) for index, row in targets.items()}
         self.ends.removeAllChildren()
-        until = self.joined(int(self.cuts[chosen[0]])) if len(chosen) else end
-        if self.before[0] != (first, until):
-            self.before = (first, until), self._stretch(first, until)
-        rest = self.drawn[int(chosen[-1])][1] if len(chosen) else end
-        for node in (self.before[1], self._stretch(rest, end)):
+        until = self.joined(int(self.cuts[indices[0]])) if len(indices) else end
+        if self.before[0] != (start, until):
+            self.before = (start, until), self._stretch(start, until)
+        rest_start = self.drawn[int(indices[-1])][1] if len(indices) else end
+        for node in (self.before[1], self._stretch(rest_start, end)):
             if node is not None:
                 self.ends.addChild(node)
 
-    def _drawn(self, index: int, row: int) -> tuple[int, int]:
+    def _draw_piece(self, index: int, row: int) -> tuple[int, int]:
         """Switch a piece on, drawn up to a row; the row, and from which row on the rest is to be drawn apart."""
         if self.drawn.get(index, (None,))[0] == row:
             return self.drawn[index]
@@ -256,9 +258,9 @@ class Look:
             row
         )  # a new one draws all of it
 
-    def _stretch(self, first: int, end: int) -> Any:
+    def _stretch(self, start: int, end: int) -> Any:
         assert self.make is not None
-        return self.make(first, end).node if end - first > 1 else None
+        return self.make(start, end).node if end - start > 1 else None
 
 
 class PathNodes:
@@ -300,23 +302,23 @@ class PathNodes:
 
     def paint(self, colours: Array) -> None:
         """colours (n, 3) 0..1 of the points."""
-        whole = np.rint(255.0 * colours).astype(np.uint32)
-        self.colours = whole[:, 0] << 24 | whole[:, 1] << 16 | whole[:, 2] << 8 | 255
-        self.lines.reset(self.rows.cuts, self._lines, self._joined)
-        self.tubes.reset(self.rows.cuts, self._tubes, self._joined)
+        channels = np.rint(255.0 * colours).astype(np.uint32)
+        self.colours = channels[:, 0] << 24 | channels[:, 1] << 16 | channels[:, 2] << 8 | 255
+        self.lines.reset(self.rows.cuts, self._lines, self._join)
+        self.tubes.reset(self.rows.cuts, self._tubes, self._join)
         self.painted = True
         self.show(self.first, self.end)
 
-    def show(self, first: int, end: int) -> None:
+    def show(self, start: int, end: int) -> None:
         """Show the rows from `first` to before `end`."""
-        self.first, self.end = first, end
+        self.first, self.end = start, end
         if not self.painted:
             return
-        shown, other = (self.tubes, self.lines) if self.as_tubes else (self.lines, self.tubes)
-        other.hide()
-        shown.show(first, end)
+        visible, hidden = (self.tubes, self.lines) if self.as_tubes else (self.lines, self.tubes)
+        hidden.hide()
+        visible.show(start, end)
         if self.drawn_directions is not None:
-            self.directions.show(first, end)
+            self.directions.show(start, end)
 
     def look(self, as_tubes: bool) -> None:
         """Draw tubes, or lines."""
@@ -335,10 +337,10 @@ class PathNodes:
         )  # on top of a tube
         tips, feet = (foot + length * self.rows.build).astype(np.float32), foot.astype(np.float32)
 
-        def make(first: int, end: int) -> Piece:
-            chosen = np.arange(-(-first // step) * step, end, step)
-            ends = np.stack([feet[chosen], tips[chosen]], axis=1).reshape(-1, 3)
-            return _line_set(ends, lambda row: np.full(int((chosen < row).sum()), 2), end)
+        def make(start: int, end: int) -> Piece:
+            rows = np.arange(-(-start // step) * step, end, step)
+            ends = np.stack([feet[rows], tips[rows]], axis=1).reshape(-1, 3)
+            return _line_set(ends, lambda row: np.full(int((rows < row).sum()), 2), end)
 
         self.directions.reset(self.rows.cuts, make, lambda row: row)
         self.show(self.first, self.end)
@@ -348,21 +350,21 @@ class PathNodes:
         self.drawn_directions = None
         self.directions.hide()
 
-    def _joined(self, row: int) -> int:
+    def _join(self, row: int) -> int:
         """A piece that ends within a bead goes on to the first point of the next."""
         within = 0 < row < len(self.rows) and row not in self.rows.starts[[self.rows.bead_of(row)]]
         return row + 1 if within else row
 
-    def _lines(self, first: int, end: int) -> Piece:
+    def _lines(self, start: int, end: int) -> Piece:
         return _line_set(
-            self.points[first:end],
-            lambda row: self.rows.counts(first, row),
+            self.points[start:end],
+            lambda row: self.rows.counts(start, row),
             end,
-            self.colours[first:end],
+            self.colours[start:end],
         )
 
-    def _tubes(self, first: int, end: int) -> Piece:
-        mesh, rows = self.rows.tube(first, end)
+    def _tubes(self, begin: int, end: int) -> Piece:
+        mesh, rows = self.rows.tube(begin, end)
         # the triangles by the section they end at, so that a part of the tubes is the first of them
         section = mesh.triangles.max(axis=1) // self.rows.sides
         corners = np.full((len(section), 4), -1, dtype=np.int32)
@@ -390,10 +392,10 @@ class PathNodes:
                 return row
             # what is left to the row, but at least the last segment, which has the face at the end
             start = int(self.rows.starts[self.rows.bead_of(row - 1)])
-            return min(int(rows[max(sections - 1, 0)]), max(start, first, row - 2))
+            return min(int(rows[max(sections - 1, 0)]), max(start, begin, row - 2))
 
         cut(end)
-        return Piece(_apart(shape), cut)
+        return Piece(_separate(shape), cut)
 
 
 def _line_set(points: Any, counts: Callable[[int], Any], end: int, colours: Any = None) -> Piece:
@@ -410,10 +412,10 @@ def _line_set(points: Any, counts: Callable[[int], Any], end: int, colours: Any 
         return row
 
     cut(end)
-    return Piece(_apart(shape), cut)
+    return Piece(_separate(shape), cut)
 
 
-def _apart(shape: Any) -> Any:
+def _separate(shape: Any) -> Any:
     """In a node of its own, which Coin may cache and leave out where it is not in sight."""
     node = coin.SoSeparator()
     node.addChild(shape)

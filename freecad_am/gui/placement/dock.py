@@ -44,15 +44,15 @@ class Form(QtGui.QWidget):
         super().__init__()
         column = QtGui.QVBoxLayout(self)
         self.fields: dict[str, fields.Field] = {}
-        box, more = Fold(tr("Poses to try"), True), Fold(tr("More"), False)
+        box, advanced = Fold(tr("Poses to try"), True), Fold(tr("More"), False)
         current = flat(change_parameters(None, values))
         for row in rows(PlaceParameters):
             field = fields.make(row, current[row.key], None, "", SECTION)
             self.fields[row.key] = field
             heading = f"± {field.heading}" if row.key in SIDES else field.heading
-            (more if row.spec.advanced else box).add(heading, field.widget)
+            (advanced if row.spec.advanced else box).add(heading, field.widget)
         column.addWidget(box.widget)
-        column.addWidget(more.widget)
+        column.addWidget(advanced.widget)
         self.compute = _button(
             "compute", tr("Compute"), tr("Try all poses in the background; can be cancelled")
         )
@@ -68,12 +68,12 @@ class Form(QtGui.QWidget):
         self.key, self.summary = QtGui.QLabel(), QtGui.QLabel()
         self.key.setObjectName("key")
         self.summary.setObjectName("told")
-        for label, most in (
+        for label, lines in (
             (self.key, 1),
             (self.summary, 2),
         ):  # lines, with which what is below stays where it is
             label.setWordWrap(True)
-            label.setMinimumHeight(most * label.fontMetrics().lineSpacing())
+            label.setMinimumHeight(lines * label.fontMetrics().lineSpacing())
             label.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
         self.table = _table()
         buttons = QtGui.QHBoxLayout()
@@ -93,26 +93,28 @@ class Form(QtGui.QWidget):
         self.summary.setText(text)
         set_role(self.summary, INVALID if wrong else PLAIN)
 
-    def tell_colours(self, shown: figures.Coloured | None) -> None:
+    def tell_colours(self, coloured: figures.Coloured | None) -> None:
         """What the colours mean."""
-        if shown is None or shown.least != shown.least:
+        if coloured is None or coloured.lowest != coloured.lowest:
             self.key.setText("")
             return
         self.key.setText(
-            tr("blue {:.4g} … yellow {:.4g}; grey: not feasible").format(shown.least, shown.most)
+            tr("blue {:.4g} … yellow {:.4g}; grey: not feasible").format(
+                coloured.lowest, coloured.highest
+            )
         )
 
-    def fill(self, found: Placed | None, numbers: list[int]) -> None:
+    def fill(self, placed: Placed | None, numbers: list[int]) -> None:
         """The rows of the table."""
-        self.table.setRowCount(0 if found is None else len(numbers))
-        for row, number in enumerate(numbers if found is not None else ()):
-            assert found is not None
-            for column, text in enumerate(figures.texts(found, number)):
+        self.table.setRowCount(0 if placed is None else len(numbers))
+        for row, number in enumerate(numbers if placed is not None else ()):
+            assert placed is not None
+            for column, text in enumerate(figures.texts(placed, number)):
                 item = QtGui.QTableWidgetItem(text)
                 item.setTextAlignment(QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter)
                 self.table.setItem(row, column, item)
         self.table.resizeColumnsToContents()
-        if numbers and found is not None:
+        if numbers and placed is not None:
             self.table.selectRow(0)
 
 
@@ -155,13 +157,13 @@ class Work:
     whether it is an error."""
 
     def __init__(
-        self, form: Any, done: Callable[[Any], None], tell: Callable[[str, bool], None]
+        self, form: Any, on_done: Callable[[Any], None], tell: Callable[[str, bool], None]
     ) -> None:
-        self.done, self.tell = done, tell
+        self.done, self.tell = on_done, tell
         self.background = Background(form)
         self.timer = QtCore.QTimer(form)
         self.timer.setInterval(TELL_EVERY)
-        self.timer.timeout.connect(self._tell)
+        self.timer.timeout.connect(self._show_progress)
 
     @property
     def runs(self) -> bool:
@@ -172,7 +174,7 @@ class Work:
         """Begin it."""
         self.background.start(work, self._show)
         self.timer.start()
-        self._tell()
+        self._show_progress()
 
     def cancel(self) -> None:
         """End it, if it goes on."""
@@ -181,16 +183,16 @@ class Work:
 
     def _show(self, worker: Worker) -> None:
         self.timer.stop()
-        found = None
+        result = None
         try:
-            found = worker.result()
+            result = worker.result()
         except AmError as error:
             self.tell(translated_error(error), True)
         except Cancelled:
             self.tell(tr("Cancelled."), False)
-        self.done(found)
+        self.done(result)
 
-    def _tell(self) -> None:
+    def _show_progress(self) -> None:
         worker = self.background.worker
         if worker is not None:
             share = (
@@ -202,7 +204,7 @@ class Work:
 
 
 NAME = "RoboticAM_Placement"
-WIDE = 380  # pixels, at least
+MIN_WIDTH = 380  # pixels, at least
 REACH_STEP = 150.0  # mm
 FIT = 150  # ms
 
@@ -221,11 +223,13 @@ class PlacementDock:
         self.scroll = QtGui.QScrollArea()
         self.scroll.setWidgetResizable(True)
         self.scroll.setFrameShape(QtGui.QFrame.NoFrame)
-        self.scroll.setMinimumWidth(WIDE)
+        self.scroll.setMinimumWidth(MIN_WIDTH)
         self._build({})
-        self.work = Work(self.scroll, self._judged, lambda text, wrong: self.form.tell(text, wrong))
+        self.work = Work(
+            self.scroll, self._take_poses, lambda text, wrong: self.form.tell(text, wrong)
+        )
         self.reaching = Work(
-            self.scroll, self._reached, lambda text, wrong: self.form.tell(text, wrong)
+            self.scroll, self._take_reach, lambda text, wrong: self.form.tell(text, wrong)
         )
         self.dock.hold(self._title(), self.scroll)
         self.dock.closed = self.close
@@ -252,11 +256,11 @@ class PlacementDock:
 
     def _speak(self) -> None:
         """The window has another language: what is entered and found stays."""
-        values, shown = {}, self.form.reach.isChecked()
+        values, has_reach = {}, self.form.reach.isChecked()
         with contextlib.suppress(AmError):
             values = self.form.values()
         self._build(values)
-        self.form.reach.setChecked(shown)
+        self.form.reach.setChecked(has_reach)
         self.dock.setWindowTitle(self._title())
         self._show()
 
@@ -287,10 +291,10 @@ class PlacementDock:
         self.work.start(lambda: placing.search_poses(parameters))
         self._name_buttons()
 
-    def _judged(self, found: Placed | None) -> None:
-        if found is not None:
-            self.found = found
-            self.numbers = figures.rows(found, str(self.form.fields["best"].value))
+    def _take_poses(self, placed: Placed | None) -> None:
+        if placed is not None:
+            self.found = placed
+            self.numbers = figures.rows(placed, str(self.form.fields["best"].value))
         self._show()
         self._fit()
         self._name_buttons()
@@ -313,13 +317,13 @@ class PlacementDock:
 
         self.reaching.start(work)
 
-    def _reached(self, found: Reach | None) -> None:
-        self.volume = found
-        if found is not None:
+    def _take_reach(self, reach: Reach | None) -> None:
+        self.volume = reach
+        if reach is not None:
             self.form.tell(
                 in_user_units(
                     tr("The robot can be at {} places of a grid of {:.0f} mm.").format(
-                        len(found.places), found.step
+                        len(reach.places), reach.step
                     )
                 )
             )
@@ -357,17 +361,17 @@ class PlacementDock:
         if self.scene is None:
             return
         try:
-            shown = (
+            coloured = (
                 None
                 if self.found is None
                 else figures.coloured(self.found, self.form.colour.currentData())
             )
-            self.scene.show(self.found, shown, self.chosen())
+            self.scene.show(self.found, coloured, self.chosen())
             self.scene.show_reach(self.volume)
         except (RuntimeError, ReferenceError):
             self.end(tr("its view was closed"))
             return
-        self.form.tell_colours(shown)
+        self.form.tell_colours(coloured)
 
     # ---- making it the choice
 

@@ -31,10 +31,10 @@ class Coloured:
     """shown: (m,) numbers of the poses that are drawn, the best of each place. colours: (m, 3). least, most: of the figures
     that colours tell, NaN where there is none."""
 
-    shown: Integers
+    numbers: Integers
     colours: Array
-    least: float
-    most: float
+    lowest: float
+    highest: float
 
 
 def heading(name: str) -> str:
@@ -48,65 +48,67 @@ def _length_unit() -> tuple[float, str]:
     return scale_of(ORDINARY["mm"], "mm")
 
 
-def figure(found: Placed, number: int, name: str) -> float:
+def figure(placed: Placed, number: int, name: str) -> float:
     """One of the figures of a pose as it is shown."""
-    one = found.result_of(number)
+    result = placed.result_of(number)
     return {
-        SHARE: 100.0 * one.share,
-        MARGIN: 100.0 * one.margin,
-        TIME: one.time,
-        CLEARANCE: _length_unit()[0] * one.clearance,
+        SHARE: 100.0 * result.share,
+        MARGIN: 100.0 * result.margin,
+        TIME: result.time,
+        CLEARANCE: _length_unit()[0] * result.clearance,
     }[name]
 
 
-def coloured(found: Placed, name: str) -> Coloured:
+def coloured(placed: Placed, name: str) -> Coloured:
     """The poses coloured by a figure: those that serve from the least to the most, others grey; by their share all of them.
     Of poses at the same place the best one is shown, or the one that serves most."""
-    rank = {number: k for k, number in enumerate(ranked(found, MARGIN))}
+    rank = {number: k for k, number in enumerate(ranked(placed, MARGIN))}
     order = sorted(
-        range(len(found.poses)), key=lambda k: (rank.get(k, len(rank)), -found.judged[k].share, k)
+        range(len(placed.poses)), key=lambda k: (rank.get(k, len(rank)), -placed.judged[k].share, k)
     )
-    places = np.round(found.poses[order, :3], 6)
-    _, first = np.unique(places, axis=0, return_index=True)
-    shown = np.array(order)[np.sort(first)]
-    values = np.array([figure(found, int(number), name) for number in shown])
-    known = np.isfinite(values) & (
-        np.array([found.result_of(int(k)).feasible for k in shown]) | (name == SHARE)
+    positions = np.round(placed.poses[order, :3], 6)
+    _, starts = np.unique(positions, axis=0, return_index=True)
+    numbers = np.array(order)[np.sort(starts)]
+    values = np.array([figure(placed, int(number), name) for number in numbers])
+    is_valid = np.isfinite(values) & (
+        np.array([placed.result_of(int(k)).feasible for k in numbers]) | (name == SHARE)
     )
-    colours = np.tile(GREY, (len(shown), 1))
-    least, most = (
-        (float(values[known].min()), float(values[known].max()))
-        if known.any()
+    colours = np.tile(GREY, (len(numbers), 1))
+    lowest, highest = (
+        (float(values[is_valid].min()), float(values[is_valid].max()))
+        if is_valid.any()
         else (np.nan, np.nan)
     )
-    if known.any():
-        colours[known] = ramp(
-            (values[known] - least) / (most - least) if most > least else np.ones(int(known.sum()))
+    if is_valid.any():
+        colours[is_valid] = ramp(
+            (values[is_valid] - lowest) / (highest - lowest)
+            if highest > lowest
+            else np.ones(int(is_valid.sum()))
         )
-    return Coloured(shown, colours, least, most)
+    return Coloured(numbers, colours, lowest, highest)
 
 
-def rows(found: Placed, best: str) -> list[int]:
+def rows(placed: Placed, best: str) -> list[int]:
     """The poses of the table: the best one, those planned with all points, then the others that serve, the best first."""
-    first = [found.best] if found.best is not None else []
-    return list(dict.fromkeys([*first, *found.proven, *ranked(found, best)]))[:ROWS]
+    leading = [placed.best] if placed.best is not None else []
+    return list(dict.fromkeys([*leading, *placed.proven, *ranked(placed, best)]))[:ROWS]
 
 
-def texts(found: Placed, number: int) -> list[str]:
+def texts(placed: Placed, number: int) -> list[str]:
     """The cells of a row: the pose, its figures, and with how many points it was planned or why it fails."""
     factors = [_length_unit()[0]] * 3 + [1.0] * 3
     pose = [
         significant(factor * float(value), 6)
-        for factor, value in zip(factors, outer(found.pose(number)), strict=True)
+        for factor, value in zip(factors, outer(placed.pose(number)), strict=True)
     ]
-    values = [figure(found, number, name) for name in (MARGIN, TIME, CLEARANCE)]
+    values = [figure(placed, number, name) for name in (MARGIN, TIME, CLEARANCE)]
     cells = [
         format(value, form) if np.isfinite(value) else "–"
         for value, form in zip(values, (".3g", ".0f", ".3g"))
     ]
-    one = found.result_of(number)
-    points = tr("all") if number in found.proven else f"{found.points}"
-    return [*pose, *cells, points if one.feasible else f"{points}: {one.code}"]
+    result = placed.result_of(number)
+    points = tr("all") if number in placed.proven else f"{placed.points}"
+    return [*pose, *cells, points if result.feasible else f"{points}: {result.code}"]
 
 
 def heads() -> list[str]:
@@ -121,24 +123,24 @@ def heads() -> list[str]:
     ]
 
 
-def summed(found: Placed) -> str:
+def summed(placed: Placed) -> str:
     """How many poses serve, in a sentence."""
-    serve = sum(one.feasible for one in found.judged)
+    serve = sum(result.feasible for result in placed.judged)
     text = tr("{} of {} poses are feasible at {} of {} points.").format(
-        serve, len(found.poses), found.points, found.of
+        serve, len(placed.poses), placed.points, placed.of
     )
-    if found.best is None and not serve:
-        most = max(range(len(found.poses)), key=lambda k: found.judged[k].share)
-        one = found.judged[most]
+    if placed.best is None and not serve:
+        index = max(range(len(placed.poses)), key=lambda k: placed.judged[k].share)
+        result = placed.judged[index]
         wrong = (
             tr("no tool rotation reaches the others")
-            if one.code == UNREACHED
-            else translated(one.message)
+            if result.code == UNREACHED
+            else translated(result.message)
         )
-        more = tr("At most {:.0f} % of the points are feasible: {}.").format(
-            100.0 * one.share, wrong
+        reason = tr("At most {:.0f} % of the points are feasible: {}.").format(
+            100.0 * result.share, wrong
         )
-        return f"{text} {more}"
-    if found.best is None:
+        return f"{text} {reason}"
+    if placed.best is None:
         return f"{text} {tr('None of the best is with all points.')}"
     return f"{text} {tr('The best one was planned with all points.')}"

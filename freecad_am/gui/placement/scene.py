@@ -58,22 +58,22 @@ class Cubes:
             self.node.addChild(child)
         self.set(np.zeros((0, 3)), np.zeros((0, 3)), 1.0)
 
-    def set(self, places: Array, colours: Array, size: float) -> None:
+    def set(self, centres: Array, colours: Array, size: float) -> None:
         """places (n, 3) mm, colours (n, 3) 0..1; size: mm, of an edge."""
-        corners = places[:, None] + 0.5 * size * _CORNERS
-        first = 8 * np.arange(len(places))[:, None, None]
-        sides = np.concatenate([first + _SIDES, np.full((len(places), 6, 1), -1)], axis=2)
+        corners = centres[:, None] + 0.5 * size * _CORNERS
+        offsets = 8 * np.arange(len(centres))[:, None, None]
+        sides = np.concatenate([offsets + _SIDES, np.full((len(centres), 6, 1), -1)], axis=2)
         fill(self.coordinates.point, corners.reshape(-1, 3))
         fill(self.colour.diffuseColor, np.repeat(colours, 6, axis=0))
         fill(self.faces.coordIndex, sides.ravel())
         self.choose(None, size)
 
-    def choose(self, place: Array | None, size: float) -> None:
+    def choose(self, centre: Array | None, size: float) -> None:
         """Frame the cube at a place (3,), or none."""
-        if place is None:
+        if centre is None:
             self.frame.set([], [])
             return
-        ends = (np.asarray(place) + 0.6 * size * _CORNERS)[_EDGES]
+        ends = (np.asarray(centre) + 0.6 * size * _CORNERS)[_EDGES]
         self.frame.set(ends.reshape(-1, 3), [2] * len(_EDGES))
 
 
@@ -102,14 +102,14 @@ class Cloud:
             self.node.addChild(child)
         self.set(np.zeros((0, 3)), np.zeros((0, 3)))
 
-    def set(self, places: Array, colours: Any) -> None:
+    def set(self, points: Array, colours: Any) -> None:
         """places (n, 3) mm, colours (n, 3) 0..1."""
-        fill(self.coordinates.point, places)
+        fill(self.coordinates.point, points)
         fill(self.colour.diffuseColor, colours)
-        self.points.numPoints = len(places)
+        self.points.numPoints = len(points)
 
 
-_LARGEST, _SHARE = 120.0, 0.35  # of a cube: mm, and share of the step between places
+_MAX_EDGE_MM, _SHARE = 120.0, 0.35  # of a cube: mm, and share of the step between places
 
 
 class Scene:
@@ -140,7 +140,7 @@ class Scene:
         self.to_view = frames.inverse(self.rest.part)
         self.machine.set(machine_scenery(settings, toolpath, folders))
 
-    def seen(self, moves: str, poses: Array) -> Array:
+    def positions_of(self, moves: str, poses: Array) -> Array:
         """(n, 3) where poses (n, 6) of what is moved are in the view."""
         if moves == POSITIONER:
             links = self.cell.links(self.joints)
@@ -149,27 +149,27 @@ class Scene:
             nozzle = arrangement_of(self.cell.setup).holds_part and moves != PLATFORM
             stands = self.rest.nozzle if nozzle else self.rest.platform
             base = stands @ frames.inverse(frames.bryant(pose_of(self.settings, moves)))
-        places: Array = (self.to_view @ base @ frames.bryant(poses))[:, :3, 3]
-        return places
+        positions: Array = (self.to_view @ base @ frames.bryant(poses))[:, :3, 3]
+        return positions
 
-    def show(self, found: Placed | None, coloured: Coloured | None, chosen: int | None) -> None:
+    def show(self, placed: Placed | None, coloured: Coloured | None, number: int | None) -> None:
         """Draw a cube at each place, the best pose of those there, in its colour."""
-        if found is None or coloured is None:
+        if placed is None or coloured is None:
             self.places = np.zeros((0, 3))
             self.cubes.set(self.places, self.places, 1.0)
             return
-        self.places = self.seen(found.moves, found.poses)
-        self.size = _size(found.poses[:, :3])
-        self.cubes.set(self.places[coloured.shown], coloured.colours, self.size)
-        self.cubes.choose(None if chosen is None else self.places[chosen], self.size)
+        self.places = self.positions_of(placed.moves, placed.poses)
+        self.size = _size(placed.poses[:, :3])
+        self.cubes.set(self.places[coloured.numbers], coloured.colours, self.size)
+        self.cubes.choose(None if number is None else self.places[number], self.size)
 
-    def show_reach(self, found: Reach | None) -> None:
+    def show_reach(self, reach: Reach | None) -> None:
         """Draw the reach of the robot, or none."""
-        if found is None:
+        if reach is None:
             self.cloud.set(np.zeros((0, 3)), np.zeros((0, 3)))
             return
-        places = found.places @ self.to_view[:3, :3].T + self.to_view[:3, 3]
-        self.cloud.set(places, ramp(found.share))
+        points = reach.places @ self.to_view[:3, :3].T + self.to_view[:3, 3]
+        self.cloud.set(points, ramp(reach.share))
 
     def fit(self) -> None:
         """Bring all of it into sight."""
@@ -190,8 +190,8 @@ class Scene:
                 self.view.setCamera(self.camera_text)
 
 
-def _size(places: Array) -> float:
+def _size(positions: Array) -> float:
     """mm, of cubes that leave room between places."""
-    steps = [np.diff(np.unique(np.round(column, 6))) for column in places.T]
-    least = min((float(step.min()) for step in steps if len(step)), default=_LARGEST)
-    return min(_LARGEST, _SHARE * least)
+    steps = [np.diff(np.unique(np.round(column, 6))) for column in positions.T]
+    smallest = min((float(step.min()) for step in steps if len(step)), default=_MAX_EDGE_MM)
+    return min(_MAX_EDGE_MM, _SHARE * smallest)

@@ -20,7 +20,7 @@ KINDS = ("joint path", "toolpath")  # what is placed, the one that tells most fi
 def placement() -> None:
     """Place what is selected, a joint path, a toolpath with a cell, or a program's; where nothing of a job is, the last one
     of the document."""
-    selected = [found for found in map(_path, job_selection()) if found is not None]
+    selected = [path for path in map(_path, job_selection()) if path is not None]
     if not selected and job_named():
         _say(
             tr(
@@ -29,12 +29,12 @@ def placement() -> None:
         )
         return
     paths = [obj for obj in App.ActiveDocument.Objects if _path(obj) is obj]
-    made = sorted(paths, key=lambda obj: -KINDS.index(_kind(obj)))
-    if not selected and not made:
+    candidates = sorted(paths, key=lambda obj: -KINDS.index(_kind(obj)))
+    if not selected and not candidates:
         _say(tr("There is no toolpath with a cell to place; make one first."))
         return
     try:
-        dock.show(selected[0] if selected else made[-1])
+        dock.show(selected[0] if selected else candidates[-1])
     except AmError as error:
         App.Console.PrintWarning(error_line(error))
         Gui.getMainWindow().statusBar().showMessage(translated_error(error), 8000)

@@ -16,7 +16,7 @@ from ...plots.look import DARK, LIGHT, Look, Words
 from .. import colours
 from ..background.worker import Worker
 from ..texts.in_language import marked, sentence, tr, translated
-from .reading import Range, moved, text_at, zoomed
+from .reading import Range, shift_range, text_at, zoomed
 
 if TYPE_CHECKING:
     from ...plots.draw import Place
@@ -92,7 +92,7 @@ WORDS = (
 )
 
 
-def of_frames() -> Words:
+def frame_words() -> Words:
     """What is written in frames."""
     return Words(
         layer=tr("layer {}"),
@@ -106,7 +106,7 @@ def in_words(picture: Picture, user_units: bool = True) -> Picture:
     """A picture in the language of the window; what is a name, such as that of an axis, stays. user_units: whether
     quantities in its texts are in the user's units."""
 
-    def of_chart(chart: Chart) -> Chart:
+    def translate_chart(chart: Chart) -> Chart:
         return replace(
             chart,
             title=translated(chart.title, user_units),
@@ -121,13 +121,15 @@ def in_words(picture: Picture, user_units: bool = True) -> Picture:
         )
 
     return replace(
-        picture, charts=tuple(map(of_chart, picture.charts)), lacking=sentence(picture.lacking)
+        picture,
+        charts=tuple(map(translate_chart, picture.charts)),
+        lacking=sentence(picture.lacking),
     )
 
 
 LOOK_EVERY = 20  # ms
 STEP = 1.25  # of the wheel and of buttons
-LEAST = 4  # pixels of a drag that is one
+MIN_DRAG = 4  # pixels of a drag that is one
 PER_CHART = 92  # pixels
 
 
@@ -188,7 +190,7 @@ class Canvas(QtGui.QWidget):
 
     # ---- what is looked at
 
-    def whole(self) -> None:
+    def show_all(self) -> None:
         """Show all there is."""
         self.across, self.up = {}, {}
         self._changed()
@@ -197,12 +199,12 @@ class Canvas(QtGui.QWidget):
         """Show 1 / factor of what is shown, about a place at `share` of the frame; of y with `up`, else of x."""
         if self.drawn is None:
             return
-        place, number = self.drawn.places[chart], self._across_of(chart)
+        frame, number = self.drawn.places[chart], self._across_of(chart)
         if up:
-            self.up[chart] = zoomed(self.up.get(chart, place.up), factor, share, None)
+            self.up[chart] = zoomed(self.up.get(chart, frame.up), factor, share, None)
         else:
             self.across[number] = zoomed(
-                self.across.get(number, place.across), factor, share, self._most(chart)
+                self.across.get(number, frame.across), factor, share, self._most(chart)
             )
         self._changed()
 
@@ -213,7 +215,7 @@ class Canvas(QtGui.QWidget):
         """All there is across."""
         assert self.drawn is not None
         charts = self.drawn.charts if self.drawn.shared else (self.drawn.charts[chart],)
-        ends = [one.across() for one in charts]
+        ends = [entry.across() for entry in charts]
         return min(low for low, _ in ends), max(high for _, high in ends)
 
     def _changed(self) -> None:
@@ -224,7 +226,7 @@ class Canvas(QtGui.QWidget):
 
     def draw(self) -> None:
         """Draw what is to be shown, as soon as what is drawn now is done."""
-        if self.picture is None or self.width() < LEAST or self.height() < LEAST:
+        if self.picture is None or self.width() < MIN_DRAG or self.height() < MIN_DRAG:
             return
         if self._worker is not None:
             self._again = True
@@ -235,7 +237,7 @@ class Canvas(QtGui.QWidget):
             (self.width(), self.height()),
         )
         charts, across, up = self.picture.charts, dict(self.across), dict(self.up)
-        self._worker = Worker(lambda: _drawn(charts, look, size, ratio, across, up))
+        self._worker = Worker(lambda: _render(charts, look, size, ratio, across, up))
         self._again = False
         self.timer.start()
 
@@ -258,13 +260,13 @@ class Canvas(QtGui.QWidget):
     def _take(
         self, drawn: tuple[bytes, int, int, float, tuple[Chart, ...], tuple[Place, ...], bool]
     ) -> None:
-        pixels, width, height, ratio, charts, places, shared = drawn
+        pixels, width, height, ratio, charts, frames, shared = drawn
         if self.picture is not None:
             image = QtGui.QImage(
                 pixels, width, height, 4 * width, QtGui.QImage.Format_RGBA8888
             ).copy()
             image.setDevicePixelRatio(ratio)
-            self.drawn = Drawn(image, charts, places, shared)
+            self.drawn = Drawn(image, charts, frames, shared)
 
     def resizeEvent(self, event: Any) -> None:
         """Called by Qt."""
@@ -307,13 +309,13 @@ class Canvas(QtGui.QWidget):
         if self._drag is not None and self.by_rectangle:
             painter.drawRect(QtCore.QRect(self._drag[1], self._drag[2]).normalized())
         elif self._pointer is not None:
-            number, x = self._at(self._pointer), float(self._pointer.x())
-            for other, place in enumerate(self.drawn.places):
+            number, x = self._chart_at(self._pointer), float(self._pointer.x())
+            for index, frame in enumerate(self.drawn.places):
                 if (
-                    other == number or self.drawn.shared
-                ) and place.left <= x <= place.left + place.width:
+                    index == number or self.drawn.shared
+                ) and frame.left <= x <= frame.left + frame.width:
                     painter.drawLine(
-                        QtCore.QPointF(x, place.top), QtCore.QPointF(x, place.top + place.height)
+                        QtCore.QPointF(x, frame.top), QtCore.QPointF(x, frame.top + frame.height)
                     )
 
     # ---- called by Qt for the mouse
@@ -321,7 +323,7 @@ class Canvas(QtGui.QWidget):
     def mousePressEvent(self, event: Any) -> None:
         """Begin to move or to draw up a rectangle."""
         if self.interactive and self.drawn is not None and event.button() == QtCore.Qt.LeftButton:
-            self._drag = (self._at(event.pos()), event.pos(), event.pos())
+            self._drag = (self._chart_at(event.pos()), event.pos(), event.pos())
 
     def mouseMoveEvent(self, event: Any) -> None:
         """Move, or tell what the pointer is at."""
@@ -329,9 +331,9 @@ class Canvas(QtGui.QWidget):
         if self.drawn is None or not self.interactive:
             return
         if self._drag is not None:
-            number, start, last = self._drag
+            number, start, previous = self._drag
             if not self.by_rectangle:
-                self._move(number, event.pos().x() - last.x(), event.pos().y() - last.y())
+                self._move(number, event.pos().x() - previous.x(), event.pos().y() - previous.y())
             self._drag = (number, start, event.pos())
         self._read()
         self.update()
@@ -344,23 +346,23 @@ class Canvas(QtGui.QWidget):
         self._drag = None
         if (
             self.by_rectangle
-            and min(abs(event.pos().x() - start.x()), abs(event.pos().y() - start.y())) >= LEAST
+            and min(abs(event.pos().x() - start.x()), abs(event.pos().y() - start.y())) >= MIN_DRAG
         ):
-            place, box = (
+            frame, box = (
                 self.drawn.places[number],
                 QtCore.QRectF(QtCore.QRect(start, event.pos()).normalized()),
             )
             self.across[self._across_of(number)] = (
-                self._x(place, box.left()),
-                self._x(place, box.right()),
+                self._x(frame, box.left()),
+                self._x(frame, box.right()),
             )
-            self.up[number] = (self._y(place, box.bottom()), self._y(place, box.top()))
+            self.up[number] = (self._y(frame, box.bottom()), self._y(frame, box.top()))
         self._changed()
 
     def mouseDoubleClickEvent(self, event: Any) -> None:
         """Show all there is."""
         if self.interactive:
-            self.whole()
+            self.show_all()
 
     def leaveEvent(self, event: Any) -> None:
         """The pointer is elsewhere."""
@@ -374,61 +376,61 @@ class Canvas(QtGui.QWidget):
             super().wheelEvent(event)
             return
         where, turns = event.position(), event.angleDelta().y() / 120.0
-        number = self._at(where)
-        place = self.drawn.places[number]
+        number = self._chart_at(where)
+        frame = self.drawn.places[number]
         up = bool(event.modifiers() & QtCore.Qt.ControlModifier)
         share = (
-            (place.top + place.height - where.y()) / place.height
+            (frame.top + frame.height - where.y()) / frame.height
             if up
-            else (where.x() - place.left) / place.width
+            else (where.x() - frame.left) / frame.width
         )
         self.zoom(STEP**turns, number, min(max(share, 0.0), 1.0), up)
         event.accept()
 
     def _move(self, number: int, right: float, down: float) -> None:
         assert self.drawn is not None
-        place, across = self.drawn.places[number], self._across_of(number)
+        frame, across = self.drawn.places[number], self._across_of(number)
         if across in self.across:
             low, high = self.across[across]
-            self.across[across] = moved(
-                (low, high), -right / place.width * (high - low), self._most(number)
+            self.across[across] = shift_range(
+                (low, high), -right / frame.width * (high - low), self._most(number)
             )
         if number in self.up:
             low, high = self.up[number]
-            self.up[number] = moved((low, high), down / place.height * (high - low), None)
+            self.up[number] = shift_range((low, high), down / frame.height * (high - low), None)
         self.draw()
 
-    def _at(self, where: Any) -> int:
+    def _chart_at(self, where: Any) -> int:
         """The chart a place of the widget belongs to."""
         assert self.drawn is not None
-        ends = [place.top + place.height for place in self.drawn.places]
+        ends = [frame.top + frame.height for frame in self.drawn.places]
         return next((number for number, end in enumerate(ends) if where.y() <= end), len(ends) - 1)
 
-    def _x(self, place: Place, left: float) -> float:
-        return place.across[0] + (left - place.left) / place.width * (
-            place.across[1] - place.across[0]
+    def _x(self, frame: Place, left: float) -> float:
+        return frame.across[0] + (left - frame.left) / frame.width * (
+            frame.across[1] - frame.across[0]
         )
 
-    def _y(self, place: Place, top: float) -> float:
-        return place.up[1] - (top - place.top) / place.height * (place.up[1] - place.up[0])
+    def _y(self, frame: Place, top: float) -> float:
+        return frame.up[1] - (top - frame.top) / frame.height * (frame.up[1] - frame.up[0])
 
     def _read(self) -> None:
         if self.drawn is None or self._pointer is None:
             return
-        number = self._at(self._pointer)
-        place = self.drawn.places[number]
-        inside = place.left <= self._pointer.x() <= place.left + place.width
+        number = self._chart_at(self._pointer)
+        frame = self.drawn.places[number]
+        inside = frame.left <= self._pointer.x() <= frame.left + frame.width
         self.say(
-            text_at(self.drawn.charts[number], self._x(place, self._pointer.x())) if inside else ""
+            text_at(self.drawn.charts[number], self._x(frame, self._pointer.x())) if inside else ""
         )
 
 
 def look_of() -> Look:
     """The look of plots in the present theme of the window, and in its language."""
-    return dataclasses.replace(DARK if colours.is_dark() else LIGHT, words=of_frames())
+    return dataclasses.replace(DARK if colours.is_dark() else LIGHT, words=frame_words())
 
 
-def _drawn(
+def _render(
     charts: tuple[Chart, ...],
     look: Look,
     size: tuple[int, int],
@@ -439,5 +441,5 @@ def _drawn(
     """Drawn by matplotlib, whose import takes some time: beside the window."""
     from ...plots import draw, files
 
-    figure, places = draw.figure(charts, look, *size, draw.Window(across, up))
-    return (*files.pixels(figure, ratio), ratio, charts, places, draw.share(charts))
+    figure, frames = draw.figure(charts, look, *size, draw.Window(across, up))
+    return (*files.pixels(figure, ratio), ratio, charts, frames, draw.share(charts))

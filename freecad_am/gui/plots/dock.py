@@ -35,7 +35,7 @@ def in_units(picture: Picture) -> Picture:
 
 NAME = "RoboticAM_Plots"
 HEIGHT, LEAST_HEIGHT = 330, 80  # pixels of the dock, and of a picture
-LABEL, NARROW, WIDE = (
+LABEL_LETTERS, MIN_LETTERS, MAX_LETTERS = (
     9,
     14,
     36,
@@ -61,7 +61,7 @@ class PlotsDock(Follower):
         self.dock = dock_area.dock(NAME, dock_area.BELOW, high=HEIGHT)
         self.canvas = Canvas()
         self.canvas.setObjectName("canvas")
-        self.canvas.say = self._said
+        self.canvas.say = self._show_reading
         self.scroll = QtGui.QScrollArea()
         self.scroll.setWidgetResizable(True)
         self.scroll.setFrameShape(QtGui.QFrame.NoFrame)
@@ -82,10 +82,10 @@ class PlotsDock(Follower):
         """The fields, in the language of the window, about the canvas."""
         form = QtGui.QWidget()
         self.choice = self._combo(
-            "plotted", tr("The toolpath, joint path or program to plot"), LABEL
+            "plotted", tr("The toolpath, joint path or program to plot"), LABEL_LETTERS
         )
         self.choice.setMaximumWidth(
-            WIDE * self.choice.fontMetrics().averageCharWidth()
+            MAX_LETTERS * self.choice.fontMetrics().averageCharWidth()
         )  # leave room for the rest
         self.which = self._combo("picture", tr("Quantity to plot"))
         self.over = self._combo("over", tr("Along the time of the job, or along its path"))
@@ -110,35 +110,35 @@ class PlotsDock(Follower):
 
     def _speak(self) -> None:
         """The window has another language: what is chosen stays."""
-        chosen = [(name, getattr(self, name).currentIndex()) for name in ("which", "over")]
+        indices = [(name, getattr(self, name).currentIndex()) for name in ("which", "over")]
         layers = [
             (name, getattr(self, name).maximum(), getattr(self, name).value())
             for name in ("first", "last")
         ]
         rectangle = self.buttons["rectangle"].isChecked()
         self._build()
-        for name, index in chosen:
+        for name, index in indices:
             combo = getattr(self, name)
             blocked = combo.blockSignals(True)
             combo.setCurrentIndex(index)
             combo.blockSignals(blocked)
-        for name, most, value in layers:
+        for name, maximum, value in layers:
             box = getattr(self, name)
             blocked = box.blockSignals(True)
-            box.setMaximum(most)
+            box.setMaximum(maximum)
             box.setValue(value)
             box.blockSignals(blocked)
         self.buttons["rectangle"].setChecked(rectangle)
         self.fill()
 
-    def _combo(self, name: str, help: str, least: int = 0) -> Any:
+    def _combo(self, name: str, help: str, letters: int = 0) -> Any:
         combo = QtGui.QComboBox()
         combo.setObjectName(name)
         combo.setToolTip(help)
         combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToContents)
-        combo.setMinimumContentsLength(least)
+        combo.setMinimumContentsLength(letters)
         combo.setMinimumWidth(
-            NARROW * combo.fontMetrics().averageCharWidth()
+            MIN_LETTERS * combo.fontMetrics().averageCharWidth()
         )  # long names widen no window
         return combo
 
@@ -186,7 +186,7 @@ class PlotsDock(Follower):
                 "whole",
                 tr("Whole"),
                 tr("Show everything, also with a double click"),
-                lambda *_: self.canvas.whole(),
+                lambda *_: self.canvas.show_all(),
             ),
             (
                 "save",
@@ -225,15 +225,15 @@ class PlotsDock(Follower):
             found = App.getDocument(self.target[0]).getObject(self.target[1])
             if plottable(found):
                 return found
-        some = _plottable()
+        candidates = _plottable()
         return (
-            max(some, key=lambda obj: kind_of(obj) == JOINT_PATH) if some else None
+            max(candidates, key=lambda obj: kind_of(obj) == JOINT_PATH) if candidates else None
         )  # asked anew: a later stage may come
 
     def _chosen(self, index: int) -> None:
-        some = _plottable()
-        if 0 <= index < len(some):
-            self.target = (some[index].Document.Name, some[index].Name)
+        candidates = _plottable()
+        if 0 <= index < len(candidates):
+            self.target = (candidates[index].Document.Name, candidates[index].Name)
         self.fill()
 
     def fill(self) -> None:
@@ -242,12 +242,12 @@ class PlotsDock(Follower):
             return
         self.building.cancel()
         obj = self.object()
-        some = _plottable()
-        labels = [one.Label for one in some]
+        candidates = _plottable()
+        labels = [candidate.Label for candidate in candidates]
         if [self.choice.itemText(index) for index in range(self.choice.count())] != labels:
             self.choice.clear()
             self.choice.addItems(labels)
-        self.choice.setCurrentIndex(some.index(obj) if obj in some else -1)
+        self.choice.setCurrentIndex(candidates.index(obj) if obj in candidates else -1)
         entry = catalogue.PICTURES[self.which.currentData()]
         self.over.setEnabled(entry.along is not None)
         self.note.setText("")
@@ -262,7 +262,7 @@ class PlotsDock(Follower):
         except AmError as error:
             self._show(None, translated_error(error))
             return
-        known = self.source[1] if self.source is not None and self.source[0] == key else None
+        cached = self.source[1] if self.source is not None and self.source[0] == key else None
         name, over = self.which.currentData(), self.over.currentData()
         layers = (
             min(self.first.value(), self.last.value()),
@@ -273,28 +273,28 @@ class PlotsDock(Follower):
             self.canvas.show_picture(None, tr("Computing…"))
 
         def work() -> tuple[Source, Picture]:
-            source = known or make()
+            source = cached or make()
             return source, catalogue.picture(name, source, over, layers)
 
-        shown = (*_identity(obj), name, over, layers)  # told now: the object may be gone then
-        self.building.start(work, lambda worker: self._built(worker, key, shown))
+        identity = (*_identity(obj), name, over, layers)  # told now: the object may be gone then
+        self.building.start(work, lambda worker: self._built(worker, key, identity))
 
     def _layers(self, obj: Any) -> None:
         """The layers there are to choose from; all of them of another object."""
         toolpath = made_from(obj)[min(1, len(made_from(obj)) - 1)]
-        most = max(len(toolpath.Proxy.value(toolpath).layers) - 1, 0)
-        other, self.layers_of = self.layers_of != _identity(obj), _identity(obj)
-        anew = other or self.last.value() == self.last.maximum()
+        last_layer = max(len(toolpath.Proxy.value(toolpath).layers) - 1, 0)
+        is_new, self.layers_of = self.layers_of != _identity(obj), _identity(obj)
+        anew = is_new or self.last.value() == self.last.maximum()
         for box, value in (
-            (self.first, 0 if other else self.first.value()),
-            (self.last, most if anew else self.last.value()),
+            (self.first, 0 if is_new else self.first.value()),
+            (self.last, last_layer if anew else self.last.value()),
         ):
             blocked = box.blockSignals(True)
-            box.setRange(0, most)
+            box.setRange(0, last_layer)
             box.setValue(value)
             box.blockSignals(blocked)
 
-    def _built(self, worker: Worker, key: Any, shown: tuple[Any, ...]) -> None:
+    def _built(self, worker: Worker, key: Any, identity: tuple[Any, ...]) -> None:
         if self.note.text() == tr("Computing…"):
             self.note.setText("")
         try:
@@ -305,14 +305,14 @@ class PlotsDock(Follower):
             self._show(None, translated_error(error))
             return
         self.source = (key, source)
-        self._show(picture, picture.lacking, self.shown == shown)
-        self.shown = shown
+        self._show(picture, picture.lacking, self.shown == identity)
+        self.shown = identity
 
     def _show(self, picture: Picture | None, text: str = "", keep: bool = False) -> None:
         self.picture = picture if picture is not None and picture.charts else None
         for name in ("in", "out", "whole", "rectangle", "save"):
             self.buttons[name].setEnabled(self.picture is not None)
-        self._said("")
+        self._show_reading("")
         self.canvas.show_picture(self.picture, text, keep)
 
     # ---- what the user does
@@ -320,7 +320,7 @@ class PlotsDock(Follower):
     def _rectangle(self, *_: Any) -> None:
         self.canvas.by_rectangle = self.buttons["rectangle"].isChecked()
 
-    def _said(self, text: str) -> None:
+    def _show_reading(self, text: str) -> None:
         self.reading.setText(text)
 
     def _save(self, *_: Any) -> None:
@@ -332,10 +332,8 @@ class PlotsDock(Follower):
 
     def addSelection(self, document: str, name: str, *_: Any) -> None:
         """Something was selected."""
-        found = (
-            App.getDocument(document).getObject(name) if document in App.listDocuments() else None
-        )
-        if found is not None and plottable(found) and self.target != (document, name):
+        obj = App.getDocument(document).getObject(name) if document in App.listDocuments() else None
+        if obj is not None and plottable(obj) and self.target != (document, name):
             self.target = (document, name)
             QtCore.QTimer.singleShot(0, self.fill)
 

@@ -11,7 +11,7 @@ from ...plots.chart import Picture
 from ...plots.draw import Range, Window, figure
 from ...plots.files import KINDS, image, values
 from ...plots.look import LIGHT
-from .canvas import of_frames
+from .canvas import frame_words
 
 Ranges = Mapping[int, Range]
 CSV = "csv"
@@ -26,7 +26,7 @@ def content(
     if ending == CSV:
         return "".join(values(picture)).encode()
     return image(
-        figure(picture.charts, replace(LIGHT, words=of_frames()), *size, Window(across, up))[0],
+        figure(picture.charts, replace(LIGHT, words=frame_words()), *size, Window(across, up))[0],
         ending,
     )
 

@@ -54,17 +54,19 @@ def values(board: Any, picture: Picture) -> Iterator[str]:
         "",
     )
     phi = np.degrees(_phi(board, picture))
-    for column, place in enumerate(across):
+    for column, labels in enumerate(across):
         for row, value in enumerate(up):
             figures = 100.0 * picture.margin[row, column], picture.condition[row, column]
-            found = [f"{one:.10g}" if picture.reachable[row, column] else "" for one in figures]
+            cells = [
+                f"{figure:.10g}" if picture.reachable[row, column] else "" for figure in figures
+            ]
             yield (
                 ",".join(
                     [
-                        *place,
+                        *labels,
                         f"{value:.10g}",
                         f"{phi[row, column]:.10g}",
-                        *found,
+                        *cells,
                         state[row, column],
                     ]
                 )
@@ -74,14 +76,14 @@ def values(board: Any, picture: Picture) -> Iterator[str]:
 
 def _across(board: Any) -> tuple[list[str], list[list[str]]]:
     """Names and texts (C,) of what goes across."""
-    places = [
+    labels = [
         [str(number) for number in board.place(column)] for column in range(len(board.columns))
     ]
     if board.offsets is None or board.across is None:
-        return ["layer", "bead", "point"], places
-    name, shown = _axis(board, board.across, board.offsets)
+        return ["layer", "bead", "point"], labels
+    name, axis_values = _axis(board, board.across, board.offsets)
     return ["layer", "bead", "point", name], [
-        [*place, f"{value:.10g}"] for place, value in zip(places, shown, strict=True)
+        [*row, f"{value:.10g}"] for row, value in zip(labels, axis_values, strict=True)
     ]
 
 
@@ -108,7 +110,7 @@ def _phi(board: Any, picture: Picture) -> Array:
     return board.map.phi
 
 
-def _cells(board: Any, painted: Any, curves: list[Any], made: Any) -> Any:
+def _cells(board: Any, painted: Any, curves: list[Any], factory: Any) -> Any:
     """The map for a figure."""
     count = len(painted.hatched)
 
@@ -119,7 +121,9 @@ def _cells(board: Any, painted: Any, curves: list[Any], made: Any) -> Any:
     for curve in curves:
         rows = row((np.asarray(curve.values) + np.pi) % TURN - np.pi)
         jumps = np.abs(np.diff(rows, prepend=rows[:1])) > 0.5 * count
-        lines.append((np.where(jumps, np.nan, rows), tuple(part / 255.0 for part in curve.colour)))
+        lines.append(
+            (np.where(jumps, np.nan, rows), tuple(channel / 255.0 for channel in curve.colour))
+        )
     if board.pair is not None:
         up, rows_ = (
             board.pair.name,
@@ -130,7 +134,7 @@ def _cells(board: Any, painted: Any, curves: list[Any], made: Any) -> Any:
         up, across = (tr("RZ") if board.axis == RZ else tr("rotation")), []
         rows_ = [(float(row(np.radians(tick))), f"{tick}°") for tick in TICKS]
     scale = painted.scale
-    return made(
+    return factory(
         title=board.title,
         up=up,
         colours=painted.colours,

@@ -9,7 +9,7 @@ from ...plots.chart import DOTS, OUTLINE, STEP, Chart, Curve
 from ..texts.in_language import tr
 
 Range = tuple[float, float]
-NARROWEST = 1e-6  # of all there is
+MIN_SHARE = 1e-6  # of all there is
 
 
 def text_at(chart: Chart, x: float) -> str:
@@ -33,26 +33,26 @@ def text_at(chart: Chart, x: float) -> str:
 
 def _nearest(curve: Curve, x: float) -> int:
     """The value of a curve at x."""
-    after = min(int(np.searchsorted(curve.x, x)), len(curve.x) - 1)
-    if curve.kind == STEP or after == 0:
-        return after
-    return after if curve.x[after] - x < x - curve.x[after - 1] else after - 1
+    index = min(int(np.searchsorted(curve.x, x)), len(curve.x) - 1)
+    if curve.kind == STEP or index == 0:
+        return index
+    return index if curve.x[index] - x < x - curve.x[index - 1] else index - 1
 
 
-def zoomed(shown: Range, factor: float, share: float, most: Range | None) -> Range:
+def zoomed(limits: Range, factor: float, share: float, full: Range | None) -> Range:
     """A range 1 / factor as wide, the place at `share` of it staying where it is; no wider than `most`."""
-    low, high = shown
+    low, high = limits
     width = (high - low) / factor
-    if most is not None:
-        width = min(max(width, NARROWEST * (most[1] - most[0])), most[1] - most[0])
-    at = low + share * (high - low)
-    return moved((at - share * width, at + (1.0 - share) * width), 0.0, most)
+    if full is not None:
+        width = min(max(width, MIN_SHARE * (full[1] - full[0])), full[1] - full[0])
+    centre = low + share * (high - low)
+    return shift_range((centre - share * width, centre + (1.0 - share) * width), 0.0, full)
 
 
-def moved(shown: Range, by: float, most: Range | None) -> Range:
+def shift_range(limits: Range, by: float, full: Range | None) -> Range:
     """A range moved, as far as `most` goes."""
-    low, high = shown[0] + by, shown[1] + by
-    if most is not None:
-        back = max(most[0] - low, 0.0) - max(high - most[1], 0.0)
+    low, high = limits[0] + by, limits[1] + by
+    if full is not None:
+        back = max(full[0] - low, 0.0) - max(high - full[1], 0.0)
         low, high = low + back, high + back
     return low, high

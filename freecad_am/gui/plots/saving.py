@@ -38,7 +38,7 @@ TOOLPATH, JOINT_PATH, PROGRAM = "toolpath", "joint path", "program"
 def plottable(obj: Any) -> bool:
     """Whether an object is a toolpath, joint path or program that has been computed."""
     return kind_of(obj) in (TOOLPATH, JOINT_PATH, PROGRAM) and all(
-        one is not None and bool(one.Key) for one in made_from(obj)
+        stage is not None and bool(stage.Key) for stage in made_from(obj)
     )
 
 
@@ -62,7 +62,7 @@ def key_of(obj: Any) -> tuple[Any, ...]:
     start = (
         obj.Proxy.parameters(obj, ProgramParameters).start_at if kind_of(obj) == PROGRAM else None
     )
-    return (obj.Document.Name, obj.Name, start, *(one.Key for one in made_from(obj)))
+    return (obj.Document.Name, obj.Name, start, *(stage.Key for stage in made_from(obj)))
 
 
 def maker_of(obj: Any) -> Callable[[], Source]:
@@ -128,8 +128,8 @@ def save(picture: Picture, metric: Picture, obj: Any, canvas: Canvas) -> None:
     def content(ending: str) -> bytes:
         from . import export  # with matplotlib, whose import takes some time
 
-        shown = metric if ending == export.CSV else picture
-        return export.content(shown, ending, size, across, up)
+        exported = metric if ending == export.CSV else picture
+        return export.content(exported, ending, size, across, up)
 
     ask(tr("Save the plot"), obj, picture.name, content)
 
@@ -137,16 +137,16 @@ def save(picture: Picture, metric: Picture, obj: Any, canvas: Canvas) -> None:
 def ask(title: str, obj: Any, name: str, content: Callable[[str], bytes]) -> None:
     """Ask for a file, and write to it, beside the window, what `content` gives for its ending, png, svg, pdf or csv. Say why
     not where the object that it shows is out of date."""
-    stale = next((one for one in made_from(obj) if one is not None and is_stale(one)), None)
+    stale = next((stage for stage in made_from(obj) if stage is not None and is_stale(stage)), None)
     if stale is not None:
         text = tr("{} is out of date; recompute the document, then save.").format(stale.Label)
         _say(text, App.Console.PrintError)
         return
-    first = os.path.join(os.path.dirname(obj.Document.FileName), f"{obj.Label}-{name}.png")
+    proposal = os.path.join(os.path.dirname(obj.Document.FileName), f"{obj.Label}-{name}.png")
     kinds = ";;".join(
         (tr("Image (*.png)"), tr("Drawing (*.svg)"), tr("Document (*.pdf)"), tr("Values (*.csv)"))
     )
-    path, kind = QtGui.QFileDialog.getSaveFileName(Gui.getMainWindow(), title, first, kinds)
+    path, kind = QtGui.QFileDialog.getSaveFileName(Gui.getMainWindow(), title, proposal, kinds)
     if path:
         _write(content, path, kind)
 
@@ -158,11 +158,11 @@ def _write(content: Callable[[str], bytes], path: str, kind: str) -> None:
         ending = next(
             (ending for ending in export.ENDINGS if f"*.{ending}" in kind), export.ENDINGS[0]
         )
-        whole = path if path.rpartition(".")[2].lower() in export.ENDINGS else f"{path}.{ending}"
-        export.write(content(whole.rpartition(".")[2].lower()), whole)
-        return whole
+        target = path if path.rpartition(".")[2].lower() in export.ENDINGS else f"{path}.{ending}"
+        export.write(content(target.rpartition(".")[2].lower()), target)
+        return target
 
-    def written(worker: Worker) -> None:
+    def show_result(worker: Worker) -> None:
         _writing.remove(writing)
         try:
             _say(tr("{} was saved.").format(worker.result()), App.Console.PrintMessage)
@@ -174,7 +174,7 @@ def _write(content: Callable[[str], bytes], path: str, kind: str) -> None:
 
     writing = Background(Gui.getMainWindow())
     _writing.append(writing)
-    writing.start(write, written)
+    writing.start(write, show_result)
 
 
 def _say(text: str, console: Any) -> None:

@@ -22,10 +22,10 @@ def listing(name: str) -> Any:
     return text
 
 
-def mark(text: Any, line: int, there: bool = False) -> None:
+def mark(text: Any, line: int, focus: bool = False) -> None:
     """Mark a line, from 0; `there`: and put the cursor into it, so that it is seen."""
     cursor = QtGui.QTextCursor(text.document().findBlockByNumber(line))
-    if there:
+    if focus:
         text.setTextCursor(cursor)
         text.centerCursor()
     marked = QtGui.QTextEdit.ExtraSelection()

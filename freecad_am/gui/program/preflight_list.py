@@ -38,8 +38,8 @@ class PreflightList:
     def show(self, promises: Sequence[Promise]) -> None:
         """Show these, in place of those before."""
         self.widget.clear()
-        for one in promises:
-            self.widget.addItem(_row(one))
+        for promise in promises:
+            self.widget.addItem(_row(promise))
 
     def clear(self) -> None:
         """Show none."""
@@ -48,39 +48,39 @@ class PreflightList:
 
 def summary(promises: Sequence[Promise]) -> str:
     """How many promises are kept, broken and not checked."""
-    kept, broken = (sum(one.ok is ok for one in promises) for ok in (True, False))
+    passed, broken = (sum(promise.ok is ok for promise in promises) for ok in (True, False))
     return tr("Preflight: {} passed, {} failed, {} not checked").format(
-        kept, broken, len(promises) - kept - broken
+        passed, broken, len(promises) - passed - broken
     )
 
 
-def _row(one: Promise) -> Any:
+def _row(promise: Promise) -> Any:
     """Two lines: what is promised, and how far it is kept and where. How it was checked is the tip."""
-    mark, colour = {True: ("✓", GOOD), False: ("✗", INVALID), None: ("?", FAINT)}[one.ok]
-    further = [translated(one.figure), "" if one.place is None else _where(one.place)]
+    mark, colour = {True: ("✓", GOOD), False: ("✗", INVALID), None: ("?", FAINT)}[promise.ok]
+    further = [translated(promise.figure), "" if promise.place is None else _where(promise.place)]
     item = QtGui.QListWidgetItem(
         "\n".join(
             filter(
                 None,
                 (
-                    f"{mark} {translated(one.promise)}",
+                    f"{mark} {translated(promise.promise)}",
                     "    ".join(["", *filter(None, further)]) if any(further) else "",
                 ),
             )
         )
     )
     item.setForeground(QtGui.QBrush(of(colour)))
-    item.setToolTip(sentence(one.how))
-    item.setData(PLACE_ROLE, None if one.place is None else list(one.place))
+    item.setToolTip(sentence(promise.how))
+    item.setData(PLACE_ROLE, None if promise.place is None else list(promise.place))
     return item
 
 
-def _where(place: Place) -> str:
+def _where(position: Place) -> str:
     """The place as findings tell it."""
-    return translated(Issue(NOTE, "", "", *place).where)
+    return translated(Issue(NOTE, "", "", *position).where)
 
 
 def _clicked(item: Any, go: Callable[[Place], None]) -> None:
-    place = item.data(PLACE_ROLE)
-    if place is not None:
-        go(Place(*place))
+    position = item.data(PLACE_ROLE)
+    if position is not None:
+        go(Place(*position))

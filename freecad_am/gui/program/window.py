@@ -55,32 +55,32 @@ class Located:
         """File and line, from 0, that lay the point of a bead that is nearest to a position (3,), mm; None where the program
         has none of it."""
         motion, rows = self.motion, self.rows
-        mine = np.flatnonzero(
+        indices = np.flatnonzero(
             motion.deposit[rows] & (motion.layer[rows] == layer) & (motion.bead[rows] == bead)
         )
-        if not len(mine):
+        if not len(indices):
             return None
-        away = np.linalg.norm(motion.position[rows[mine]] - position, axis=1)
-        return self.lines.of(int(mine[int(away.argmin())]))
+        distance = np.linalg.norm(motion.position[rows[indices]] - position, axis=1)
+        return self.lines.of(int(indices[int(distance.argmin())]))
 
     def text_at(self, row: int) -> str:
         """A row of the motion in words."""
         motion = self.motion
-        place = tr("layer {} bead {}").format(int(motion.layer[row]), int(motion.bead[row]))
+        text = tr("layer {} bead {}").format(int(motion.layer[row]), int(motion.bead[row]))
         if not motion.deposit[row]:
-            return tr("{}: on the approach").format(place)
-        return tr("{} point {}").format(place, int(motion.point[row]))
+            return tr("{}: on the approach").format(text)
+        return tr("{} point {}").format(text, int(motion.point[row]))
 
     def show(self, path: Any, row: int) -> None:
         """Show the joint path in the 3D view up to a row; of a rapid, up to the bead that it leads to."""
-        motion, shown = self.motion, path.ViewObject.Proxy.rows
+        motion, drawn = self.motion, path.ViewObject.Proxy.rows
         layer, bead = int(motion.layer[row]), int(motion.bead[row])
-        beads = [] if shown is None else np.flatnonzero(shown.layers == layer)
+        beads = [] if drawn is None else np.flatnonzero(drawn.layers == layer)
         if bead >= len(beads):
             return
-        start, end = shown.starts[beads[bead]], shown.starts[beads[bead] + 1]
-        away = np.linalg.norm(shown.points[start:end] - motion.position[row], axis=1)
-        path_dock.go_to(path, layer, bead, int(away.argmin()) if motion.deposit[row] else 0)
+        start, end = drawn.starts[beads[bead]], drawn.starts[beads[bead] + 1]
+        distance = np.linalg.norm(drawn.points[start:end] - motion.position[row], axis=1)
+        path_dock.go_to(path, layer, bead, int(distance.argmin()) if motion.deposit[row] else 0)
 
 
 class ProgramWindow:
@@ -130,11 +130,11 @@ class ProgramWindow:
             self.files = api.result(self.obj).files if self.obj.Key else {}
         except AmError:  # within undo the parts of a result come back one by one
             return
-        names, chosen = sorted(self.files), self.choice.currentText()
+        names, current = sorted(self.files), self.choice.currentText()
         self.choice.blockSignals(True)
         self.choice.clear()
         self.choice.addItems(names)
-        self.choice.setCurrentIndex(names.index(chosen) if chosen in names else 0)
+        self.choice.setCurrentIndex(names.index(current) if current in names else 0)
         self.choice.blockSignals(False)
         self.export_button.setEnabled(not self._refused())
         self.export_button.setToolTip(
@@ -198,25 +198,25 @@ class ProgramWindow:
         row = self.located.row_at(self.choice.currentText(), cursor.blockNumber())
         if row is not None:
             mark(self.text, cursor.blockNumber())
-            self._tell(cursor.blockNumber(), row)
+            self._show_place(cursor.blockNumber(), row)
             with contextlib.suppress(ReferenceError):  # the document is closed
                 self.located.show(self.obj.JointPath, row)
 
     def show_point(self, layer: int, bead: int, position: Any) -> None:
         """Mark the line that lays a point of a bead (3,), mm."""
-        found = None if self.located is None else self.located.line_at(layer, bead, position)
-        if self.located is None or found is None:
+        location = None if self.located is None else self.located.line_at(layer, bead, position)
+        if self.located is None or location is None:
             return
-        name, line = found
+        name, line = location
         self.choice.setCurrentText(name)
         self.filling = True
         mark(self.text, line, True)
         self.filling = False
         row = self.located.row_at(name, line)
         if row is not None:
-            self._tell(line, row)
+            self._show_place(line, row)
 
-    def _tell(self, line: int, row: int) -> None:
+    def _show_place(self, line: int, row: int) -> None:
         if self.located is not None:
             self.place.setText(tr("Line {}: {}").format(line + 1, self.located.text_at(row)))
 
@@ -249,10 +249,10 @@ def _clicked(view: Any, row: int) -> None:
     number = rows.bead_of(row)
     layer = int(rows.layers[number])
     bead = int(number - np.searchsorted(rows.layers, layer))
-    for shown in _shown:
+    for program in _shown:
         with contextlib.suppress(ReferenceError):  # of another document, which is closed
-            if shown.obj.JointPath is view.obj:
-                shown.show_point(layer, bead, rows.points[row])
+            if program.obj.JointPath is view.obj:
+                program.show_point(layer, bead, rows.points[row])
 
 
 path_view.listen_to_clicks(lambda: bool(_shown), _clicked)
@@ -263,20 +263,20 @@ _shown: list[ProgramWindow] = []  # Python must keep them as long as they are op
 
 def show(obj: Any) -> None:
     """Open the text of a program in a window that does not block the others; the one that is open, if it is."""
-    shown = _of(obj) or ProgramWindow(obj)
-    shown.window.show()
-    shown.window.raise_()
+    program = _of(obj) or ProgramWindow(obj)
+    program.window.show()
+    program.window.raise_()
 
 
 def renew(obj: Any) -> None:
     """The program has changed: show it in its window, if that is open."""
-    shown = _of(obj)
-    if shown is not None:
-        shown.load()
+    program = _of(obj)
+    if program is not None:
+        program.load()
 
 
 def _of(obj: Any) -> ProgramWindow | None:
-    return next((shown for shown in _shown if shown.obj is obj), None)
+    return next((program for program in _shown if program.obj is obj), None)
 
 
 def refusal(obj: Any) -> AmError | None:
@@ -295,9 +295,9 @@ def export(obj: Any, window: Any = None) -> str:
         App.Console.PrintError(error_line(refused))
         Gui.getMainWindow().statusBar().showMessage(translated_error(refused), 5000)
         return translated_error(refused)
-    first = preferences.programs_folder() or os.path.dirname(obj.Document.FileName)
+    proposal = preferences.programs_folder() or os.path.dirname(obj.Document.FileName)
     folder = QtGui.QFileDialog.getExistingDirectory(
-        window or Gui.getMainWindow(), tr("Export program"), first
+        window or Gui.getMainWindow(), tr("Export program"), proposal
     )
     if not folder:
         return tr("Status: {}.").format(translated(obj.Status))

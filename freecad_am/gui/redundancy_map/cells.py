@@ -11,16 +11,16 @@ from ..background.worker import Background, Worker
 from .drawn.board import Board
 from .drawn.painting import Canvas, painted
 
-ROUGH, FINE = 6, 1  # one of so many rows is looked at
+ROUGH_STRIDE, FINE_STRIDE = 6, 1  # one of so many rows is looked at
 
 
 class Cells:
     """`known` is called when more is known of a board, `drawn` when its cells are shown."""
 
     def __init__(
-        self, form: Any, canvas: Canvas, known: Callable[[], None], drawn: Callable[[], None]
+        self, form: Any, canvas: Canvas, on_known: Callable[[], None], drawn: Callable[[], None]
     ) -> None:
-        self.canvas, self.known, self.drawn = canvas, known, drawn
+        self.canvas, self.known, self.drawn = canvas, on_known, drawn
         self.background = Background(form)
 
     def cancel(self) -> None:
@@ -47,18 +47,18 @@ class Cells:
     def _go_on(self) -> None:
         """Look at the links of the robot, until every row was looked at."""
         board, branch = self.board, self.branch
-        before = board.looked.get(branch)
-        if before == FINE:
+        previous = board.looked.get(branch)
+        if previous == FINE_STRIDE:
             self.background.cancel()
             return
-        every = ROUGH if before is None else FINE
+        stride = ROUGH_STRIDE if previous is None else FINE_STRIDE
 
         def take(worker: Worker) -> None:
-            board.take_arm(branch, worker.result(), every)
+            board.take_arm(branch, worker.result(), stride)
             self._draw()
             self._go_on()
 
-        self.background.start(lambda: board.arm(branch, every), take)
+        self.background.start(lambda: board.arm(branch, stride), take)
 
     def _draw(self) -> None:
         board = self.board

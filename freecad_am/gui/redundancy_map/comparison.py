@@ -25,13 +25,16 @@ class Comparison:
     """`done` gets the methods, none of them where it came to nothing; `tell` what goes on."""
 
     def __init__(
-        self, form: Any, done: Callable[[tuple[Compared, ...]], None], tell: Callable[[str], None]
+        self,
+        form: Any,
+        on_done: Callable[[tuple[Compared, ...]], None],
+        tell: Callable[[str], None],
     ) -> None:
-        self.done, self.tell = done, tell
+        self.done, self.tell = on_done, tell
         self.background = Background(form)
         self.timer = QtCore.QTimer(form)
         self.timer.setInterval(TELL_EVERY)
-        self.timer.timeout.connect(self._tell)
+        self.timer.timeout.connect(self._show_progress)
 
     @property
     def runs(self) -> bool:
@@ -48,7 +51,7 @@ class Comparison:
             lambda: rotation_curve.compared(task, beads, source.places, progress.report), self._show
         )
         self.timer.start()
-        self._tell()
+        self._show_progress()
 
     def cancel(self) -> None:
         """End it, if it goes on."""
@@ -58,13 +61,13 @@ class Comparison:
     def _show(self, worker: Worker) -> None:
         self.timer.stop()
         try:
-            found = worker.result()
+            compared = worker.result()
         except (AmError, Cancelled) as error:
             self.tell(translated_error(error))
-            found = ()
-        self.done(found)
+            compared = ()
+        self.done(compared)
 
-    def _tell(self) -> None:
+    def _show_progress(self) -> None:
         worker = self.background.worker
         if worker is not None:
             share = (

@@ -19,7 +19,7 @@ from ..colours import INVALID, PLAIN, of, set_role
 from ..texts.in_language import link_touches, tr
 from ..widgets.steady import Scrolled
 from .draft import Draft
-from .drawn.board import COLOURS, OWN, PLANNED, Cell
+from .drawn.board import COLOURS, OWN_CURVE, PLANNED_CURVE, Cell
 
 COLUMNS = 6
 
@@ -129,7 +129,7 @@ class Figures(QtGui.QTableWidget):
             self.changed()
 
 
-NARROWEST = 190  # pixels of the controls
+MIN_WIDTH = 190  # pixels of the controls
 
 
 class Form(QtGui.QWidget):
@@ -191,7 +191,7 @@ class Form(QtGui.QWidget):
             grid.addWidget(button, number // 2, number % 2)
         right.addLayout(grid)
         row.addLayout(left, 7)
-        row.addWidget(Scrolled(controls, NARROWEST), 2)
+        row.addWidget(Scrolled(controls, MIN_WIDTH), 2)
         row.addWidget(Scrolled(beside), 4)
 
     def tell(self, text: str, wrong: bool = False) -> None:
@@ -201,12 +201,12 @@ class Form(QtGui.QWidget):
 
     def show_joints(self, ranges: list[tuple[str, bool]]) -> None:
         """What each joint does, and whether it goes past a limit."""
-        whole = [(text.replace(" ", "&nbsp;"), wrong) for text, wrong in ranges]
-        parts = [
+        texts = [(text.replace(" ", "&nbsp;"), wrong) for text, wrong in ranges]
+        coloured = [
             f'<font color="{of(INVALID).name()}">{text}</font>' if wrong else text
-            for text, wrong in whole
+            for text, wrong in texts
         ]
-        self.joints.setText(" &nbsp; ".join(parts))
+        self.joints.setText(" &nbsp; ".join(coloured))
 
 
 def _button(name: str, text: str, help: str) -> Any:
@@ -308,7 +308,7 @@ class Consequences:
         self.planned = rotation_curve.sums(draft.follow(draft.live.planned))
         self.planned_exact: Sums | None = None
 
-    def of_plan(self) -> Sums:
+    def planned_sums(self) -> Sums:
         """The figures of what was planned, of all points where they are known."""
         return self.planned_exact or self.planned
 
@@ -319,38 +319,42 @@ class Consequences:
     def now(self) -> None:
         """Tell at once what the curve as it is now means."""
         draft = self.draft
-        self.followed = draft.followed()
-        self._tell(rotation_curve.sums(self.followed), self.planned, draft.thinned)
+        self.followed = draft.evaluate()
+        self._show_sums(rotation_curve.sums(self.followed), self.planned, draft.thinned)
         self.form.show_joints(joint_ranges(self.followed.joints, draft.source.cell))
 
     def exactly(self) -> None:
         """The same of all points, where only some have been looked at."""
-        draft, known = self.draft, self.planned_exact
+        draft, planned = self.draft, self.planned_exact
         if not draft.thinned:
             return
-        own = draft.copied()
+        duplicate = draft.copied()
 
         def work() -> tuple[Sums, Sums]:
-            full = own.full
-            mine = rotation_curve.sums(own.follow(own.phi(full.points, full.points.bead), False))
-            if known is not None:
-                return mine, known
-            of_plan = own.copied()
-            of_plan.branch = own.source.branch
-            return mine, rotation_curve.sums(of_plan.follow(full.planned, False))
+            full = duplicate.full
+            sums = rotation_curve.sums(
+                duplicate.follow(duplicate.phi(full.points, full.points.bead), False)
+            )
+            if planned is not None:
+                return sums, planned
+            of_plan = duplicate.copied()
+            of_plan.branch = duplicate.source.branch
+            return sums, rotation_curve.sums(of_plan.follow(full.planned, False))
 
         def show(worker: Worker) -> None:
-            found = worker.result()
+            sums_pair = worker.result()
             if draft is self.draft:
-                draft.learn(own)
-                self.planned_exact = found[1]
-                self._tell(*found, False)
+                draft.learn(duplicate)
+                self.planned_exact = sums_pair[1]
+                self._show_sums(*sums_pair, False)
 
         self.background.start(work, show)
 
-    def _tell(self, sums: Sums, planned: Sums, about: bool) -> None:
-        self.form.figures.set(OWN, tr("This curve"), COLOURS[OWN], sums, planned, about)
-        self.form.figures.set(PLANNED, tr("As planned"), COLOURS[PLANNED], planned, None, about)
+    def _show_sums(self, sums: Sums, planned: Sums, about: bool) -> None:
+        self.form.figures.set(OWN_CURVE, tr("This curve"), COLOURS[OWN_CURVE], sums, planned, about)
+        self.form.figures.set(
+            PLANNED_CURVE, tr("As planned"), COLOURS[PLANNED_CURVE], planned, None, about
+        )
         edited = self.draft.edited
         self.form.buttons["use"].setEnabled(edited)
         if sums.lost:
@@ -359,11 +363,11 @@ class Consequences:
                 True,
             )
         elif edited and sums.ratio > 1.0:
-            asked = tr(
+            warning = tr(
                 "A joint would need {:.0f} % of its speed: the planner will slow it down, or "
                 "reject the curve"
             )
-            text, wrong = asked.format(100.0 * sums.ratio), True
+            text, wrong = warning.format(100.0 * sums.ratio), True
         else:
             text, wrong = self.status() if not edited else (tr("All points are feasible"), False)
         certificate = certified(self.draft.source.planned.optimality)

@@ -27,36 +27,36 @@ class Controls(QtGui.QWidget):
 
     def __init__(
         self,
-        chosen: Callable[[], None],
+        on_choice: Callable[[], None],
         curve: Callable[[], None],
         set_value: Callable[[int, float], None],
     ) -> None:
         super().__init__()
         self.setObjectName("controls")
         self.filling = False
-        self.chosen, self.curve, self.set_value = chosen, curve, set_value
+        self.chosen, self.curve, self.set_value = on_choice, curve, set_value
         self.grid = QtGui.QGridLayout(self)
         self.grid.setContentsMargins(4, 2, 4, 2)
         self.grid.setVerticalSpacing(3)
         self.layer = self._box(
-            "layer", tr("Layer"), tr("The layer shown; -1 for all layers"), chosen
+            "layer", tr("Layer"), tr("The layer shown; -1 for all layers"), on_choice
         )
         self.layer.setSpecialValueText(tr("all"))
         self.branch = self._combo(
             "branch",
             tr("Branch"),
             tr("Shoulder, elbow and wrist, with the share of the map within reach and limits"),
-            chosen,
+            on_choice,
         )
         self.kind = self._combo(
-            "colours", tr("Colours"), tr("Quantity shown by the colours"), chosen
+            "colours", tr("Colours"), tr("Quantity shown by the colours"), on_choice
         )
         self.kind.addItems([tr(kind) for kind in KINDS])
         help = tr(
             "RZ as in Chalvin 2020, the true tool rotation, or an external axis that is not on "
             "the other axis of the map"
         )
-        self.axis = self._combo("axis", tr("Vertical axis"), help, chosen)
+        self.axis = self._combo("axis", tr("Vertical axis"), help, on_choice)
         self.across = self._add_across()
         self.type = self._combo(
             "curve", tr("Curve"), tr("One polynomial per bead, or one RZ for the whole job"), curve
@@ -127,7 +127,7 @@ class Controls(QtGui.QWidget):
         if not self.filling:
             self.set_value(number, value)
 
-    def wanted(self) -> tuple[int | None, str, int | None, int | None]:
+    def selection(self) -> tuple[int | None, str, int | None, int | None]:
         """Which layer, None for all; the rotation upwards; which external axis across, None for the path; and which external
         axis upwards, None for the rotation."""
         layer, across, axis = (
@@ -169,11 +169,11 @@ class Controls(QtGui.QWidget):
             else [c * (2.0 * np.pi) ** k for k, c in enumerate(draft.coefficients[bead])]
         )
         for number, (name, box) in enumerate(zip(self.names, self.coefficients, strict=True)):
-            there = number < len(values)
-            name.setVisible(there)
-            box.setVisible(there)
+            is_used = number < len(values)
+            name.setVisible(is_used)
+            box.setVisible(is_used)
             name.setText("RZ" if constant else _coefficient(number))
-            if there and not (
+            if is_used and not (
                 box.hasFocus() and abs(box.value() - np.degrees(values[number])) < 6e-4
             ):
                 box.setValue(float(np.degrees(values[number])))
@@ -197,7 +197,7 @@ class Controls(QtGui.QWidget):
         self.across.setEnabled(len(names) > 1)
 
     def _fill_branches(self, board: Board, branch: int) -> None:
-        served = None if board.map is None else board.served()
+        served = None if board.map is None else board.reachable_shares()
         texts = []
         for number in range(8):
             text = " ".join(opw.branch_name(number))

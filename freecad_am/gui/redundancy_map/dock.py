@@ -31,14 +31,14 @@ from .comparison import Comparison
 from .consequences import Consequences, Figures, Form, readout
 from .controls import AXES, CURVES, Controls
 from .draft import Draft, Source, source_of, status_of
-from .drawn.board import COLOURS, Board, Dragged, drawn
+from .drawn.board import COLOURS, Board, Dragged, build_curves
 from .drawn.painting import KINDS, Canvas
 
 
 def jump(obj: Any, layer: int, position: Array) -> bool:
     """To the point of a layer of a joint path that is nearest to a position (3,), mm; whether anything followed."""
-    simulated, shown = _simulation(obj, layer, position), _path(obj, layer, position)
-    return simulated or shown
+    simulated, followed = _simulation(obj, layer, position), _path(obj, layer, position)
+    return simulated or followed
 
 
 def _simulation(obj: Any, layer: int, position: Array) -> bool:
@@ -48,8 +48,8 @@ def _simulation(obj: Any, layer: int, position: Array) -> bool:
             continue
         rows = np.flatnonzero(motion.deposit & (motion.layer == layer))
         if len(rows):
-            away = np.linalg.norm(motion.position[rows] - position, axis=1)
-            running.player.go_to_row(int(rows[int(away.argmin())]))
+            distance = np.linalg.norm(motion.position[rows] - position, axis=1)
+            running.player.go_to_row(int(rows[int(distance.argmin())]))
             running.play(False)
             return True
     return False
@@ -65,18 +65,18 @@ def _path(obj: Any, layer: int, position: Array) -> bool:
         or view.rows is None
     ):
         return False
-    first, end = view.rows.of_layers(layer, layer)
-    if end <= first:
+    start, end = view.rows.layer_rows(layer, layer)
+    if end <= start:
         return False
-    away = np.linalg.norm(view.rows.points[first:end] - position, axis=1)
+    distance = np.linalg.norm(view.rows.points[start:end] - position, axis=1)
     begin = 0 if view.shown is None else min(view.shown[0], layer)
-    view.show((begin, layer, int(away.argmin()) + 1))
+    view.show((begin, layer, int(distance.argmin()) + 1))
     opened.follow(obj)
     return True
 
 
 NAME = "RoboticAM_SpinMap"
-WIDE, HIGH = 0.85, 380  # of the window's width; pixels
+WIDTH_SHARE, HEIGHT = 0.85, 380  # of the window's width; pixels
 
 
 class RedundancyMapDock:
@@ -85,7 +85,7 @@ class RedundancyMapDock:
     def __init__(self, obj: Any, closed: Callable[[RedundancyMapDock], None]) -> None:
         """closed: is told when it is."""
         self.obj, self.closed, self.gone = obj, closed, False
-        self.dock = dock_area.dock(NAME, dock_area.BELOW, WIDE, HIGH)
+        self.dock = dock_area.dock(NAME, dock_area.BELOW, WIDTH_SHARE, HEIGHT)
         self.holder = QtGui.QStackedWidget()
         self.canvas = Canvas()
         self._build()
@@ -124,22 +124,22 @@ class RedundancyMapDock:
             ("compare", self._compare),
         ):
             self.form.buttons[name].clicked.connect(lambda *_, act=act: act())
-        before = self.holder.currentWidget()
+        old_form = self.holder.currentWidget()
         self.holder.addWidget(self.form)
         self.holder.setCurrentWidget(self.form)
-        if before is not None:
-            self.holder.removeWidget(before)
-            before.deleteLater()
+        if old_form is not None:
+            self.holder.removeWidget(old_form)
+            old_form.deleteLater()
 
     def _speak(self) -> None:
         """The window has another language: what is chosen stays."""
-        before, hidden = (
+        old_controls, hidden = (
             self.controls,
             [name for name in self.figures.rows if not self.figures.shows(name)],
         )
         self._build()
-        self.controls.kind.setCurrentIndex(before.kind.currentIndex())
-        self.controls.together.setChecked(before.together.isChecked())
+        self.controls.kind.setCurrentIndex(old_controls.kind.currentIndex())
+        self.controls.together.setChecked(old_controls.together.isChecked())
         self.consequences.form = self.form
         self._say_title()
         self._changed_for_good()
@@ -199,17 +199,17 @@ class RedundancyMapDock:
 
     def _chosen(self) -> None:
         """Another layer, branch, axis, or other colours."""
-        layer, axis, across, up = wanted = self.controls.wanted()
+        layer, axis, across, up = selection = self.controls.selection()
         branch = self.controls.branch.currentIndex()
-        if wanted != (self.board.layer, self.board.axis, self.board.across, self.board.up):
-            if layer is not None and layer not in {of for of, _ in self.source.places}:
+        if selection != (self.board.layer, self.board.axis, self.board.across, self.board.up):
+            if layer is not None and layer not in {number for number, _ in self.source.places}:
                 self._fill_controls()
                 return
             self.board = Board(
                 self.source, layer, axis, across, (self.bead, self.clicked.get(self.bead)), up
             )
-            shown = self.board.columns.bead
-            self.bead = int(shown[np.abs(shown - self.bead).argmin()])
+            beads = self.board.columns.bead
+            self.bead = int(beads[np.abs(beads - self.bead).argmin()])
         if branch != self.draft.branch:
             self.draft.branch = branch
             self._changed_for_good()
@@ -264,7 +264,7 @@ class RedundancyMapDock:
     def _show_curves(self) -> None:
         """Draw the curves that are to be seen."""
         self.canvas.set_curves(
-            *drawn(
+            *build_curves(
                 self.board,
                 self.draft,
                 self.bead,
@@ -286,19 +286,24 @@ class RedundancyMapDock:
             self.comparison.start(self.source, self.source.task(self.draft.branch))
         self._name_compare()
 
-    def _show_compared(self, found: tuple[Compared, ...]) -> None:
+    def _show_compared(self, compared: tuple[Compared, ...]) -> None:
         """Another comparison has ended; empty: without a result."""
         self._name_compare()
-        if found:
-            self.compared = found
+        if compared:
+            self.compared = compared
             self._changed()
-        planned = self.consequences.of_plan()
-        for one in self.compared:
-            help = "; ".join(translated(issue.message) for issue in one.issues[:3]) or tr(
+        planned = self.consequences.planned_sums()
+        for method in self.compared:
+            help = "; ".join(translated(issue.message) for issue in method.issues[:3]) or tr(
                 "nothing forbids it"
             )
             self.figures.set(
-                one.name, translated(one.name), COLOURS[one.name], one.sums, planned, help=help
+                method.name,
+                translated(method.name),
+                COLOURS[method.name],
+                method.sums,
+                planned,
+                help=help,
             )
         self._show_curves()
 

@@ -140,18 +140,18 @@ def _as_run(toolpath: Toolpath, planned: JointPath, cell: Cell) -> tuple[Bead, .
     if cell.external is not None:
         return tuple(path.bead for path in planned.beads)
     run = {(path.layer, path.index): path.bead for path in planned.beads}
-    pieces, beads = (
+    piece_counts, beads = (
         Counter(path.layer for path in planned.beads),
         Counter(layer for layer, _, _ in toolpath),
     )
-    found = []
+    run_beads = []
     for layer, index, bead in toolpath:
-        other = run.get((layer, index))
-        if other is not None and bead.closed and pieces[layer] == beads[layer]:
-            away = np.linalg.norm(bead.points[:-1] - other.points[0], axis=1)
-            bead = bead.started_at(int(away.argmin()))
-        found.append(bead)
-    return tuple(found)
+        run_bead = run.get((layer, index))
+        if run_bead is not None and bead.closed and piece_counts[layer] == beads[layer]:
+            distance = np.linalg.norm(bead.points[:-1] - run_bead.points[0], axis=1)
+            bead = bead.started_at(int(distance.argmin()))
+        run_beads.append(bead)
+    return tuple(run_beads)
 
 
 ROWS = 61  # values of the axis that goes upwards
@@ -171,24 +171,26 @@ class Pair:
     phi: float
     count: int
 
-    def compute(self, branch: int, known: RedundancyMap | None) -> tuple[RedundancyMap, Picture]:
+    def compute(self, branch: int, existing: RedundancyMap | None) -> tuple[RedundancyMap, Picture]:
         """All branches, cells in one row, where they are not known yet, and the picture (R, C) of one."""
         task = self.source.task(branch)
-        found = known or redundancy_map.redundancy_map(
+        result = existing or redundancy_map.redundancy_map(
             task,
             self.cells,
             redundancy_map.ROTATION,
             self.source.toolpath.surroundings,
             np.array([self.phi]),
         )
-        return found, map.in_rows(redundancy_map.picture(task, found, branch), len(self.values))
+        return result, map.in_rows(redundancy_map.picture(task, result, branch), len(self.values))
 
-    def arm(self, branch: int, known: RedundancyMap) -> Mask:
+    def arm(self, branch: int, redundancy: RedundancyMap) -> Mask:
         """(R, C) where links of the robot touch something."""
         source = self.source
         moment = source.starts[self.cells.bead] + self.cells.point
-        found = redundancy_map.arm_touched(source.task(branch), known, branch, source.arm, moment)
-        return found.reshape(len(self.values), self.count)
+        touched = redundancy_map.arm_touched(
+            source.task(branch), redundancy, branch, source.arm, moment
+        )
+        return touched.reshape(len(self.values), self.count)
 
     def number(self, column: int, value: float) -> int:
         """Which of `cells` is at a column and a height of the map, which goes from -pi to pi."""
@@ -206,10 +208,10 @@ class Pair:
         machine = self.source.cell.machine
         unit = float(machine.unit_values[self.source.cell.robot.chain.axes + self.up])
         sign = " mm" if machine.chain.sliding[self.source.cell.robot.chain.axes + self.up] else "°"
-        shown = np.unique(np.round(np.linspace(0, len(self.values) - 1, LABELS)).astype(int))
+        rows = np.unique(np.round(np.linspace(0, len(self.values) - 1, LABELS)).astype(int))
         return [
             (float(TURN * k / (len(self.values) - 1) - np.pi), f"{self.values[k] / unit:.0f}{sign}")
-            for k in shown
+            for k in rows
         ]
 
     @property
@@ -220,18 +222,20 @@ class Pair:
         )
 
 
-def pair_of(source: Source, at: tuple[int, int], axes: tuple[int, int], offsets: Array) -> Pair:
+def pair_of(
+    source: Source, position: tuple[int, int], axes: tuple[int, int], offsets: Array
+) -> Pair:
     """At a point (bead, point): values (C,) of the first of two external axes against those of the second over its range."""
-    bead, point = at
+    bead, point = position
     values = map.span(source.task(source.branch), source.beads[bead], point, axes[1], ROWS)
-    cells = map.across_two_axes(source.beads, source.cell, at, axes, (offsets, values))
-    here = float(redundancy_map.planned_external(source.beads[bead])[point, axes[1]])
+    cells = map.across_two_axes(source.beads, source.cell, position, axes, (offsets, values))
+    planned = float(redundancy_map.planned_external(source.beads[bead])[point, axes[1]])
     return Pair(
         source,
         axes[1],
         cells,
         values,
-        here,
+        planned,
         float(source.planned.beads[bead].phi[point]),
         len(offsets),
     )
@@ -272,34 +276,39 @@ class Draft:
 
     def copied(self) -> Draft:
         """The curve as it is now, for another thread."""
-        other = copy.copy(self)
-        other.coefficients, other.thresholds = self.coefficients.copy(), dict(self.thresholds)
-        return other
+        duplicate = copy.copy(self)
+        duplicate.coefficients, duplicate.thresholds = (
+            self.coefficients.copy(),
+            dict(self.thresholds),
+        )
+        return duplicate
 
-    def learn(self, other: Draft) -> None:
+    def learn(self, duplicate: Draft) -> None:
         """Keep what a copy had to compute of the points."""
-        self.__dict__["full"] = other.full
-        self.thresholds.update(other.thresholds)
+        self.__dict__["full"] = duplicate.full
+        self.thresholds.update(duplicate.thresholds)
 
     def reset(self) -> None:
         """Back to what was planned."""
         source = self.source
         self.branch = source.branch
         by_place = {(path.layer, path.index): path.coefficients for path in source.planned.beads}
-        known = [by_place.get(place) for place in source.places]
+        planned = [by_place.get(key) for key in source.places]
         points = self.live.points
-        width = max([source.parameters.degree + 1, *(len(row) for row in known if row is not None)])
-        if all(row is not None for row in known) and len(source.planned.beads) == len(
+        width = max(
+            [source.parameters.degree + 1, *(len(row) for row in planned if row is not None)]
+        )
+        if all(row is not None for row in planned) and len(source.planned.beads) == len(
             source.places
         ):
-            self.coefficients = np.array([np.pad(row, (0, width - len(row))) for row in known])
+            self.coefficients = np.array([np.pad(row, (0, width - len(row))) for row in planned])
         else:
             self.coefficients = rotation_curve.fitted(
                 points, self._variable(points, self.live.planned), width - 1
             )
-            whole = len(source.planned.beads) == len(source.places)
-            for row, known_row in zip(self.coefficients, known):
-                if known_row is not None and whole:
+            is_complete = len(source.planned.beads) == len(source.places)
+            for row, known_row in zip(self.coefficients, planned):
+                if known_row is not None and is_complete:
                     row[:] = 0.0
                     row[: len(known_row)] = known_row
         self.first = self.coefficients.copy()
@@ -315,14 +324,14 @@ class Draft:
     @property
     def changed(self) -> list[int]:
         """Beads whose polynomial is no longer the planned one."""
-        first = np.zeros_like(self.coefficients)
-        width = min(first.shape[1], self.first.shape[1])
-        first[:, :width] = self.first[:, :width]
-        lost = np.abs(self.first[:, width:]).max(axis=1, initial=0.0) > TOLERANCE
+        planned = np.zeros_like(self.coefficients)
+        width = min(planned.shape[1], self.first.shape[1])
+        planned[:, :width] = self.first[:, :width]
+        is_truncated = np.abs(self.first[:, width:]).max(axis=1, initial=0.0) > TOLERANCE
         return [
             int(k)
             for k in np.flatnonzero(
-                (np.abs(self.coefficients - first).max(axis=1) > TOLERANCE) | lost
+                (np.abs(self.coefficients - planned).max(axis=1) > TOLERANCE) | is_truncated
             )
         ]
 
@@ -349,7 +358,7 @@ class Draft:
             value = value * points.parameter + column[bead]
         return task.rotation(points, value)[0]
 
-    def followed(self, live: bool = True) -> Followed:
+    def evaluate(self, live: bool = True) -> Followed:
         """What the curve asks of the machine."""
         sampled = self.live if live else self.full
         return self.follow(self.phi(sampled.points, sampled.points.bead), live)
@@ -362,11 +371,13 @@ class Draft:
             self.thresholds[key] = task.thresholds(sampled.points)
         return rotation_curve.follow(task, sampled.points, self.thresholds[key], sampled.lasts, phi)
 
-    def along(self, paths: Sequence[BeadPath], at: Columns) -> Array:
+    def rotation_at(self, paths: Sequence[BeadPath], columns: Columns) -> Array:
         """(C,) the rotation of planned paths, at columns of a map."""
-        wanted = {int(k): at.points.parameter[at.bead == k] for k in np.unique(at.bead)}
+        parameters = {
+            int(k): columns.points.parameter[columns.bead == k] for k in np.unique(columns.bead)
+        }
         return np.concatenate(
-            list(rotation_along(paths, self.source.beads, self.source.places, wanted).values())
+            list(rotation_along(paths, self.source.beads, self.source.places, parameters).values())
         )
 
     # ---- changing it
@@ -397,21 +408,21 @@ class Draft:
         """Move one handle of a bead by an angle, and the same of further beads."""
         task, points = self.source.task(self.branch), self.live.points
         low, high = points.ends
-        known: dict[
+        changes: dict[
             tuple[float, float, bool], Array
         ] = {}  # beads that run over the same change alike
         for k in beads:
             key = float(low[k]), float(high[k]), bool(points.closed[k])
-            if key not in known:
+            if key not in changes:
                 number = min(handle, len(self.handles(k)) - 1)
-                known[key] = rotation_curve.pull(task, points, k, self.degree, number)
-            self.coefficients[k] += by * known[key]
+                changes[key] = rotation_curve.pull(task, points, k, self.degree, number)
+            self.coefficients[k] += by * changes[key]
 
     def set_degree(self, degree: int) -> None:
         """Polynomials of another degree: of a higher one they are as they were, of a lower one as near as they can be."""
         if degree > self.degree:
-            more = np.zeros((len(self.coefficients), degree - self.degree))
-            self.coefficients = np.concatenate([self.coefficients, more], axis=1)
+            zeros = np.zeros((len(self.coefficients), degree - self.degree))
+            self.coefficients = np.concatenate([self.coefficients, zeros], axis=1)
         elif degree < self.degree:
             points = self.live.points
             self.coefficients = rotation_curve.fitted(
@@ -422,18 +433,18 @@ class Draft:
 
     def arguments(self) -> dict[str, str]:
         """What `api.change` is to be called with, as Python texts, so that the planner plans this curve."""
-        own = OF_CELL if self.source.cell.branch == self.branch else BRANCH_WORDS[self.branch]
-        found = {"own_branch": repr(own)}
+        branch = OF_CELL if self.source.cell.branch == self.branch else BRANCH_WORDS[self.branch]
+        shared = {"own_branch": repr(branch)}
         if self.kind == CONSTANT:
             return {
                 "method": repr(CONSTANT),
                 "rz": repr(round(float(np.degrees(self.rz)), 9)),
                 "given": "()",
-                **found,
+                **shared,
             }
-        return {"method": repr(METHOD), "given": repr(self.given()), **found}
+        return {"method": repr(METHOD), "given": repr(self.polynomial_texts()), **shared}
 
-    def given(self) -> tuple[str, ...]:
+    def polynomial_texts(self) -> tuple[str, ...]:
         """The polynomials of the beads, as the job file has them; one for all where they are alike."""
         same = np.abs(self.coefficients - self.coefficients[0]).max() <= TOLERANCE
         rows = (
@@ -441,30 +452,34 @@ class Draft:
             if same
             else list(zip(self.source.places, self.coefficients))
         )
-        return tuple(given_text(place, tuple(float(value) for value in row)) for place, row in rows)
+        return tuple(given_text(key, tuple(float(value) for value in row)) for key, row in rows)
 
     # ----
 
-    def _sampled(self, most: int) -> Sampled:
-        source, kept = self.source, []
+    def _sampled(self, limit: int) -> Sampled:
+        source, indices = self.source, []
         total = int(self.starts[-1])
         for bead in source.beads:
             turns = abs(float(bead.parameter[-1] - bead.parameter[0])) / (2.0 * np.pi)
-            least = max(10, int(np.ceil(12 * turns)))
+            minimum = max(10, int(np.ceil(12 * turns)))
             count = (
                 len(bead)
-                if most >= total
-                else min(len(bead), max(least, len(bead) * most // total))
+                if limit >= total
+                else min(len(bead), max(minimum, len(bead) * limit // total))
             )
-            kept.append(np.unique(np.round(np.linspace(0, len(bead) - 1, count)).astype(np.int64)))
-        row = np.concatenate([start + index for start, index in zip(self.starts, kept)])
-        counts = np.array([len(index) for index in kept])
+            indices.append(
+                np.unique(np.round(np.linspace(0, len(bead) - 1, count)).astype(np.int64))
+            )
+        row = np.concatenate([start + index for start, index in zip(self.starts, indices)])
+        counts = np.array([len(index) for index in indices])
         position, tool, parameter = (
-            np.concatenate([getattr(bead, name)[index] for bead, index in zip(source.beads, kept)])
+            np.concatenate(
+                [getattr(bead, name)[index] for bead, index in zip(source.beads, indices)]
+            )
             for name in ("points", "tool", "parameter")
         )
         external, slides = (
-            redundancy_map.external_of(source.cell, source.beads, kept),
+            redundancy_map.external_of(source.cell, source.beads, indices),
             source.cell.machine.chain.sliding,
         )
         points = Points(
@@ -472,22 +487,22 @@ class Draft:
             tool,
             parameter,
             np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64),
-            np.repeat(np.arange(len(kept)), counts),
+            np.repeat(np.arange(len(indices)), counts),
             np.array([bead.closed for bead in source.beads], dtype=bool),
             source.cell.pose_frames(position, tool, external),
             external,
             slides if slides.any() else None,
         )
-        wanted = {
-            k: bead.parameter[index] for k, (bead, index) in enumerate(zip(source.beads, kept))
+        parameters = {
+            k: bead.parameter[index] for k, (bead, index) in enumerate(zip(source.beads, indices))
         }
         planned = list(
-            rotation_along(source.planned.beads, source.beads, source.places, wanted).values()
+            rotation_along(source.planned.beads, source.beads, source.places, parameters).values()
         )
         return Sampled(
             points,
-            tuple(kept),
-            rotation_curve.durations(source.beads, kept),
+            tuple(indices),
+            rotation_curve.durations(source.beads, indices),
             np.concatenate(planned),
             row.astype(np.int64),
         )

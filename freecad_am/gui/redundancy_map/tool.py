@@ -30,7 +30,7 @@ def show(obj: Any) -> RedundancyMapDock:
 def redundancy_map() -> None:
     """Open the map of the selected joint path, or that of the program or job that is selected; where nothing of a job is,
     of the last one with a result."""
-    selected = [found for found in map(_joint_path, job_selection()) if found is not None]
+    selected = [path for path in map(_joint_path, job_selection()) if path is not None]
     if not selected and job_named():
         _say(
             tr("{} has no joint path to map; make one first, or select another job.").format(
@@ -38,12 +38,12 @@ def redundancy_map() -> None:
             )
         )
         return
-    made = [obj for obj in App.ActiveDocument.Objects if _joint_path(obj) is obj and obj.Key]
-    if not selected and not made:
+    candidates = [obj for obj in App.ActiveDocument.Objects if _joint_path(obj) is obj and obj.Key]
+    if not selected and not candidates:
         _say(tr("There is no joint path to map; make one first."))
         return
     try:
-        show(selected[0] if selected else made[-1])
+        show(selected[0] if selected else candidates[-1])
     except AmError as error:
         App.Console.PrintWarning(error_line(error))
         Gui.getMainWindow().statusBar().showMessage(translated_error(error), 8000)

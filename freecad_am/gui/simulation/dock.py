@@ -24,7 +24,7 @@ from .scene import Scene
 NAME = "RoboticAM_Simulation"
 FRAME = 30  # ms
 FIT = 150  # ms
-WIDE = 350  # pixels, at least
+MIN_WIDTH = 350  # pixels, at least
 
 
 class Simulation:
@@ -58,12 +58,12 @@ class Simulation:
 
     def _title(self) -> str:
         document = App.listDocuments().get(self.run.document)
-        of = (
+        title = (
             self.run.title
             if document is None
             else tr("{} ({})").format(self.run.title, document.Label)
         )
-        return tr("Simulation of {title}").format(title=of)
+        return tr("Simulation of {title}").format(title=title)
 
     def _speak(self) -> None:
         """The window has another language."""
@@ -95,7 +95,7 @@ class Simulation:
     def _reserve_width(self) -> None:
         self.fields.reserve_width()
         bar = self.scroll.verticalScrollBar().sizeHint().width()
-        self.scroll.setMinimumWidth(max(WIDE, self.fields.minimumSizeHint().width() + bar))
+        self.scroll.setMinimumWidth(max(MIN_WIDTH, self.fields.minimumSizeHint().width() + bar))
 
     # ---- what the user does
 
@@ -131,9 +131,9 @@ class Simulation:
         self.play(False)
 
     def _next_finding(self) -> None:
-        found = self.player.next_finding()
+        finding = self.player.next_finding()
         self.play(False)
-        self.fields.tell_finding(found)
+        self.fields.tell_finding(finding)
 
     def _fit(self) -> None:
         if self.scene is not None:

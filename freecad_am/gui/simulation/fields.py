@@ -66,10 +66,10 @@ class JointBars(QtGui.QWidget):
         painter = QtGui.QPainter(self)
         painter.setRenderHint(QtGui.QPainter.Antialiasing)
         wide = self.fontMetrics().boundingRect
-        most = "8888.8 mm" if "mm" in self.units else "8888.8°"
+        widest = "8888.8 mm" if "mm" in self.units else "8888.8°"
         name, value, margin, speed = (
             wide(text).width() + _GAP
-            for text in (max(self.names, key=len), f"-{most}", most, "88888 %")
+            for text in (max(self.names, key=len), f"-{widest}", widest, "88888 %")
         )
         name = max(name, 22)
         left, right = _PAD + name + value, self.width() - _PAD - margin - speed
@@ -81,20 +81,20 @@ class JointBars(QtGui.QWidget):
         ink, faint = colours.ink(), QtGui.QColor(colours.ink())
         faint.setAlpha(GROOVE)
         painter.setPen(colours.of(colours.FAINT))
-        for at, width, text in heads:
+        for x, width, text in heads:
             flags = QtCore.Qt.AlignVCenter | (
                 QtCore.Qt.AlignHCenter if text == heads[0][2] else QtCore.Qt.AlignRight
             )
-            painter.drawText(QtCore.QRect(at, 0, width, self.row), int(flags), text)
+            painter.drawText(QtCore.QRect(x, 0, width, self.row), int(flags), text)
         for axis, label in enumerate(self.names):
             top = (axis + 1) * self.row
             colour = colours.of(colours.INVALID) if self.bad[axis] else ink
             painter.setPen(colour)
-            shown = self.texts(axis)
+            texts = self.texts(axis)
             self._text(painter, _PAD, top, name, label, False)
-            self._text(painter, _PAD + name, top, value - _GAP, shown[0], True)
-            self._text(painter, right, top, margin, shown[1], True)
-            self._text(painter, right + margin, top, speed, shown[2], True)
+            self._text(painter, _PAD + name, top, value - _GAP, texts[0], True)
+            self._text(painter, right, top, margin, texts[1], True)
+            self._text(painter, right + margin, top, speed, texts[2], True)
             self._bar(painter, left, top, right - left, axis, faint)
         painter.end()
 
@@ -115,13 +115,13 @@ class JointBars(QtGui.QWidget):
         share = float(np.clip((value - lower) / (upper - lower), 0.0, 1.0))
         colour = BAD if self.bad[axis] else GOOD
         middle = groove.left() + 0.5 * groove.width()
-        at = groove.left() + share * groove.width()
+        x = groove.left() + share * groove.width()
         painter.setBrush(colour.lighter(150))
         painter.drawRect(
-            QtCore.QRectF(min(middle, at), groove.top(), abs(at - middle), groove.height())
+            QtCore.QRectF(min(middle, x), groove.top(), abs(x - middle), groove.height())
         )
         painter.setBrush(colour)
-        painter.drawRoundedRect(QtCore.QRectF(at - 2.5, top + 0.18 * high, 5.0, 0.64 * high), 2, 2)
+        painter.drawRoundedRect(QtCore.QRectF(x - 2.5, top + 0.18 * high, 5.0, 0.64 * high), 2, 2)
 
     def _text(
         self, painter: Any, left: int, top: int, width: int, text: str, to_right: bool
@@ -272,35 +272,35 @@ class Fields(QtGui.QWidget):
         self.labels["clock"].show_text(wording.times(self.run, self.player.time))
         self.labels["place"].show_text(wording.place(self.run, moment))
         self.bars.set(moment.values, moment.margins, moment.ratios, moment.bad)
-        speed, kept = wording.speed(moment)
+        speed, is_kept = wording.speed(moment)
         for name, text, good in (
             (
                 "doing",
                 wording.doing(self.run, moment),
                 bool(np.isfinite(moment.state.joints).all()),
             ),
-            ("speed", speed, kept),
+            ("speed", speed, is_kept),
             ("condition", wording.condition(moment), not moment.singular),
         ):
             label = self.labels[name]
             label.show_text(text)
             set_role(label, PLAIN if good else INVALID)
 
-    def tell_finding(self, found: Any) -> None:
+    def tell_finding(self, finding: Any) -> None:
         """Tell of a finding, or how many there are."""
         count = len(self.run.watch.findings)
-        if found is None:
+        if finding is None:
             text = wording.count_of_findings(count) if count else wording.nothing(self.run)
         else:
-            limit = found.label in self.run.cell.machine.axes
+            limit = finding.label in self.run.cell.machine.axes
             unit = (
-                self.run.cell.machine.units[self.run.cell.machine.axes.index(found.label)]
+                self.run.cell.machine.units[self.run.cell.machine.axes.index(finding.label)]
                 if limit
                 else "deg"
             )
-            text = f"{(self.player.finding or 0) + 1}/{count}: {wording.finding(found, unit)}"
+            text = f"{(self.player.finding or 0) + 1}/{count}: {wording.finding(finding, unit)}"
         self.finding.setText(text)
-        set_role(self.finding, INVALID if found is not None else PLAIN)
+        set_role(self.finding, INVALID if finding is not None else PLAIN)
 
 
 def _label(name: str, text: str = "") -> Any:

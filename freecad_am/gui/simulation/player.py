@@ -84,7 +84,7 @@ def prepared(obj: Any) -> Callable[[], Run]:
         run = as_run(planned, cell, toolpath.chord_error, settings, issues)
         motion = run.motion
         times = timeline(motion, process, [layer.wait for layer in toolpath.layers])
-        kept = achievable_feed(motion, cell.machine.max_speed, cell.machine.max_acceleration)
+        feed = achievable_feed(motion, cell.machine.max_speed, cell.machine.max_acceleration)
         return Run(
             document=document,
             title=label,
@@ -95,11 +95,11 @@ def prepared(obj: Any) -> Callable[[], Run]:
             width=process.bead_width,
             motion=motion,
             times=times,
-            feed=kept,
+            feed=feed,
             watch=watch(
                 motion,
                 cell,
-                kept,
+                feed,
                 run.condition,
                 run.threshold,
                 run.issues,
@@ -123,9 +123,9 @@ def _predicted(toolpath: Any) -> Array | None:
             and obj.Key
             and obj.Status == UP_TO_DATE
         ):
-            found: Array | None = stage.value(obj).laid
-            if found is not None:
-                return found
+            deposit: Array | None = stage.value(obj).laid
+            if deposit is not None:
+                return deposit
     return None
 
 
@@ -220,9 +220,9 @@ class Player:
         state = run.times.state_at(self.time)
         row = int(state.row) if self.row is None else self.row
         motion, machine = run.motion, run.cell.machine
-        before = slice(max(row - 1, 0), row + 1)
+        rows = slice(max(row - 1, 0), row + 1)
         ratios = speed_ratios(
-            motion.joints[before], np.nan_to_num(motion.duration[before]), machine.max_speed
+            motion.joints[rows], np.nan_to_num(motion.duration[rows]), machine.max_speed
         )[-1]
         ratios = np.nan_to_num(ratios, posinf=0.0)
         margins = shown_margins(run.cell, state.joints)

@@ -38,7 +38,7 @@ from ..nodes.lines import Lines, fill
 from ..path.pieces import PathNodes, Rows
 from .player import Run
 
-METAL, SLOW, WRONG = (0.62, 0.66, 0.72), (0.96, 0.55, 0.05), (0.86, 0.1, 0.12)
+METAL_COLOUR, SLOW_COLOUR, WRONG_COLOUR = (0.62, 0.66, 0.72), (0.96, 0.55, 0.05), (0.86, 0.1, 0.12)
 TO_COME = (0.5, 0.52, 0.56)
 OURS = ("toolpath", "joint path", "cell")
 
@@ -49,8 +49,8 @@ class Scene:
     def __init__(self, run: Run, view: Any) -> None:
         self.run, self.view = run, view
         cell, mount = run.cell, run.cell.mount
-        rest = placing(cell, at_rest(cell, resting_point(run.toolpath, mount)))
-        self.to_view = frames.inverse(rest.part)
+        resting = placing(cell, at_rest(cell, resting_point(run.toolpath, mount)))
+        self.to_view = frames.inverse(resting.part)
         looks = run.looks
         self.machine = MachineNodes(
             cell.robot, plain_links(cell.robot, looks.platform_diameter, looks.nozzle.length)
@@ -61,18 +61,18 @@ class Scene:
         self.deposit, self.to_come = PathNodes(), PathNodes()
         self.deposit.as_tubes, self.to_come.style.lineWidth = True, 1.0
         self.last, self.growing = (
-            Lines(3.0, METAL),
+            Lines(3.0, METAL_COLOUR),
             False,
         )  # the segment that is under way, and whether one is
         self.last.set(np.zeros((2, 3)), [2])
         self.last.show(False)
         self.last_points = self.last.coordinates.point
         self.root = coin.SoSeparator()
-        nozzle, part = coin.SoSeparator(), coin.SoSeparator()
+        nozzle, part_node = coin.SoSeparator(), coin.SoSeparator()
         nozzle.addChild(self.nozzle)
         for node in (nozzle_node(run.looks), holder_node(run.looks)):
             nozzle.addChild(coloured(NOZZLE, node))
-        part.addChild(self.part)
+        part_node.addChild(self.part)
         platform = coin.SoSeparator()
         for child in platform_nodes(run.looks, mount):
             platform.addChild(child)
@@ -82,10 +82,10 @@ class Scene:
             self.to_come.node,
             coloured(PLATFORM, platform),
         ):
-            part.addChild(child)
-        for child in (self.machine.node, self.external_links.node, nozzle, part):
+            part_node.addChild(child)
+        for child in (self.machine.node, self.external_links.node, nozzle, part_node):
             self.root.addChild(child)
-        self._place(rest)  # where the machine stays as long as no point is reached
+        self._place(resting)  # where the machine stays as long as no point is reached
         self._fill()
         self.camera, self.camera_text = view.getCameraNode().copy(), view.getCamera()
         self.graph = view.getSceneGraph()
@@ -103,15 +103,15 @@ class Scene:
         rows = Rows.of(
             beads, _layers(self.run), self.run.width, lambda: self.run.toolpath.layer_height
         )
-        colours = np.tile(METAL, (len(rows), 1))
+        colours = np.tile(METAL_COLOUR, (len(rows), 1))
         slowed, wrong = self.run.feed.slowed[deposit], _wrong(self.run)[deposit]
-        colours[slowed], colours[wrong] = SLOW, WRONG
+        colours[slowed], colours[wrong] = SLOW_COLOUR, WRONG_COLOUR
         self.deposit.set(rows)
         self.deposit.paint(colours)
         self.deposit.show(0, 0)
         self.to_come.set(rows)
         plain = np.tile(TO_COME, (len(rows), 1))
-        plain[slowed], plain[wrong] = SLOW, WRONG
+        plain[slowed], plain[wrong] = SLOW_COLOUR, WRONG_COLOUR
         self.to_come.paint(plain)
 
     # ---- each frame
@@ -120,15 +120,17 @@ class Scene:
         """Everything as it is on the way to a row, or at it. joints: (axes,), NaN leaves the machine where it is."""
         if np.isfinite(joints).all():
             self._place(placing(self.run.cell, joints))
-        own = len(self.machine.bad)
-        self.machine.paint(bad[:own])
-        self.external_links.paint(bad[own:])
-        done = int(self.rows_before[row if running else row + 1])
-        if done != self.deposit.end:
-            self.deposit.show(0, done)
+        robot_links = len(self.machine.bad)
+        self.machine.paint(bad[:robot_links])
+        self.external_links.paint(bad[robot_links:])
+        row_count = int(self.rows_before[row if running else row + 1])
+        if row_count != self.deposit.end:
+            self.deposit.show(0, row_count)
             rows = self.deposit.rows
             # from the last point, unless there the bead has ended
-            self.to_come.show(max(done - 1, int(rows.starts[rows.bead_of(done)])), len(rows))
+            self.to_come.show(
+                max(row_count - 1, int(rows.starts[rows.bead_of(row_count)])), len(rows)
+            )
         motion = self.run.motion
         growing = running and row > 0 and bool(motion.deposit[row] and motion.deposit[row - 1])
         if growing != self.growing:
@@ -137,11 +139,11 @@ class Scene:
         if growing:
             fill(self.last_points, np.stack([motion.position[row - 1], position]))
 
-    def _place(self, place: Placing) -> None:
-        self.machine.pose(self.to_view @ place.links)
-        self.external_links.pose(self.to_view @ place.external_links)
-        move(self.part_matrix, self.to_view @ place.part)
-        move(self.nozzle_matrix, self.to_view @ place.nozzle)
+    def _place(self, pose: Placing) -> None:
+        self.machine.pose(self.to_view @ pose.links)
+        self.external_links.pose(self.to_view @ pose.external_links)
+        move(self.part_matrix, self.to_view @ pose.part)
+        move(self.nozzle_matrix, self.to_view @ pose.nozzle)
 
     # ---- the end
 
@@ -176,19 +178,19 @@ def _beads(run: Run) -> list[Bead]:
     motion = run.motion
     height = None if run.deposit is None else heights(run.deposit, motion.position, motion.layer)
     rows = np.flatnonzero(motion.deposit)
-    pieces = np.split(rows, np.flatnonzero(motion.point[rows] == 0)[1:])
+    stretches = np.split(rows, np.flatnonzero(motion.point[rows] == 0)[1:])
     return [
         Bead(
-            points=motion.position[piece],
-            build=motion.build[piece],
-            tool=motion.tool[piece],
-            parameter=np.arange(len(piece)),
-            speed=motion.speed[piece],
+            points=motion.position[stretch],
+            build=motion.build[stretch],
+            tool=motion.tool[stretch],
+            parameter=np.arange(len(stretch)),
+            speed=motion.speed[stretch],
             closed=False,
-            width=None if np.isnan(motion.width[piece]).any() else motion.width[piece],
-            height=None if height is None or np.isnan(height[piece]).any() else height[piece],
+            width=None if np.isnan(motion.width[stretch]).any() else motion.width[stretch],
+            height=None if height is None or np.isnan(height[stretch]).any() else height[stretch],
         )
-        for piece in pieces
+        for stretch in stretches
     ]
 
 
@@ -213,7 +215,7 @@ def _hide_ours(document: str) -> dict[str, int]:
 def _show_again(document: str, hidden: dict[str, int]) -> None:
     if document not in App.listDocuments():
         return
-    for name, which in hidden.items():
+    for name, child in hidden.items():
         obj = App.getDocument(document).getObject(name)
         if obj is not None and obj.ViewObject.Visibility:
-            obj.ViewObject.SwitchNode.whichChild = which
+            obj.ViewObject.SwitchNode.whichChild = child

@@ -31,9 +31,11 @@ def simulate() -> None:
             )
         )
         return
-    made = [obj for obj in App.ActiveDocument.Objects if _kind(obj) == "joint path" and obj.Key]
-    if selected or made:
-        show(selected[0] if selected else made[-1])
+    candidates = [
+        obj for obj in App.ActiveDocument.Objects if _kind(obj) == "joint path" and obj.Key
+    ]
+    if selected or candidates:
+        show(selected[0] if selected else candidates[-1])
     else:
         _say(tr("There is no joint path to simulate; make one first."))
 

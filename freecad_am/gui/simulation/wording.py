@@ -23,17 +23,19 @@ _HOUR = 3600.0  # s
 
 def clock(seconds: float) -> str:
     """A time as minutes and seconds, with hours where there are any."""
-    whole = max(0.0, seconds)
-    minutes, rest = divmod(whole, 60.0)
+    duration = max(0.0, seconds)
+    minutes, remainder = divmod(duration, 60.0)
     hours, minutes = divmod(int(minutes), 60)
-    return f"{hours}:{minutes:02d}:{int(rest):02d}" if hours else f"{minutes}:{rest:04.1f}"
+    return (
+        f"{hours}:{minutes:02d}:{int(remainder):02d}" if hours else f"{minutes}:{remainder:04.1f}"
+    )
 
 
-def finding(found: Finding, unit: str = "deg") -> str:
+def finding(finding: Finding, unit: str = "deg") -> str:
     """One finding."""
     unit = "°" if unit == "deg" else " mm"
-    if found.kind == watch.TOUCHES:
-        text = link_touches(found.label, found.other)
+    if finding.kind == watch.TOUCHES:
+        text = link_touches(finding.label, finding.other)
         return text[:1].upper() + text[1:]
     texts = {
         watch.UNREACHABLE: tr("Out of reach"),
@@ -43,13 +45,13 @@ def finding(found: Finding, unit: str = "deg") -> str:
         watch.SLOWED: tr("{label} cannot keep the speed: {than} becomes {value}"),
         watch.ISSUE: "{label}",
     }
-    value = -found.value if found.kind == watch.LIMIT else found.value
-    if found.kind == watch.SLOWED:
-        return texts[found.kind].format(
-            label=found.label, value=_speed(value), than=_speed(found.than)
+    value = -finding.value if finding.kind == watch.LIMIT else finding.value
+    if finding.kind == watch.SLOWED:
+        return texts[finding.kind].format(
+            label=finding.label, value=_speed(value), than=_speed(finding.than)
         )
-    label = translated(found.label) if found.kind == watch.ISSUE else found.label
-    return texts[found.kind].format(label=label, value=value, than=found.than, unit=unit)
+    label = translated(finding.label) if finding.kind == watch.ISSUE else finding.label
+    return texts[finding.kind].format(label=label, value=value, than=finding.than, unit=unit)
 
 
 def count_of_findings(count: int) -> str:
@@ -105,16 +107,16 @@ def _doings() -> tuple[str, str, str, str, str]:
 
 def speed(moment: Moment) -> tuple[str, bool]:
     """Speed asked for and achieved, and whether it is kept."""
-    kept = moment.achieved >= moment.asked * (1.0 - 1e-6)
+    is_kept = moment.achieved >= moment.asked * (1.0 - 1e-6)
     if not math.isfinite(moment.asked):
         return "–", True
-    if kept:
+    if is_kept:
         return _speed(moment.asked), True
     return _instead(_speed(moment.achieved), _speed(moment.asked)), False
 
 
-def _instead(achieved: str, asked: str) -> str:
-    return tr("{achieved} instead of {asked}").format(achieved=achieved, asked=asked)
+def _instead(achieved: str, requested: str) -> str:
+    return tr("{achieved} instead of {asked}").format(achieved=achieved, asked=requested)
 
 
 def _speed(value: float) -> str:
@@ -150,18 +152,20 @@ def times(run: Run, time: float) -> str:
 def widest(run: Run) -> dict[str, tuple[str, ...]]:
     """Texts as wide as those that are told of a run, by the field that tells them."""
     motion, feed = run.motion, run.feed
-    place = (_wide(int(column.max())) for column in (motion.layer, motion.bead, motion.point))
-    asked, slower = (
+    columns = (_wide(int(column.max())) for column in (motion.layer, motion.bead, motion.point))
+    requested, slower = (
         feed.asked,
         ~(feed.achieved >= feed.asked * (1.0 - 1e-6)) & np.isfinite(feed.asked),
     )
-    speeds = [_widest_speed(asked)]
+    speeds = [_widest_speed(requested)]
     if slower.any():
-        speeds.append(_instead(_widest_speed(feed.achieved[slower]), _widest_speed(asked[slower])))
+        speeds.append(
+            _instead(_widest_speed(feed.achieved[slower]), _widest_speed(requested[slower]))
+        )
     shorter = min(run.times.total, _HOUR - 1.0)  # has tenths of a second
     return {
         "clock": tuple(re.sub(r"\d", "8", times(run, time)) for time in (run.times.total, shorter)),
-        "place": (_place(run, *place),),
+        "place": (_place(run, *columns),),
         "doing": _doings(),
         "speed": tuple(speeds),
         "condition": (_condition(0.888, 0.888),),
@@ -175,10 +179,10 @@ def _wide(number: int) -> int:
 
 def _widest_speed(speeds: Array) -> str:
     """A text as wide as those of any of these speeds (n,) mm/s."""
-    shown = preferences.speed(1.0) * speeds[np.isfinite(speeds) & (speeds > 0.0)]
-    if not len(shown):
+    values = preferences.speed(1.0) * speeds[np.isfinite(speeds) & (speeds > 0.0)]
+    if not len(values):
         return "–"
-    powers = np.floor(np.log10([shown.min(), shown.max()]))
+    powers = np.floor(np.log10([values.min(), values.max()]))
     return max((_in_unit(8.88 * 10.0**power) for power in powers), key=len)
 
 

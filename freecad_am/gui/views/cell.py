@@ -65,7 +65,7 @@ class CellView(StageView):
     def follow_stretch(self, view: path_view.PathView) -> None:
         """Move the nozzle to the end of the shown path section; the machine at rest stays."""
         if self.drawn and self.nodes.machine is None and view.obj.ViewObject.Visibility:
-            self.nodes.move_nozzle(at_end(*(view.reached() or self.end)))
+            self.nodes.move_nozzle(at_end(*(view.last_point() or self.end)))
 
     def follow(self) -> None:
         """Redraw if the toolpath changed."""
@@ -118,7 +118,7 @@ def _end_of_shown_path(obj: Any) -> Any:
             and follower.ViewObject.Visibility
             and view.shown is not None
         ):
-            return view.reached()
+            return view.last_point()
     return None
 
 

@@ -85,7 +85,7 @@ class Lesson:
         if path:
             assert colourful(seen) > 250, f"{name}: no path is to be seen"
         if legend:
-            assert legends.shown(App.ActiveDocument), f"{name}: there is no legend"
+            assert legends.visible_scales(App.ActiveDocument), f"{name}: there is no legend"
             corner = seen[:220, :60]
             assert colourful(corner) > 200, f"{name}: the legend is not to be seen"
         if machine:

@@ -51,27 +51,29 @@ class Board:
         layer: int | None,
         axis: str,
         across: int | None = None,
-        at: tuple[int, int | None] | None = None,
+        position: tuple[int, int | None] | None = None,
         up: int | None = None,
     ) -> None:
         self.source, self.layer, self.axis, self.across, self.up = source, layer, axis, across, up
         self.pair: Pair | None = None
-        self.beads = [k for k, (of, _) in enumerate(source.places) if layer is None or of == layer]
+        self.beads = [
+            k for k, (number, _) in enumerate(source.places) if layer is None or number == layer
+        ]
         self.offsets: Array | None = None
-        if across is None or at is None:
-            found = redundancy_map.columns([source.beads[k] for k in self.beads], source.cell)
+        if across is None or position is None:
+            columns = redundancy_map.columns([source.beads[k] for k in self.beads], source.cell)
             self.columns: Columns = dataclasses.replace(
-                found, bead=np.array(self.beads)[found.bead]
+                columns, bead=np.array(self.beads)[columns.bead]
             )
         else:
-            bead = source.beads[at[0]]
-            point = len(bead) // 2 if at[1] is None else at[1]
+            bead = source.beads[position[0]]
+            point = len(bead) // 2 if position[1] is None else position[1]
             self.offsets = map.span(source.task(source.branch), bead, point, across, ACROSS)
             self.columns = map.across(
-                source.beads, source.cell, (at[0], point), across, self.offsets
+                source.beads, source.cell, (position[0], point), across, self.offsets
             )
             if up is not None:
-                self.pair = pair_of(source, (at[0], point), (across, up), self.offsets)
+                self.pair = pair_of(source, (position[0], point), (across, up), self.offsets)
         self.map: RedundancyMap | None = None
         self.pictures: dict[int, Picture] = {}
         self.looked: dict[int, int] = {}  # branches whose links were looked at, one of so many rows
@@ -89,28 +91,28 @@ class Board:
         )
         return cells, self.pictures.get(branch) or redundancy_map.picture(task, cells, branch)
 
-    def take(self, made: tuple[RedundancyMap, Picture]) -> None:
+    def take(self, result: tuple[RedundancyMap, Picture]) -> None:
         """Keep what was computed."""
-        self.map = made[0]
-        self.pictures[made[1].branch] = made[1]
+        self.map = result[0]
+        self.pictures[result[1].branch] = result[1]
 
     @property
     def moment(self) -> Integers:
         """(C,) how many points of the job are deposited before each column."""
         return np.asarray(self.source.starts[self.columns.bead] + self.columns.point)
 
-    def arm(self, branch: int, every: int) -> Mask:
+    def arm(self, branch: int, stride: int) -> Mask:
         """(R, C) where links of the robot touch something; one of so many rows is looked at."""
         assert self.map is not None
         if self.pair is not None:
             return self.pair.arm(branch, self.map)
         return redundancy_map.arm_touched(
-            self.source.task(branch), self.map, branch, self.source.arm, self.moment, every
+            self.source.task(branch), self.map, branch, self.source.arm, self.moment, stride
         )
 
-    def take_arm(self, branch: int, touched: Mask, every: int) -> None:
+    def take_arm(self, branch: int, touched: Mask, stride: int) -> None:
         """Keep what was looked at."""
-        self.looked[branch] = every if self.pair is None else 1
+        self.looked[branch] = stride if self.pair is None else 1
         self.pictures[branch] = dataclasses.replace(self.pictures[branch], arm=touched)
 
     def shows(self, bead: int) -> bool:
@@ -131,14 +133,14 @@ class Board:
             )
         if self.layer is not None:
             return tr("points of layer {}").format(self.layer)
-        seen = len(np.unique(self.columns.bead))
+        count = len(np.unique(self.columns.bead))
         return (
             tr("layers")
-            if seen == len(self.beads)
-            else tr("layers ({} of {} beads)").format(seen, len(self.beads))
+            if count == len(self.beads)
+            else tr("layers ({} of {} beads)").format(count, len(self.beads))
         )
 
-    def served(self) -> Array:
+    def reachable_shares(self) -> Array:
         """(8,) the share of cells that each branch reaches within its limits."""
         assert self.map is not None
         return np.asarray((self.map.margin >= 0.0).mean(axis=(1, 2)))
@@ -157,13 +159,13 @@ class Board:
             return self.seams
         planned = self.source.beads[int(self.columns.bead[0])].external
         assert planned is not None and self.across is not None
-        here = float(planned[int(self.columns.point[0]), self.across])
-        return np.array([0, int(np.abs(self.offsets - here).argmin())])
+        planned_value = float(planned[int(self.columns.point[0]), self.across])
+        return np.array([0, int(np.abs(self.offsets - planned_value).argmin())])
 
     @property
     def _across_name(self) -> str:
-        own = self.source.cell.robot.chain.axes
-        return self.source.cell.machine.axes[own + (self.across or 0)]
+        robot_axes = self.source.cell.robot.chain.axes
+        return self.source.cell.machine.axes[robot_axes + (self.across or 0)]
 
     @property
     def labels(self) -> list[tuple[float, str]]:
@@ -175,23 +177,23 @@ class Board:
                     self.source.cell.robot.chain.axes + (self.across or 0)
                 ]
             )
-            shown = np.unique(np.round(np.linspace(0, count - 1, MOST_LABELS // 2)).astype(int))
-            return [(float(k), f"{self.offsets[k] / unit:.0f}") for k in shown]
+            columns = np.unique(np.round(np.linspace(0, count - 1, MOST_LABELS // 2)).astype(int))
+            return [(float(k), f"{self.offsets[k] / unit:.0f}") for k in columns]
         if self.layer is None:
             layer = np.array([self.source.places[k][0] for k in self.columns.bead])
-            first = np.flatnonzero(np.diff(layer, prepend=-1) != 0)
+            starts = np.flatnonzero(np.diff(layer, prepend=-1) != 0)
             return [
-                (float(k), str(layer[k])) for k in first[:: max(1, -(-len(first) // MOST_LABELS))]
+                (float(k), str(layer[k])) for k in starts[:: max(1, -(-len(starts) // MOST_LABELS))]
             ]
-        chosen = np.unique(np.round(np.linspace(0, count - 1, MOST_LABELS)).astype(int))
-        return [(float(k), str(self.columns.point[k])) for k in chosen]
+        points = np.unique(np.round(np.linspace(0, count - 1, MOST_LABELS)).astype(int))
+        return [(float(k), str(self.columns.point[k])) for k in points]
 
     def column_of(self, bead: int, parameter: float) -> float:
         """Where between columns a parameter of a bead lies."""
-        own = np.flatnonzero(self.columns.bead == bead)
-        known = self.columns.points.parameter[own]
-        way = 1.0 if known[-1] >= known[0] else -1.0
-        return float(np.interp(way * parameter, way * known, own))
+        columns = np.flatnonzero(self.columns.bead == bead)
+        parameters = self.columns.points.parameter[columns]
+        sign = 1.0 if parameters[-1] >= parameters[0] else -1.0
+        return float(np.interp(sign * parameter, sign * parameters, columns))
 
     def place(self, column: int) -> tuple[int, int, int]:
         """Layer, bead and point of a column."""
@@ -219,58 +221,65 @@ class Board:
 
     def _turns(self, value: Array) -> Array:
         """(C,) the whole turns, rad, that the mean of each bead is away from 0."""
-        first = self.seams
-        mean = np.add.reduceat(value, first) / np.diff(np.append(first, len(value)))
+        starts = self.seams
+        mean = np.add.reduceat(value, starts) / np.diff(np.append(starts, len(value)))
         # rounded, so that a curve half a turn away does not hop with its last digit
         turns = TURN * np.round(np.round(mean / TURN, 9))
-        return np.asarray(np.repeat(turns, np.diff(np.append(first, len(value)))))
+        return np.asarray(np.repeat(turns, np.diff(np.append(starts, len(value)))))
 
     def draft_values(self, draft: Draft) -> Array:
         """(C,) the curve that is worked on, in the turns of what was planned, so that it does not hop while it is moved."""
         value = self._unwrapped(draft.phi(self.columns.points, self.columns.bead))
         planned = self.source.planned.beads
         like = (
-            value if draft.kind == CONSTANT else self._unwrapped(draft.along(planned, self.columns))
+            value
+            if draft.kind == CONSTANT
+            else self._unwrapped(draft.rotation_at(planned, self.columns))
         )
         return value - self._turns(like)
 
     def path_values(self, draft: Draft, paths: tuple[BeadPath, ...]) -> Array:
         """(C,) a curve that was planned."""
-        kept = self.curves.get(id(paths))
-        if kept is None or kept[0] is not paths:
-            kept = self.curves[id(paths)] = paths, self.values(draft.along(paths, self.columns))
-        return kept[1]
+        cached = self.curves.get(id(paths))
+        if cached is None or cached[0] is not paths:
+            cached = self.curves[id(paths)] = (
+                paths,
+                self.values(draft.rotation_at(paths, self.columns)),
+            )
+        return cached[1]
 
     def bad(self, draft: Draft, followed: Followed, values: Array) -> Array:
         """(k, 2) columns and values of the points of the curve that the planner objects to."""
         if self.offsets is not None:
             return np.zeros((0, 2))
         row = draft.live.row[~followed.good]
-        known = draft.starts[self.columns.bead] + self.columns.point
+        rows = draft.starts[self.columns.bead] + self.columns.point
         row = row[np.isin(np.searchsorted(draft.starts, row, side="right") - 1, self.columns.bead)]
-        column = np.interp(row, known, np.arange(len(known)))
-        return np.stack([column, np.interp(column, np.arange(len(known)), values)], axis=1)
+        column = np.interp(row, rows, np.arange(len(rows)))
+        return np.stack([column, np.interp(column, np.arange(len(rows)), values)], axis=1)
 
-    def change(self, draft: Draft, column: int, before: float, after: float) -> float:
+    def change(self, draft: Draft, column: int, old: float, new: float) -> float:
         """By how much what the draft varies changes when the curve goes from one value to another at a column, rad."""
         of_rz = draft.kind == CONSTANT or self.source.parameters.parameter == RZ
         if of_rz == (self.axis == RZ):
-            return after - before
+            return new - old
         tool, cell = self.columns.points.tool[[column]], self.source.cell
         phi = [
             redundancy_map.rotation_of(cell, tool, np.array([value]), self.axis)
-            for value in (before, after)
+            for value in (old, new)
         ]
-        one, other = (float((cell.rz_of_phi(tool, at) if of_rz else at)[0]) for at in phi)
+        old_rotation, new_rotation = (
+            float((cell.rz_of_phi(tool, angle) if of_rz else angle)[0]) for angle in phi
+        )
         side = -1.0 if float(tool[0] @ cell.mount[:3, 2]) < 0.0 else 1.0
-        by = other - one
-        return by - TURN * round((by - side * (after - before)) / TURN)
+        by = new_rotation - old_rotation
+        return by - TURN * round((by - side * (new - old)) / TURN)
 
     def cell(self, branch: int, column: int, value: float) -> Cell:
         """What there is to tell of a place on the map."""
         points, task = self.columns.points, self.source.task(branch)
-        at = points.select_points(np.array([column]))
-        phi = redundancy_map.rotation_of(task.cell, at.tool, np.array([value]), self.axis)
+        sample = points.select_points(np.array([column]))
+        phi = redundancy_map.rotation_of(task.cell, sample.tool, np.array([value]), self.axis)
         number, columns = column, self.columns
         if self.pair is not None:
             phi, number, columns = (
@@ -278,24 +287,24 @@ class Board:
                 self.pair.number(column, value),
                 self.pair.cells,
             )
-            at = columns.points.select_points(np.array([number]))
+            sample = columns.points.select_points(np.array([number]))
         joints = redundancy_map.joints_at(task, columns, number, float(phi[0]))[branch]
         offset = np.abs(task.given_rows.offset(joints))
         reached = bool(np.isfinite(joints).all())
-        condition = float(task.condition(at, phi, joints[None])[0]) if reached else 0.0
-        made = self.map
+        condition = float(task.condition(sample, phi, joints[None])[0]) if reached else 0.0
+        redundancy = self.map
         low, high = self.source.parameters.rotation_range
         outside = high - low < TURN - 1e-9 and float((phi[0] - low) % TURN) > high - low
         return Cell(
             self.place(column),
-            float(task.cell.rz_of_phi(at.tool, phi)[0]),
+            float(task.cell.rz_of_phi(sample.tool, phi)[0]),
             float(phi[0]),
             joints,
             float(1.0 - offset.max()) if reached else -np.inf,
             task.given_rows.labels[int(offset.argmax())] if reached else "",
             condition,
-            float(task.thresholds(at)[0]),
-            made is not None and bool(made.touching[number]),
+            float(task.thresholds(sample)[0]),
+            redundancy is not None and bool(redundancy.touching[number]),
             outside,
             self._arm_at(branch, column, joints),
         )
@@ -305,16 +314,16 @@ class Board:
         if branch not in self.looked:
             return None
         arm = self.source.arm
-        found = arm.touches(joints[None], self.moment[[column]])
-        if not found.any[0]:
+        contact = arm.touches(joints[None], self.moment[[column]])
+        if not contact.any[0]:
             return None
-        return arm.links[found.link[0]], arm.names[found.what[0]]
+        return arm.links[contact.link[0]], arm.names[contact.what[0]]
 
 
-OWN, PLANNED = "own", "planned"
+OWN_CURVE, PLANNED_CURVE = "own", "planned"
 COLOURS = {
-    OWN: (255, 140, 0),
-    PLANNED: (255, 255, 255),
+    OWN_CURVE: (255, 140, 0),
+    PLANNED_CURVE: (255, 255, 255),
     "constant": (0, 215, 255),
     "point-by-point": (255, 70, 220),
     "layer-by-layer": (140, 255, 120),
@@ -351,7 +360,7 @@ class Dragged:
     moved: bool = False
 
 
-def drawn(
+def build_curves(
     board: Board,
     draft: Draft,
     bead: int,
@@ -368,14 +377,17 @@ def drawn(
     if board.pair is not None:
         return [], [], np.zeros((0, 2))  # the rotation is what is planned there
     curves = [
-        Curve(board.path_values(draft, paths), COLOURS[name], dashed=name == PLANNED)
-        for name, paths in [(PLANNED, planned), *((one.name, one.paths) for one in compared)]
+        Curve(board.path_values(draft, paths), COLOURS[name], dashed=name == PLANNED_CURVE)
+        for name, paths in [
+            (PLANNED_CURVE, planned),
+            *((method.name, method.paths) for method in compared),
+        ]
         if shows(name)
     ]
-    if not shows(OWN):
+    if not shows(OWN_CURVE):
         return curves, [], np.zeros((0, 2))
     values = board.draft_values(draft)
-    curves.append(Curve(values, COLOURS[OWN], bold=True))
+    curves.append(Curve(values, COLOURS[OWN_CURVE], bold=True))
     return curves, _handles(board, draft, bead, values), board.bad(draft, followed, values)
 
 

@@ -15,7 +15,7 @@ from ....core.planning.redundancy.map import Picture
 from ....core.types import Array, Mask, NDArray
 from ... import colours
 from ...colours import ramp
-from ...path.colouring import NONE, TOO_FAR, TOO_NEAR, Scale, automatic, round_numbers
+from ...path.colouring import ABOVE_COLOUR, BELOW_COLOUR, NONE, Scale, automatic, round_numbers
 from ...texts.in_language import marked, tr
 from .board import Curve, Dragged, Handle
 
@@ -34,43 +34,49 @@ class Painted:
     classes: tuple[tuple[str, tuple[float, float, float]], ...]
 
 
-def painted(of: Picture, kind: str) -> Painted:
+def painted(picture: Picture, kind: str) -> Painted:
     """A picture by margin (percent of half a range) or by condition; what cannot be is in colours of its own."""
-    reachable, beyond = of.reachable, of.past_limit
-    singular = of.singular & ~beyond
+    reachable, beyond = picture.reachable, picture.past_limit
+    singular = picture.singular & ~beyond
     good = reachable & ~beyond & ~singular
-    values = np.where(reachable, 100.0 * of.margin if kind == MARGIN else of.condition, 0.0)
-    found = values[good] if good.any() else np.zeros(1)
-    scale = automatic(found, kind, "%" if kind == MARGIN else "")
+    values = np.where(
+        reachable, 100.0 * picture.margin if kind == MARGIN else picture.condition, 0.0
+    )
+    valid = values[good] if good.any() else np.zeros(1)
+    scale = automatic(valid, kind, "%" if kind == MARGIN else "")
     colours = ramp(scale.share(np.where(good, values, scale.low)).ravel()).reshape(*values.shape, 3)
     classes = []
     for text, cells, colour in (
         (marked("unreachable"), ~reachable, NONE),
-        (marked("beyond a limit"), beyond, TOO_NEAR),
-        (marked("near a singularity"), singular, TOO_FAR),
+        (marked("beyond a limit"), beyond, BELOW_COLOUR),
+        (marked("near a singularity"), singular, ABOVE_COLOUR),
     ):
         if cells.any():
             colours[cells] = colour
             classes.append((text, colour))
-    return Painted(np.round(255.0 * colours).astype(np.uint8), of.hatched, scale, tuple(classes))
+    return Painted(
+        np.round(255.0 * colours).astype(np.uint8), picture.hatched, scale, tuple(classes)
+    )
 
 
-def enlarged(of: Painted, width: int, height: int, low: float, high: float, lines: int) -> Pixels:
+def enlarged(
+    picture: Painted, width: int, height: int, low: float, high: float, lines: int
+) -> Pixels:
     """The picture (height, width, 4) as Qt has it, blue first, from the value `high` at the top to `low`, which may be more
     than a turn apart; hatched by lines that many pixels apart."""
-    rows, columns = of.hatched.shape
+    rows, columns = picture.hatched.shape
     value = high - (np.arange(height) + 0.5) / height * (high - low)
     row = np.round((value + np.pi) % (2.0 * np.pi) / (2.0 * np.pi) * (rows - 1)).astype(int)
     column = np.minimum((np.arange(width) + 0.5) / width * columns, columns - 1).astype(int)
     cells = row[:, None], column[None, :]
     pixels = np.full((height, width, 4), 255, dtype=np.uint8)
-    pixels[:, :, :3] = of.colours[cells][:, :, ::-1]
+    pixels[:, :, :3] = picture.colours[cells][:, :, ::-1]
     stripe = (np.arange(height)[:, None] + np.arange(width)) % lines < max(2, lines // 5)
-    pixels[of.hatched[cells] & stripe, :3] = 20
+    pixels[picture.hatched[cells] & stripe, :3] = 20
     return pixels
 
 
-LEFT, RIGHT, TOP, BOTTOM = 52, 12, 30, 34  # pixels about the map
+LEFT_MARGIN, RIGHT_MARGIN, TOP_MARGIN, BOTTOM_MARGIN = 52, 12, 30, 34  # pixels about the map
 HATCH = 7  # pixels between lines
 HANDLE = 5.0
 MOST_SEAMS = 120
@@ -133,8 +139,8 @@ class Painting:
             down = float(self.canvas.y_of(self.canvas.heights[1]))
             painter.drawLine(QtCore.QPointF(area.left(), down), QtCore.QPointF(area.right(), down))
         painter.setPen(QtGui.QPen(QtGui.QColor(0, 0, 0, 120), 1.0, QtCore.Qt.DashLine))
-        first = int(np.ceil((self.canvas.low - np.pi) / TURN))
-        for turn in range(first, int(np.floor((self.canvas.high - np.pi) / TURN)) + 1):
+        start = int(np.ceil((self.canvas.low - np.pi) / TURN))
+        for turn in range(start, int(np.floor((self.canvas.high - np.pi) / TURN)) + 1):
             down = float(self.canvas.y_of(np.pi + turn * TURN))
             if area.top() + 1.0 < down < area.bottom() - 1.0:
                 painter.drawLine(
@@ -173,16 +179,16 @@ class Painting:
             self.canvas.x_of(self.canvas.bad[:, 0]),
             self.canvas.y_of(self.canvas.shown(self.canvas.bad[:, 1])),
         )
-        _, kept = np.unique(np.round(across / 3.0), return_index=True)
-        for k in kept:
+        _, rows = np.unique(np.round(across / 3.0), return_index=True)
+        for k in rows:
             painter.drawEllipse(QtCore.QPointF(across[k], down[k]), 2.6, 2.6)
 
     def _draw_handles(self, painter: Any) -> None:
         painter.setPen(QtGui.QPen(QtGui.QColor(0, 0, 0), 1.6))
         painter.setBrush(QtGui.QColor(255, 255, 255))
-        for one in self.canvas.handles:
+        for handle in self.canvas.handles:
             painter.drawEllipse(
-                QtCore.QPointF(self.canvas.x_of(one.column), self.canvas.y_of(one.value)),
+                QtCore.QPointF(self.canvas.x_of(handle.column), self.canvas.y_of(handle.value)),
                 HANDLE,
                 HANDLE,
             )
@@ -198,17 +204,17 @@ class Painting:
             painter.drawLine(
                 QtCore.QPointF(area.left() - 4.0, down), QtCore.QPointF(area.left(), down)
             )
-            box = QtCore.QRectF(0.0, down - 0.5 * line, LEFT - 7.0, line)
+            box = QtCore.QRectF(0.0, down - 0.5 * line, LEFT_MARGIN - 7.0, line)
             painter.drawText(box, QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter, text)
-        last = -1e9
+        end = -1e9
         for column, text in self.canvas.layers:
             across, wide = (
                 float(self.canvas.x_of(column)),
                 8.0 + painter.fontMetrics().boundingRect(text).width(),
             )
-            if across - 0.5 * wide < last:
+            if across - 0.5 * wide < end:
                 continue
-            last = across + 0.5 * wide
+            end = across + 0.5 * wide
             painter.drawLine(
                 QtCore.QPointF(across, area.bottom()), QtCore.QPointF(across, area.bottom() + 3.0)
             )
@@ -217,13 +223,13 @@ class Painting:
         box = QtCore.QRectF(area.left(), area.bottom() + 2.0 + line, area.width(), line)
         painter.drawText(box, QtCore.Qt.AlignCenter, self.canvas.title)
 
-    def _heights(self, most: float) -> list[tuple[float, str]]:
+    def _heights(self, count: float) -> list[tuple[float, str]]:
         """Heights that are marked beside the map, and their texts; about so many at most."""
         if self.canvas.heights is not None:
             return list(self.canvas.heights[0])
         low, high = np.degrees(self.canvas.low), np.degrees(self.canvas.high)
         for step in (30, 45, 90, 180, 360):
-            if (high - low) / step <= max(3.0, most):
+            if (high - low) / step <= max(3.0, count):
                 break
         numbers = range(int(np.ceil(low / step - 1e-9)), int(np.floor(high / step + 1e-9)) + 1)
         return [(float(np.radians(number * step)), f"{number * step}°") for number in numbers]
@@ -235,7 +241,7 @@ class Painting:
             self.canvas.painted.scale,
             colours.ink(),
         )
-        line, across = painter.fontMetrics().height(), float(LEFT)
+        line, across = painter.fontMetrics().height(), float(LEFT_MARGIN)
         painter.setPen(ink)
         title = f"{tr(scale.title)} {scale.unit}".strip()
         across = self._word(painter, across, title)
@@ -244,7 +250,7 @@ class Painting:
         for share in np.linspace(0.0, 1.0, 9):
             fill.setColorAt(
                 float(share),
-                QtGui.QColor.fromRgbF(*(float(part) for part in ramp(np.array([share]))[0])),
+                QtGui.QColor.fromRgbF(*(float(channel) for channel in ramp(np.array([share]))[0])),
             )
         painter.fillRect(bar, fill)
         numbers = (
@@ -256,8 +262,8 @@ class Painting:
         if len(numbers) < LEAST_TICKS and scale.high > scale.low:
             numbers = np.array([scale.low, scale.high])
         for number in numbers:
-            at = bar.left() + bar.width() * float(scale.share(np.array([number]))[0])
-            box = QtCore.QRectF(at - 20.0, 14.0, 40.0, line)
+            middle = bar.left() + bar.width() * float(scale.share(np.array([number]))[0])
+            box = QtCore.QRectF(middle - 20.0, 14.0, 40.0, line)
             painter.drawText(box, QtCore.Qt.AlignHCenter, f"{number:.3g}")
         classes: list[tuple[str, Any]] = [
             (tr(text), QtGui.QColor.fromRgbF(*colour))
@@ -361,7 +367,10 @@ class Canvas(QtGui.QWidget):
     def area(self) -> Any:
         """Where the map is drawn."""
         return QtCore.QRectF(
-            LEFT, TOP, max(self.width() - LEFT - RIGHT, 1), max(self.height() - TOP - BOTTOM, 1)
+            LEFT_MARGIN,
+            TOP_MARGIN,
+            max(self.width() - LEFT_MARGIN - RIGHT_MARGIN, 1),
+            max(self.height() - TOP_MARGIN - BOTTOM_MARGIN, 1),
         )
 
     def x_of(self, column: Any) -> Any:
@@ -390,7 +399,7 @@ class Canvas(QtGui.QWidget):
         column, value = self.cell_at(x, y)
         self.pressed = x, y
         handle = self._handle_at(x, y)
-        if handle is not None or self._on_curve(x, y):
+        if handle is not None or self._is_on_curve(x, y):
             self.drag = Dragged(handle, column, value)
 
     def mouseMoveEvent(self, event: Any) -> None:
@@ -402,12 +411,12 @@ class Canvas(QtGui.QWidget):
         self.mouse = column, value
         if self.drag is not None:
             by = value - self.drag.value
-            far = self.pressed is None or abs(y - self.pressed[1]) > 2.0
-            if by and (self.drag.moved or far):
+            is_far = self.pressed is None or abs(y - self.pressed[1]) > 2.0
+            if by and (self.drag.moved or is_far):
                 self.drag.value, self.drag.moved = value, True
                 self.dragged(self.drag, by)
         else:
-            over = self._handle_at(x, y) is not None or self._on_curve(x, y)
+            over = self._handle_at(x, y) is not None or self._is_on_curve(x, y)
             self.setCursor(QtCore.Qt.SizeVerCursor if over else QtCore.Qt.CrossCursor)
         self.hovered(column, value)
         self.update()
@@ -430,24 +439,24 @@ class Canvas(QtGui.QWidget):
     def _handle_at(self, x: float, y: float) -> Handle | None:
         if not self.handles:
             return None
-        away = [
-            float(np.hypot(self.x_of(one.column) - x, self.y_of(one.value) - y))
-            for one in self.handles
+        distances = [
+            float(np.hypot(self.x_of(handle.column) - x, self.y_of(handle.value) - y))
+            for handle in self.handles
         ]
-        best = int(np.argmin(away))
-        return self.handles[best] if away[best] <= NEAR_HANDLE else None
+        best = int(np.argmin(distances))
+        return self.handles[best] if distances[best] <= NEAR_HANDLE else None
 
-    def _on_curve(self, x: float, y: float) -> bool:
-        own = [curve for curve in self.curves if curve.bold]
-        if not own:
+    def _is_on_curve(self, x: float, y: float) -> bool:
+        bold = [curve for curve in self.curves if curve.bold]
+        if not bold:
             return False
-        near = np.abs(self.x_of(np.arange(self.count)) - x) < max(
+        is_near = np.abs(self.x_of(np.arange(self.count)) - x) < max(
             NEAR_CURVE, 1.0 * self.area().width() / self.count
         )
-        down = self.y_of(self.shown(own[0].values))[near]
+        down = self.y_of(self.wrap_values(bold[0].values))[is_near]
         return bool(len(down)) and bool(down.min() - NEAR_CURVE <= y <= down.max() + NEAR_CURVE)
 
-    def shown(self, values: Array) -> Array:
+    def wrap_values(self, values: Array) -> Array:
         """Values where they are drawn: as they are, or brought into the turn that is shown."""
         if self.high - self.low > TURN + 1e-9 or (
             values.min() >= self.low and values.max() <= self.high
@@ -470,5 +479,5 @@ class Canvas(QtGui.QWidget):
 
 def _place(event: Any) -> tuple[float, float]:
     """Where a mouse event is, in Qt 5 and 6."""
-    place = event.position() if hasattr(event, "position") else event.localPos()
-    return float(place.x()), float(place.y())
+    position = event.position() if hasattr(event, "position") else event.localPos()
+    return float(position.x()), float(position.y())
