@@ -176,14 +176,19 @@ def make_toolpath(
     if "bead_width" in values:  # it is meant, even where it is the default
         values.setdefault("fill_width", "bead_width")
     features = list(feature) if isinstance(feature, (list, tuple)) else [feature]
-    first, *more = [*(features or [None]), *checked_list(further, "further")]
-    links: dict[str, Any] = {"Feature": first, "Cell": cell, "Scan": scan}
-    if more:
-        own = [
-            own_process(one, process or ProcessParameters())
-            for one in checked_list(processes, "processes")
+    main, *later = [*(features or [None]), *checked_list(further, "further")]
+    links: dict[str, Any] = {"Feature": main, "Cell": cell, "Scan": scan}
+    if later:
+        feature_processes = [
+            own_process(entry, process or ProcessParameters())
+            for entry in checked_list(processes, "processes")
         ]
-        links = {**links, "Further": more, "Sequence": sequence, "FeatureProcess": own}
+        links = {
+            **links,
+            "Further": later,
+            "Sequence": sequence,
+            "FeatureProcess": feature_processes,
+        }
     return make_stage(doc, Toolpath, "Toolpath", label, links, [process, fitting], values)
 
 
@@ -311,13 +316,13 @@ def make_all(
         setup=setup,
         layers_otherwise=layers_otherwise,
     )
-    chosen = (
+    cell_parameters = (
         read_cell(cell)
         if cell
         else cell_of(machine, user_machines.folders(), setup or OF_ROBOTS[0].setup)
     )
     refuse_otherwise(kind, layers_otherwise)
-    first = {
+    first_feature = {
         "source": source,
         "kind": kind,
         "faces": faces,
@@ -332,38 +337,41 @@ def make_all(
     disc = {} if platform_diameter is None else {"platform_diameter": platform_diameter}
 
     def planned(layers: str) -> list[Any]:
-        own = make_cell(doc, parameters=chosen, **disc)
-        features = [_feature_of_job(doc, one) for one in ({**first, "layers": layers}, *then)]
+        cell_object = make_cell(doc, parameters=cell_parameters, **disc)
+        features = [
+            _feature_of_job(doc, keywords)
+            for keywords in ({**first_feature, "layers": layers}, *then)
+        ]
         toolpath = on_platform(
-            own,
+            cell_object,
             features,
-            lambda: make_toolpath(doc, features, own, **process),
+            lambda: make_toolpath(doc, features, cell_object, **process),
             sized=not cell and not disc,
         )
         path = (
             []
             if toolpath.Status == "infeasible"
-            else [_suited_path(doc, toolpath, own, setup, bool(cell))]
+            else [_suited_path(doc, toolpath, cell_object, setup, bool(cell))]
         )
-        return [own, *features, toolpath, *path]
+        return [cell_object, *features, toolpath, *path]
 
     with one_step(doc, "New job"):
-        made = planned(layers)
-        if in_vain(made, layers_otherwise):
-            made = planned(layers_otherwise)
-        post, motion = post_of(chosen, post, user_machines.folders())
-        if post and made[-1].Proxy.kind == "joint path" and made[-1].Status == "up to date":
-            made.append(
+        objects = planned(layers)
+        if in_vain(objects, layers_otherwise):
+            objects = planned(layers_otherwise)
+        post, motion = post_of(cell_parameters, post, user_machines.folders())
+        if post and objects[-1].Proxy.kind == "joint path" and objects[-1].Status == "up to date":
+            objects.append(
                 make_program(
                     doc,
-                    made[-1],
+                    objects[-1],
                     name=name or taken_name(source.Label, post),
                     post=post,
                     motion=motion,
                 )
             )
-        grouped(doc, f"Job {source.Label}", made)
-        return tuple(made)
+        grouped(doc, f"Job {source.Label}", objects)
+        return tuple(objects)
 
 
 def _suited_path(doc: Any, toolpath: Any, cell: Any, setup: str, saved: bool) -> Any:
@@ -383,12 +391,12 @@ def read_cell(file: str) -> CellParameters:
     """
     from .sections import cell as saved
 
-    return saved.of_file(os.path.abspath(checked_path(file, "cell")).strip())
+    return saved.read_cell_file(os.path.abspath(checked_path(file, "cell")).strip())
 
 
 def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
     """A feature at its defaults by the keys that `make_all` takes. InputError BAD_VALUE for another key."""
-    known = (
+    allowed = (
         "source",
         "kind",
         "layers",
@@ -401,11 +409,11 @@ def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
         "layer_height",
         "bead_spacing",
     )
-    wrong = [key for key in given_keys if key not in known]
+    wrong = [key for key in given_keys if key not in allowed]
     if wrong or "source" not in given_keys:
         text = ", ".join(wrong) or "no source"
         raise InputError(
-            "BAD_VALUE", "then", "{}: give source, and any of {}", text, ", ".join(known[1:])
+            "BAD_VALUE", "then", "{}: give source, and any of {}", text, ", ".join(allowed[1:])
         )
     links = {
         "Substrate": given_keys.get("substrate"),

@@ -62,50 +62,54 @@ def verify(
     motion: the rows that `program` was built of. chord_error: mm, how far the path may leave the straight line
     between two points of a bead. Raises InputError UNREADABLE_PROGRAM when the reader does not understand the files.
     """
-    read, rows = post.read(files), np.flatnonzero(motion.moves)
-    if len(read.deposit) != len(rows):
-        message = Text("the text has {} moves, but {} are planned", len(read.deposit), len(rows))
+    read_moves, rows = post.read(files), np.flatnonzero(motion.moves)
+    if len(read_moves.deposit) != len(rows):
+        message = Text(
+            "the text has {} moves, but {} are planned", len(read_moves.deposit), len(rows)
+        )
         return Verification((Issue(ERROR, "VERIFY_COUNT", message),), np.inf, np.inf, np.inf, ())
     planned = Planned(motion, rows)
-    issues = event_issues(planned, program, read) + way_issues(cell, planned, program, read)
-    issues += time_issues(cell, planned, read)
-    if read.position is None:
-        return _verify_joints(cell, planned, program, read, chord_error, issues)
+    issues = event_issues(planned, program, read_moves) + way_issues(
+        cell, planned, program, read_moves
+    )
+    issues += time_issues(cell, planned, read_moves)
+    if read_moves.position is None:
+        return _verify_joints(cell, planned, program, read_moves, chord_error, issues)
     if not cell.machine.free:
-        return _verify_tips(cell, planned, program, read, issues)
-    return _verify_poses(cell, planned, program, read, chord_error, issues)
+        return _verify_tips(cell, planned, program, read_moves, issues)
+    return _verify_poses(cell, planned, program, read_moves, chord_error, issues)
 
 
 def _verify_joints(
     cell: Cell,
     planned: Planned,
     program: Program,
-    read: ReadMoves,
+    read_moves: ReadMoves,
     chord_error: float,
     issues: list[Issue],
 ) -> Verification:
-    assert read.joints is not None
-    shown = read.joints.copy()
-    continuous = text_path.shorter_way(cell, program, read)
-    shown[:, continuous] = np.unwrap(shown[:, continuous], axis=0)
-    half = text_path.digits(cell, read)
-    path, flange = text_path.joint_path(cell, shown, half)
-    second = points.second_opinion(cell, planned, shown, flange)
+    assert read_moves.joints is not None
+    values = read_moves.joints.copy()
+    continuous = text_path.shorter_way(cell, program, read_moves)
+    values[:, continuous] = np.unwrap(values[:, continuous], axis=0)
+    half = text_path.digits(cell, read_moves)
+    path, flange = text_path.joint_path(cell, values, half)
+    second = points.second_opinion(cell, planned, values, flange)
     del flange  # the largest over all checks
-    issues += points.joint_issues(cell, planned, read, continuous) + points.point_issues(
+    issues += points.joint_issues(cell, planned, read_moves, continuous) + points.point_issues(
         planned, path
     )
-    strayed, off = points.beads_between(cell, planned, shown, path, chord_error)
+    strayed, off = points.beads_between(cell, planned, values, path, chord_error)
     issues += planned.issue("VERIFY_BETWEEN", off, Text(STRAYS, strayed))
-    text = text_path.text_joints(cell, planned.joints, shown, half, path, None)
-    return _concluded(cell, planned, read, path, text, strayed, second, issues)
+    text = text_path.text_joints(cell, planned.joints, values, half, path, None)
+    return _concluded(cell, planned, read_moves, path, text, strayed, second, issues)
 
 
 def _verify_poses(
     cell: Cell,
     planned: Planned,
     program: Program,
-    read: ReadMoves,
+    read_moves: ReadMoves,
     chord_error: float,
     issues: list[Issue],
 ) -> Verification:
@@ -118,63 +122,65 @@ def _verify_poses(
     joints = np.concatenate([moves.joints for moves in program.moves])
     path, flange = text_path.joint_path(cell, joints, np.zeros(joints.shape[1]))
     issues += points.point_issues(planned, path)
-    poses, asked, tools = text_path.text_path(cell, program, read)
-    if read.joints is not None:
+    poses, required, tools = text_path.text_path(cell, program, read_moves)
+    if read_moves.joints is not None:
         issues += points.joint_issues(
-            cell, planned, read, text_path.shorter_way(cell, program, read)
+            cell, planned, read_moves, text_path.shorter_way(cell, program, read_moves)
         )
     issues += points.point_issues(planned, poses)
-    issues += points.twice_issues(cell, planned, program, read, flange)
-    twisted = points.turned_otherwise(asked, flange, poses)
+    issues += points.twice_issues(cell, planned, program, read_moves, flange)
+    twisted = points.turned_otherwise(required, flange, poses)
     issues += planned.issue("VERIFY_ROTATION", twisted, "the tool is turned otherwise than planned")
     strayed = 0.0
     # a constant tool moves straight from point to point; so does a fixed tool in the frame of a
     # held part
-    if read.tool is not None and not read.held and len(planned.ends):
-        strayed, off = points.tools_between(cell, planned, asked, tools, poses, chord_error)
+    if read_moves.tool is not None and not read_moves.held and len(planned.ends):
+        strayed, off = points.tools_between(cell, planned, required, tools, poses, chord_error)
         issues += planned.issue("VERIFY_BETWEEN", off, Text(STRAYS, strayed))
     text = text_path.text_joints(
-        cell, planned.joints, read.joints, text_path.digits(cell, read), poses, asked
+        cell, planned.joints, read_moves.joints, text_path.digits(cell, read_moves), poses, required
     )
     second = points.second_opinion(cell, planned, joints, flange)
-    return _concluded(cell, planned, read, poses, text, strayed, second, issues)
+    return _concluded(cell, planned, read_moves, poses, text, strayed, second, issues)
 
 
 def _verify_tips(
-    cell: Cell, planned: Planned, program: Program, read: ReadMoves, issues: list[Issue]
+    cell: Cell, planned: Planned, program: Program, read_moves: ReadMoves, issues: list[Issue]
 ) -> Verification:
     """Tips and directions of a text for a machine with rotary axes, which finds its linear axes itself, and the planned
     axis values against the same points. Such a controller takes the tip straight from point to point."""
     joints = np.concatenate([moves.joints for moves in program.moves])
     path, flange = text_path.joint_path(cell, joints, np.zeros(joints.shape[1]))
-    tips = text_path.text_tips(cell, program, read)
-    if read.joints is not None:
+    tips = text_path.text_tips(cell, program, read_moves)
+    if read_moves.joints is not None:
         issues += points.joint_issues(
-            cell, planned, read, text_path.shorter_way(cell, program, read)
+            cell, planned, read_moves, text_path.shorter_way(cell, program, read_moves)
         )
     issues += points.point_issues(planned, path) + points.point_issues(planned, tips)
-    shown = _in_turns(cell, planned, program, read)
+    values = _in_turns(cell, planned, program, read_moves)
     text = text_path.text_joints(
-        cell, planned.joints, shown, text_path.digits(cell, read), tips, None
+        cell, planned.joints, values, text_path.digits(cell, read_moves), tips, None
     )
     second = points.second_opinion(cell, planned, joints, flange)
-    return _concluded(cell, planned, read, tips, text, 0.0, second, issues)
+    return _concluded(cell, planned, read_moves, tips, text, 0.0, second, issues)
 
 
-def _in_turns(cell: Cell, planned: Planned, program: Program, read: ReadMoves) -> Array | None:
+def _in_turns(
+    cell: Cell, planned: Planned, program: Program, read_moves: ReadMoves
+) -> Array | None:
     """Axis values of the text, those it sends the shorter way in the turns of the planned ones."""
-    if read.joints is None:
+    if read_moves.joints is None:
         return None
-    shown, shorter = read.joints.copy(), text_path.shorter_way(cell, program, read)
-    apart = shown[:, shorter] - cell.machine.to_controller(planned.joints)[:, shorter]
-    shown[:, shorter] -= 2.0 * np.pi * np.rint(apart / (2.0 * np.pi))
-    return shown
+    values, shorter = read_moves.joints.copy(), text_path.shorter_way(cell, program, read_moves)
+    difference = values[:, shorter] - cell.machine.to_controller(planned.joints)[:, shorter]
+    values[:, shorter] -= 2.0 * np.pi * np.rint(difference / (2.0 * np.pi))
+    return values
 
 
 def _concluded(
     cell: Cell,
     planned: Planned,
-    read: ReadMoves,
+    read_moves: ReadMoves,
     path: text_path.Path,
     text: text_path.Joints,
     strayed: float,
@@ -184,7 +190,7 @@ def _concluded(
     """Add the checks of rapids and limits, which every text needs, and the result of the second
     solver.
     """
-    wandered, turned, off = points.rapids_between(cell, planned, text, path, read.linear)
+    wandered, turned, off = points.rapids_between(cell, planned, text, path, read_moves.linear)
     issues += planned.issue(
         "VERIFY_BETWEEN", off, Text(WANDERS, format_deviation(wandered), turned)
     )

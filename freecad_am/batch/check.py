@@ -192,7 +192,7 @@ def _known(path: str) -> Known:
     """The context from a job file, or a file with only a cell."""
     values = tree.read(path).values
     if not {"part", "features", "cell"} & set(values):
-        return Known(job_cell.of_file(os.path.abspath(path)), None, JointParameters(), None)
+        return Known(job_cell.read_cell_file(os.path.abspath(path)), None, JointParameters(), None)
     if not {"part", "features"} & set(values):
         read_cell = job.read_without_part(path)
         return Known(read_cell.cell, read_cell.program, read_cell.joints, None)

@@ -57,7 +57,7 @@ def place(job: Job, folder: str | None, session: Any) -> Result:
     except InputError as found:
         error = in_words_of_job(found)
         if error.where.split(".")[0].split("[")[0] in SECTIONS:
-            raise job.tree.placed(error) from None
+            raise job.tree.locate(error) from None
         raise error from None
 
 

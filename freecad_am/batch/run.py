@@ -209,7 +209,7 @@ def named_by_keys(job: Job) -> Iterator[None]:
     except InputError as found:
         error = in_words_of_job(found)
         if error.where.split(".")[0].split("[")[0] in SECTIONS:
-            raise job.tree.placed(error) from None
+            raise job.tree.locate(error) from None
         raise error from None
 
 

@@ -27,17 +27,17 @@ def text(cell: CellParameters, folder: str) -> str:
     usual = CellParameters()
     for field in dataclasses.fields(cell):
         value = getattr(cell, field.name)
-        kept = field.name in PROPOSED and arrangement_of(cell.setup).free > 0
-        if field.name in SHOWN_APART or (value == getattr(usual, field.name) and not kept):
+        is_proposed = field.name in PROPOSED and arrangement_of(cell.setup).free > 0
+        if field.name in SHOWN_APART or (value == getattr(usual, field.name) and not is_proposed):
             continue
-        lines.append(f"{field.name}: {_shown(value, f.spec_of(field).kind)}")
+        lines.append(f"{field.name}: {_format(value, f.spec_of(field).kind)}")
     if cell.nozzle != usual.nozzle:
         entries = [
             f"{field.name}: "
             + (
                 _file(cell.nozzle.shape, folder)
                 if field.name == "shape"
-                else _shown(getattr(cell.nozzle, field.name), f.spec_of(field).kind)
+                else _format(getattr(cell.nozzle, field.name), f.spec_of(field).kind)
             )
             for field in dataclasses.fields(cell.nozzle)
             if getattr(cell.nozzle, field.name) != getattr(usual.nozzle, field.name)
@@ -47,7 +47,7 @@ def text(cell: CellParameters, folder: str) -> str:
     if mechanisms:
         lines.append("external:")
         lines += [
-            f"- {{machine: {_machine(one.machine, folder)}, pose: {_shown(one.pose, f.POSE)}, carries: {one.carries}}}"
+            f"- {{machine: {_machine(one.machine, folder)}, pose: {_format(one.pose, f.POSE)}, carries: {one.carries}}}"
             for one in mechanisms
         ]
     around = obstacles.obstacles(cell.obstacles)
@@ -56,22 +56,22 @@ def text(cell: CellParameters, folder: str) -> str:
         what = (
             f"file: {_file(body.file, folder)}"
             if body.size is None
-            else f"box: {_shown(body.size, f.LENGTH)}"
+            else f"box: {_format(body.size, f.LENGTH)}"
         )
         name = json.dumps(body.name, ensure_ascii=False)
-        lines.append(f"- {{name: {name}, {what}, pose: {_shown(body.pose, f.POSE)}}}")
+        lines.append(f"- {{name: {name}, {what}, pose: {_format(body.pose, f.POSE)}}}")
     points = touched.touched(cell.touched)
     lines += ["touched:"] if points else []
     lines += [
-        f"- {{part: {_shown(one.part, f.LENGTH)}, robot: {_shown(one.robot, f.LENGTH)}}}"
+        f"- {{part: {_format(one.part, f.LENGTH)}, robot: {_format(one.robot, f.LENGTH)}}}"
         for one in points
     ]
     if cell.world_up != usual.world_up:
-        lines.append(f"world_up: {_shown(cell.upward(), f.NUMBER)}")
+        lines.append(f"world_up: {_format(cell.upward(), f.NUMBER)}")
     return "\n".join(lines) + "\n"
 
 
-def _shown(value: Any, kind: str) -> str:
+def _format(value: Any, kind: str) -> str:
     """A value in the units of a job file; numbers to what a float holds of them in degrees."""
     if isinstance(value, str):
         return json.dumps(value)
@@ -79,7 +79,7 @@ def _shown(value: Any, kind: str) -> str:
         if value and isinstance(value[0], str):
             return f"[{', '.join(value)}]"
         kinds = [kind] * len(value) if len(value) != 6 else [f.LENGTH] * 3 + [f.ANGLE] * 3
-        return f"[{', '.join(_shown(one, of) for one, of in zip(value, kinds, strict=True))}]"
+        return f"[{', '.join(_format(number, number_kind) for number, number_kind in zip(value, kinds, strict=True))}]"
     return f"{math.degrees(value) if kind == f.ANGLE else value:.15g}"
 
 
@@ -88,14 +88,14 @@ def _machine(name: str, folder: str) -> str:
     measured = calibration.named(name)
     if measured is not None:
         return f"{{name: {_machine(measured.machine, folder)}, calibration: {_file(measured.file, folder)}}}"
-    meant = urdf_reference.reference(name)
-    if meant is not None:
+    reference = urdf_reference.reference(name)
+    if reference is not None:
         links = [
             f", {key}: {json.dumps(link)}"
-            for key, link in (("base", meant.base), ("tip", meant.tip))
+            for key, link in (("base", reference.base), ("tip", reference.tip))
             if link
         ]
-        return f"{{file: {_file(meant.file, folder)}{''.join(links)}}}"
+        return f"{{file: {_file(reference.file, folder)}{''.join(links)}}}"
     return _file(name, folder) if os.sep in name or name.lower().endswith(".json") else name
 
 

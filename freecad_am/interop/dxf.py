@@ -26,7 +26,7 @@ def text(lines: Sequence[Line]) -> Iterator[str]:
     }
     points = np.concatenate([line.points for line in lines])
     corners = [
-        _at(name, point)
+        _point(name, point)
         for name, point in (("$EXTMIN", points.min(axis=0)), ("$EXTMAX", points.max(axis=0)))
     ]
     yield _pairs([(0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009")]) + "".join(corners)
@@ -71,7 +71,7 @@ def _layer(line: Line) -> str:
     return f"LAYER_{line.layer:03d}" if line.deposit else RAPID
 
 
-def _at(name: str, point: object) -> str:
+def _point(name: str, point: object) -> str:
     x, y, z = np.asarray(point).tolist()
     return _pairs(
         [(9, name), (10, f"{x:.{DECIMALS}f}"), (20, f"{y:.{DECIMALS}f}"), (30, f"{z:.{DECIMALS}f}")]

@@ -18,9 +18,9 @@ from ..objects.current import check_current, check_recomputed
 from ..objects.stage import stage_of
 from ..objects.work import hooks
 from . import cell_file, dxf, neighbour, robot_trajectory, step_wires
-from .lines import Line, of_motion, of_toolpath
+from .lines import Line, lines_of_motion, lines_of_toolpath
 
-ON, OFF = "(deposit on)", "(deposit off)"
+DEPOSIT_ON, DEPOSIT_OFF = "(deposit on)", "(deposit off)"
 
 
 def add(document: Any, lines: Sequence[Line], label: str) -> Any:
@@ -37,25 +37,25 @@ def add(document: Any, lines: Sequence[Line], label: str) -> Any:
 
 def commands(lines: Sequence[Line]) -> list[tuple[str, dict[str, float]]]:
     """Names and words: G0 to the first point and along rapid moves, G1 along beads; F in mm/s as FreeCAD keeps it."""
-    found: list[tuple[str, dict[str, float]]] = []
-    place: list[float] | None = None
+    entries: list[tuple[str, dict[str, float]]] = []
+    position: list[float] | None = None
     for line in lines:
         points = line.points.tolist()
-        if points[0] != place:
-            found.append(("G0", _xyz(points[0])))
-        place = points[-1]
+        if points[0] != position:
+            entries.append(("G0", _xyz(points[0])))
+        position = points[-1]
         if line.deposit:
-            found.append((f"({line.name})", {}))
-            found.append((ON, {}))
+            entries.append((f"({line.name})", {}))
+            entries.append((DEPOSIT_ON, {}))
             speeds = line.speed[1:].tolist()
-            found += [
-                ("G1", {**_xyz(at), "F": speed})
-                for at, speed in zip(points[1:], speeds, strict=True)
+            entries += [
+                ("G1", {**_xyz(point), "F": speed})
+                for point, speed in zip(points[1:], speeds, strict=True)
             ]
-            found.append((OFF, {}))
+            entries.append((DEPOSIT_OFF, {}))
         else:
-            found += [("G0", _xyz(at)) for at in points[1:]]
-    return found
+            entries += [("G0", _xyz(point)) for point in points[1:]]
+    return entries
 
 
 def _xyz(point: list[float]) -> dict[str, float]:
@@ -72,7 +72,9 @@ def lines_of(obj: Any, rapids: bool = True) -> tuple[Line, ...]:
     """
     obj = _path_of(obj)
     value = obj.Proxy.value(obj)
-    lines = of_toolpath(value) if obj.Proxy.kind == "toolpath" else of_motion(value.motion)
+    lines = (
+        lines_of_toolpath(value) if obj.Proxy.kind == "toolpath" else lines_of_motion(value.motion)
+    )
     return lines if rapids else tuple(line for line in lines if line.deposit)
 
 
@@ -121,7 +123,7 @@ def write_wires(obj: Any, path: str, rapids: bool) -> str:
             "wires are written as .step or .dxf; use one of these extensions",
         )
     lines = lines_of(obj, rapids)
-    return _whole(path, lambda unfinished: _write(lines, unfinished, ending, obj.Label))
+    return _write_whole(path, lambda unfinished: _write(lines, unfinished, ending, obj.Label))
 
 
 def write_waypoints(obj: Any, path: str) -> str:
@@ -140,7 +142,7 @@ def write_waypoints(obj: Any, path: str) -> str:
         with open(unfinished, "w", encoding="ascii", newline="") as stream:
             stream.writelines(waypoints.text(motion, columns, units))
 
-    return _whole(path, write)
+    return _write_whole(path, write)
 
 
 def write_page(path: str, page: Callable[[], str], title: str) -> str:
@@ -158,7 +160,7 @@ def write_page(path: str, page: Callable[[], str], title: str) -> str:
         with open(unfinished, "w", encoding="utf-8", newline="\n") as stream:
             stream.write(text)
 
-    return _whole(path, write)
+    return _write_whole(path, write)
 
 
 def write_cell(obj: Any, path: str) -> str:
@@ -182,10 +184,10 @@ def write_cell(obj: Any, path: str) -> str:
         with open(unfinished, "w", encoding="utf-8", newline="\n") as stream:
             stream.write(saved)
 
-    return _whole(path, write)
+    return _write_whole(path, write)
 
 
-def _whole(path: str, write: Callable[[str], None]) -> str:
+def _write_whole(path: str, write: Callable[[str], None]) -> str:
     """Let a file be written beside, and put it in its place; the path."""
     folder = os.path.dirname(os.path.abspath(path))
     if not os.path.isdir(folder):

@@ -47,7 +47,7 @@ class Line:
         )
 
 
-def of_toolpath(toolpath: Toolpath) -> tuple[Line, ...]:
+def lines_of_toolpath(toolpath: Toolpath) -> tuple[Line, ...]:
     """Its beads, in the order of deposit."""
     return tuple(
         Line(layer, index, True, bead.points, bead.tool, bead.speed, bead.closed)
@@ -55,34 +55,36 @@ def of_toolpath(toolpath: Toolpath) -> tuple[Line, ...]:
     )
 
 
-def of_motion(motion: Motion) -> tuple[Line, ...]:
+def lines_of_motion(motion: Motion) -> tuple[Line, ...]:
     """Its beads and, from the second on, the rapid moves to them, in the order of motion; the last lifts off."""
-    other = (np.diff(motion.bead) != 0) | (np.diff(motion.layer) != 0)
+    is_new_bead = (np.diff(motion.bead) != 0) | (np.diff(motion.layer) != 0)
     change = (
-        np.flatnonzero((motion.deposit[1:] != motion.deposit[:-1]) | (motion.deposit[1:] & other))
+        np.flatnonzero(
+            (motion.deposit[1:] != motion.deposit[:-1]) | (motion.deposit[1:] & is_new_bead)
+        )
         + 1
     )
     starts, ends = np.r_[0, change], np.r_[change, len(motion)]
-    found = []
+    lines = []
     for start, end in zip(starts, ends, strict=True):
         deposit = bool(motion.deposit[start])
-        first = start if deposit or start == 0 else start - 1
-        points = motion.position[first:end]
+        begin = start if deposit or start == 0 else start - 1
+        points = motion.position[begin:end]
         if len(points) < 2 or not (np.isfinite(points).all() and np.ptp(points, axis=0).any()):
             continue
         closed = deposit and len(points) > 3 and bool(np.abs(points[0] - points[-1]).max() < 1e-9)
-        found.append(
+        lines.append(
             Line(
                 int(motion.layer[start]),
                 int(motion.bead[start]),
                 deposit,
                 points,
-                motion.tool[first:end],
-                motion.speed[first:end],
+                motion.tool[begin:end],
+                motion.speed[begin:end],
                 closed,
             )
         )
-    return tuple(found)
+    return tuple(lines)
 
 
 def thinned(line: Line, tolerance: float, turn: float) -> Line:
@@ -92,15 +94,15 @@ def thinned(line: Line, tolerance: float, turn: float) -> Line:
     keep[[0, -1]] = True
     stack = [(0, len(line.points) - 1)]
     while stack:
-        first, last = stack.pop()
-        if last - first < 2:
+        begin, end = stack.pop()
+        if end - begin < 2:
             continue
-        inner = np.arange(first + 1, last)
-        off = _off(line.points[inner], line.points[first], line.points[last]) / tolerance
+        inner = np.arange(begin + 1, end)
+        off = _distance(line.points[inner], line.points[begin], line.points[end]) / tolerance
         turned = (
             np.minimum(
-                _angle(line.tool[inner], line.tool[first]),
-                _angle(line.tool[inner], line.tool[last]),
+                _angle(line.tool[inner], line.tool[begin]),
+                _angle(line.tool[inner], line.tool[end]),
             )
             / turn
         )
@@ -108,7 +110,7 @@ def thinned(line: Line, tolerance: float, turn: float) -> Line:
         k = int(np.argmax(worst))
         if worst[k] > 1.0:
             keep[inner[k]] = True
-            stack += [(first, int(inner[k])), (int(inner[k]), last)]
+            stack += [(begin, int(inner[k])), (int(inner[k]), end)]
     return line.chosen(np.flatnonzero(keep))
 
 
@@ -117,7 +119,7 @@ def attitudes(tool: Array) -> Array:
     return np.asarray(smallest_rotation((0.0, 0.0, 1.0), tool) * np.array([1.0, -1.0, -1.0]))
 
 
-def _off(points: Array, start: Array, end: Array) -> Array:
+def _distance(points: Array, start: Array, end: Array) -> Array:
     """Distance (n,) of points from the segment from start to end."""
     along = end - start
     length = float(along @ along)
@@ -129,7 +131,7 @@ def _off(points: Array, start: Array, end: Array) -> Array:
     return np.asarray(np.linalg.norm(points - start - share[:, None] * along, axis=1))
 
 
-def _angle(directions: Array, other: Array) -> Array:
+def _angle(directions: Array, reference: Array) -> Array:
     return np.asarray(
-        2.0 * np.arcsin(np.clip(0.5 * np.linalg.norm(directions - other, axis=1), 0.0, 1.0))
+        2.0 * np.arcsin(np.clip(0.5 * np.linalg.norm(directions - reference, axis=1), 0.0, 1.0))
     )

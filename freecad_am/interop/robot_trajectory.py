@@ -27,8 +27,8 @@ def add(document: Any, lines: Sequence[Line], label: str, tolerance: float, turn
     trajectory = Robot.Trajectory()
     trajectory.insertWaypoints(
         [
-            Robot.Waypoint(place, type="LIN", name=name, vel=speed)
-            for name, place, speed in waypoints(lines, tolerance, turn)
+            Robot.Waypoint(placement, type="LIN", name=name, vel=speed)
+            for name, placement, speed in waypoints(lines, tolerance, turn)
         ]
     )
     obj.Trajectory = trajectory
@@ -38,20 +38,20 @@ def add(document: Any, lines: Sequence[Line], label: str, tolerance: float, turn
 
 def waypoints(lines: Sequence[Line], tolerance: float, turn: float) -> list[tuple[str, Any, float]]:
     """Name, placement and speed in mm/s of each waypoint; the end of one line and the same start of the next are one."""
-    found: list[tuple[str, Any, float]] = []
-    last = None
+    waypoints: list[tuple[str, Any, float]] = []
+    end_point = None
     for line in lines:
-        few = thinned(line, tolerance, turn)
-        skipped = 1 if last is not None and np.array_equal(last, few.points[0]) else 0
-        last = few.points[-1]
-        poses = pose(attitudes(few.tool), few.points)
-        speed = np.where(np.arange(len(few.speed)) == 0, few.speed[1], few.speed)
-        found += [
+        reduced = thinned(line, tolerance, turn)
+        skipped = 1 if end_point is not None and np.array_equal(end_point, reduced.points[0]) else 0
+        end_point = reduced.points[-1]
+        poses = pose(attitudes(reduced.tool), reduced.points)
+        speed = np.where(np.arange(len(reduced.speed)) == 0, reduced.speed[1], reduced.speed)
+        waypoints += [
             (
                 f"{line.name} {k}",
                 App.Placement(App.Matrix(*poses[k].ravel().tolist())),
                 float(speed[k]),
             )
-            for k in range(skipped, len(few.points))
+            for k in range(skipped, len(reduced.points))
         ]
-    return found
+    return waypoints

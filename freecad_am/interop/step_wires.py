@@ -35,7 +35,10 @@ def write(lines: Sequence[Line], path: str, label: str) -> None:
     active = App.ActiveDocument
     document = App.newDocument("RoboticAM_Export", label, True, True)
     try:
-        components = [_component(document, name, of) for name, of in _components(lines).items()]
+        components = [
+            _component(document, name, component_lines)
+            for name, component_lines in _components(lines).items()
+        ]
         with _millimetres():
             Import.export(components, path)
     finally:
@@ -63,9 +66,9 @@ def _millimetres() -> Iterator[None]:
 
 def edge(line: Line) -> Any:
     """The edge through all points of a line."""
-    apart = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
-    points = line.points[np.r_[True, apart > 0.0]]
-    knots = np.r_[0.0, np.cumsum(apart[apart > 0.0])].tolist()
+    gaps = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
+    points = line.points[np.r_[True, gaps > 0.0]]
+    knots = np.r_[0.0, np.cumsum(gaps[gaps > 0.0])].tolist()
     curve = Part.BSplineCurve()
     curve.buildFromPolesMultsKnots(
         [App.Vector(*point) for point in points.tolist()],
@@ -78,10 +81,10 @@ def edge(line: Line) -> Any:
 
 
 def _components(lines: Sequence[Line]) -> dict[str, list[Line]]:
-    found: dict[str, list[Line]] = {}
+    components: dict[str, list[Line]] = {}
     for line in lines:
-        found.setdefault(f"Layer {line.layer:03d}" if line.deposit else RAPID, []).append(line)
-    return found
+        components.setdefault(f"Layer {line.layer:03d}" if line.deposit else RAPID, []).append(line)
+    return components
 
 
 def _component(document: Any, name: str, lines: list[Line]) -> Any:

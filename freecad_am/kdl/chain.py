@@ -75,18 +75,18 @@ class KdlArm:
         # place; a quaternion is one call where a matrix is nine; and joints that stay where they are need not be told again
         x, y, z, turned = frame.p.x, frame.p.y, frame.p.z, frame.M.GetQuaternion
         put, all_axes = angles.__setitem__, tuple(range(self.axes))
-        seen: list[float] = []
-        for row, axes in zip(values.tolist(), _moved(values), strict=True):
+        numbers: list[float] = []
+        for row, axes in zip(values.tolist(), _changed_axes(values), strict=True):
             if len(axes) == self.axes:
                 any(map(put, all_axes, row))  # puts them all, for it gives back nothing
             else:
                 for axis in axes:
                     put(axis, row[axis])
             solve(angles, frame)
-            seen += x(), y(), z()
-            seen += turned()
-        found = np.array(seen).reshape(-1, 7)
-        return frames.pose(_rotations(found[:, 3:]), found[:, :3])
+            numbers += x(), y(), z()
+            numbers += turned()
+        rows = np.array(numbers).reshape(-1, 7)
+        return frames.pose(_rotations(rows[:, 3:]), rows[:, :3])
 
     def jacobian(self, q: ArrayLike) -> Array:
         """Geometric Jacobians (n, 6, axes) at the flange's origin in base_link: rows velocity, angular velocity."""
@@ -107,10 +107,10 @@ class KdlArm:
         solve = self.solver(solver, tolerance)
         seeds = np.asarray(seeds, float)
         result = np.full(seeds.shape, np.nan)
-        found = self.kdl.JntArray(self.axes)
+        solution = self.kdl.JntArray(self.axes)
         for row, pose, seed in zip(result, np.asarray(poses, float), seeds, strict=True):
-            if solve.CartToJnt(self.angles(seed), self.frame(pose), found) >= 0:
-                row[self.order] = [found[i] for i in range(self.axes)]
+            if solve.CartToJnt(self.angles(seed), self.frame(pose), solution) >= 0:
+                row[self.order] = [solution[i] for i in range(self.axes)]
         return result
 
     def solver(self, name: str, tolerance: float = 1e-6) -> Any:
@@ -138,13 +138,13 @@ class KdlArm:
         return self.kdl.Frame(rotation, self.kdl.Vector(*(float(entry) for entry in pose[:3, 3])))
 
 
-def _moved(values: Array) -> Iterator[tuple[int, ...]]:
+def _changed_axes(values: Array) -> Iterator[tuple[int, ...]]:
     """Which joints of (n, axes) have another value than in the row before; in the first one all."""
     axes = values.shape[1]
-    other = np.ones(values.shape, dtype=np.int64)
-    other[1:] = values[1:] != values[:-1]
-    known = [tuple(axis for axis in range(axes) if code >> axis & 1) for code in range(1 << axes)]
-    return (known[code] for code in (other @ (1 << np.arange(axes))).tolist())
+    changed = np.ones(values.shape, dtype=np.int64)
+    changed[1:] = values[1:] != values[:-1]
+    subsets = [tuple(axis for axis in range(axes) if code >> axis & 1) for code in range(1 << axes)]
+    return (subsets[code] for code in (changed @ (1 << np.arange(axes))).tolist())
 
 
 def _rotations(quaternions: Array) -> Array:

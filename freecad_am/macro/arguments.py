@@ -78,15 +78,15 @@ def checked_objects(values: Any, where: str, doc: Any = None) -> list[Any]:
 
 def checked_names(names: Any, where: str) -> list[str]:
     """Names of faces and edges; a text is one name, and None is none. InputError BAD_INPUT for anything else."""
-    found = [names] if isinstance(names, str) else [] if names is None else names
-    if not isinstance(found, (list, tuple, set, frozenset)) or not all(map(is_text, found)):
+    texts = [names] if isinstance(names, str) else [] if names is None else names
+    if not isinstance(texts, (list, tuple, set, frozenset)) or not all(map(is_text, texts)):
         raise InputError(
             "BAD_INPUT",
             where,
             '{} are not names of faces or edges; pass a list of texts, such as ["Face1"]',
             named(names),
         )
-    return list(found)
+    return list(texts)
 
 
 def checked_text(value: Any, where: str) -> str:
@@ -165,7 +165,7 @@ def checked_job(
     if source is not None:
         checked_object(source, "source", doc)
     return checked_keywords(process, "process"), [
-        checked_keywords(one, "then") for one in checked_list(then, "then")
+        checked_keywords(feature, "then") for feature in checked_list(then, "then")
     ]
 
 
@@ -195,7 +195,7 @@ TEXTS = {
 
 
 def checked_links(
-    doc: Any, links: Sequence[Link], values: dict[str, Any], of: Any = None
+    doc: Any, links: Sequence[Link], values: dict[str, Any], stage: Any = None
 ) -> dict[str, Any]:
     """Return the values of links, by name, in the form of properties, with the values that belong
     to them.
@@ -203,27 +203,27 @@ def checked_links(
     None stays None. of: the existing stage of the links, if any. Raises InputError BAD_INPUT with
     the key of the link, or for a path to a missing face or edge.
     """
-    known = {link.name: link for link in links}
-    found = dict(values)
+    by_name = {link.name: link for link in links}
+    checked = dict(values)
     for name, value in values.items():
-        if name in known and value is not None:
-            found[name] = _checked(doc, known[name], value)
+        if name in by_name and value is not None:
+            checked[name] = _checked(doc, by_name[name], value)
         elif name in TEXTS:
             checked_text(value, TEXTS[name])
         elif name == "Sequence" and checked_text(value, "sequence") not in (BY_FEATURE, BY_HEIGHT):
             raise unknown_choice("sequence", value, (BY_FEATURE, BY_HEIGHT))
-    after = [] if of is None else [of, *of.InListRecursive]
-    for name in found.keys() & known.keys():
-        for one in _objects(found[name]):
-            if one in after:  # FreeCAD takes it, and falls over it
+    dependents = [] if stage is None else [stage, *stage.InListRecursive]
+    for name in checked.keys() & by_name.keys():
+        for target in _objects(checked[name]):
+            if target in dependents:  # FreeCAD takes it, and falls over it
                 raise InputError(
                     "BAD_INPUT",
-                    known[name].key,
+                    by_name[name].key,
                     "{} is made from {} itself; choose another object",
-                    one.Label,
-                    of.Label,
+                    target.Label,
+                    stage.Label,
                 )
-    return found
+    return checked
 
 
 def _objects(value: Any) -> list[Any]:
@@ -267,8 +267,8 @@ def make_stage(
                     setattr(obj, property_name, value)
             set_parameters(obj, stage, parameters, values)
             bodies.fill_in(obj, parameters, values)
-            for other in in_order(obj.OutListRecursive):
-                other.Proxy.renew(other)
+            for dependency in in_order(obj.OutListRecursive):
+                dependency.Proxy.renew(dependency)
             renew(obj)
         except BaseException:
             doc.removeObject(obj.Name)
@@ -331,7 +331,7 @@ def one_step(doc: Any, name: str) -> Iterator[None]:
         yield
         return
     if not doc.UndoMode:
-        with _without_new_ones(doc):
+        with _remove_new_objects(doc):
             yield
         return
     doc.openTransaction(name)
@@ -344,13 +344,13 @@ def one_step(doc: Any, name: str) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _without_new_ones(doc: Any) -> Iterator[None]:
+def _remove_new_objects(doc: Any) -> Iterator[None]:
     """Remove objects that were made within it where it fails, the last ones first."""
-    before = {obj.Name for obj in doc.Objects}
+    names = {obj.Name for obj in doc.Objects}
     try:
         yield
     except BaseException:
-        for name in [obj.Name for obj in doc.Objects if obj.Name not in before][::-1]:
+        for name in [obj.Name for obj in doc.Objects if obj.Name not in names][::-1]:
             if doc.getObject(name) is not None:  # it may have gone with another one
                 doc.removeObject(name)
         raise

@@ -51,13 +51,13 @@ def change(obj: Any, **values: Any) -> Any:
         if "base_faces" in values:
             hub = values.get("substrate") or obj.Substrate
             values["base_faces"] = owned(hub, values["base_faces"], "base_faces")
-        asked = {links[key]: values.pop(key) for key in links if key in values}
-        chosen = checked_links(obj.Document, proxy.links, asked, obj)
+        link_values = {links[key]: values.pop(key) for key in links if key in values}
+        checked = checked_links(obj.Document, proxy.links, link_values, obj)
         set_parameters(obj, proxy, [], values)
-        for property_name, value in chosen.items():
+        for property_name, value in checked.items():
             setattr(obj, property_name, value)
         for link in proxy.chosen if isinstance(proxy, FeatureStage) else ():
-            if link in chosen:
+            if link in checked:
                 proxy.confirm(obj, link)
         renew(obj)
         for follower in in_order(obj.InListRecursive):
@@ -89,9 +89,9 @@ def recompute(target: Any, force: bool = False) -> None:
     with one_step(document, "Recompute"):
         with stages.deferred():
             document.recompute()
-        wanted = document.Objects if document is target else [target, *target.OutListRecursive]
+        objects = document.Objects if document is target else [target, *target.OutListRecursive]
         errors = []
-        for obj in in_order(wanted):
+        for obj in in_order(objects):
             try:
                 renew(obj, force)
             except AmError as error:

@@ -69,22 +69,22 @@ def make_feature_of(
     """
     checked_document(doc)
     proxy = proxy_of(checked_text(kind, "kind"))
-    known = {link.name: link.key for link in proxy.links}
+    keys = {link.name: link.key for link in proxy.links}
     given_links = {"Source": with_faces(source, faces), **checked_keywords(links, "links")}
-    chosen = {name: value for name, value in given_links.items() if name in known}
+    family_links = {name: value for name, value in given_links.items() if name in keys}
     for name, owner in (
         ("StartEdges", source),
         ("BaseFaces", given_links.get("Substrate")),
         ("StartFaces", source),
     ):
-        if name in chosen and not _is_owned(chosen[name]):
-            chosen[name] = owned(owner, chosen[name], known[name])
+        if name in family_links and not _is_owned(family_links[name]):
+            family_links[name] = owned(owner, family_links[name], keys[name])
     return make_stage(
         doc,
         proxy,
         "Feature",
         label,
-        chosen,
+        family_links,
         checked_list(parameters, "parameters"),
         checked_keywords(values, "values"),
     )

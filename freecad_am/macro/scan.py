@@ -222,21 +222,23 @@ def make_scan(
     body = snapshot_of(checked_object(substrate, "substrate", doc)).body()
     measured = point_file.read(file, unit)
     scan_checks.refuse_size(measured.points, measured.label, body)
-    asked = fit == BEST or (
+    is_fitted = fit == BEST or (
         fit == AUTO
         and scan_checks.share_near(measured.points, body, within) < scan_checks.LEAST_ON_PART
     )
-    if asked and not pairs:
+    if is_fitted and not pairs:
         motion = planned.align_scan(measured.points, body, measured.label)
         pairs = planned.as_pairs(motion, scan_checks.extent(body.vertices))
     values = {"fit": NONE, "unit": unit, "pairs": pairs}
     with one_step(doc, f"Make {label}"):
-        found = make_stage(
+        inspection = make_stage(
             doc, Inspection, "Inspection", label, {"Planned": substrate, "File": file}, [], values
         )
         try:
-            scan_checks.refuse_other(found.Proxy.value(found).points, measured.label, body, within)
+            scan_checks.refuse_other(
+                inspection.Proxy.value(inspection).points, measured.label, body, within
+            )
         except InputError:
-            doc.removeObject(found.Name)
+            doc.removeObject(inspection.Name)
             raise
-    return found
+    return inspection

@@ -56,13 +56,13 @@ def suit(cell: Any, *stages: Any, failed_layers: Collection[int] = ()) -> bool:
     of additional layers to check.
     """
     settings = cell.Proxy.value(cell)
-    found = suited_cell.suit_to_toolpath(stages[0], failed_layers)(settings)
-    if found != settings:
-        _write(cell, found, stages)
+    suited = suited_cell.suit_to_toolpath(stages[0], failed_layers)(settings)
+    if suited != settings:
+        _write(cell, suited, stages)
         different = {
             field.name
-            for field in dataclasses.fields(found)
-            if getattr(found, field.name) != getattr(settings, field.name)
+            for field in dataclasses.fields(suited)
+            if getattr(suited, field.name) != getattr(settings, field.name)
         }
         labels = [
             row.label
@@ -73,7 +73,7 @@ def suit(cell: Any, *stages: Any, failed_layers: Collection[int] = ()) -> bool:
         App.Console.PrintWarning(
             f"{cell.Label}: {changed}: proposed for this job; enter what yours really has\n"
         )
-    return bool(found != settings)
+    return bool(suited != settings)
 
 
 def _write(cell: Any, settings: CellParameters, stages: Sequence[Any]) -> None:
@@ -90,21 +90,21 @@ def proposed_place(cell: Any, values: Mapping[str, Any]) -> None:
     The default robot keeps those of its parameters, because macros depend on them.
     """
     settings = cell.Proxy.value(cell)
-    asked = ("deposition_point", "touched", "external")
-    if settings.machine == CellParameters().machine or any(values.get(key) for key in asked):
+    keys = ("deposition_point", "touched", "external")
+    if settings.machine == CellParameters().machine or any(values.get(key) for key in keys):
         return
-    found = proposed(settings, user_machines.folders(), own_branch="branch" in values)
-    if found != settings:
-        _write(cell, found, ())
+    suited = proposed(settings, user_machines.folders(), own_branch="branch" in values)
+    if suited != settings:
+        _write(cell, suited, ())
 
 
 def is_held_apart(cell: Any, toolpath: Any) -> bool:
     """Whether part and substrate of a toolpath stay out of the platform of a cell."""
-    made, folders = toolpath.Proxy.value(toolpath), tuple(user_machines.folders())
+    result, folders = toolpath.Proxy.value(toolpath), tuple(user_machines.folders())
     settings = cell.Proxy.value(cell)
     if not arrangement_of(settings.setup).planned:
         return True
-    return not in_platform(cells.resolve(settings, made.frame, made.family, folders), made)
+    return not in_platform(cells.resolve(settings, result.frame, result.family, folders), result)
 
 
 def fit_platform(cell: Any, toolpath: Any) -> None:
@@ -116,10 +116,10 @@ def fit_platform(cell: Any, toolpath: Any) -> None:
     if not any(issue.code == OVER_PLATFORM for issue in issues_of(toolpath)):
         return
     settings = cell.Proxy.value(cell)
-    found = suited_cell.fitted(toolpath.Proxy.value(toolpath), settings)
+    fitted = suited_cell.fitted(toolpath.Proxy.value(toolpath), settings)
     planned, key = toolpath.Status != INFEASIBLE, toolpath.Key
     try:
-        _write(cell, found, [toolpath])
+        _write(cell, fitted, [toolpath])
     except (InputError, InfeasibleError):
         planned, key = True, ""
     if planned and (toolpath.Status == INFEASIBLE or not key):

@@ -87,7 +87,7 @@ def make_report(job: Job, results: Results, cell: Cell | None, timed: Timed, tel
     with timed("preflight"):  # after what can be done while some of it is still looked for
         content["preflight"] = [promise.as_dict() for promise in results.preflight()]
     distances = results.distances()
-    content["spacing_mm"] = figures.spread(distances)
+    content["spacing_mm"] = figures.summarize(distances)
     with timed("spacing_comparison"):
         walls = compared_walls(job, toolpath, distances)
         if not toolpath.features:

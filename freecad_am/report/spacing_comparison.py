@@ -73,7 +73,7 @@ def rows(
     by_method = {result.method: _row(result) for result in compared}
     planned = strategy.spacing
     if planned not in by_method:  # a wall cut by this method alone
-        spread = of_report.spread(distances)
+        spread = of_report.summarize(distances)
         by_method[planned] = _empty(planned) | {
             "layers": len(toolpath.layers),
             "min_mm": spread["min"],

@@ -26,23 +26,23 @@ def read(section: Any, folder: str) -> CellParameters | None:
 
     Raises InputError about a key of the job or of the cell file.
     """
-    section = paths.of_cell(section, folder)
+    section = paths.resolve_cell(section, folder)
     if isinstance(section, str) and section:
-        return of_file(section)
-    return None if section is None else _of_section(section)
+        return read_cell_file(section)
+    return None if section is None else _parse_section(section)
 
 
-def of_file(path: str) -> CellParameters:
+def read_cell_file(path: str) -> CellParameters:
     """The cell of a file of its own. Raises InputError about a key of it."""
     saved = tree.read(path, "machine: ...", "machine and setup")
     saved.lines = {f"cell.{key}": line for key, line in saved.lines.items()}
     try:
-        return _of_section(paths.of_cell(saved.values, paths.folder_of(path)))
+        return _parse_section(paths.resolve_cell(saved.values, paths.folder_of(path)))
     except InputError as error:
-        raise saved.placed(error) from None
+        raise saved.locate(error) from None
 
 
-def _of_section(section: Any) -> CellParameters:
+def _parse_section(section: Any) -> CellParameters:
     """The cell of a section whose files have absolute names."""
     section = dict(fields.mapping(section, "cell"))
     if section.get("machine") is not None:
@@ -62,7 +62,7 @@ def _of_section(section: Any) -> CellParameters:
     ):
         section["nozzle"] = {**section["nozzle"], "shape": _shape(section["nozzle"]["shape"])}
     if section.get("touched") not in (None, []):
-        section["touched"] = _touched(section["touched"])
+        section["touched"] = _touched_text(section["touched"])
     if isinstance(section.get("world_up"), list):
         numbers = [
             quantity.read(number, f.NUMBER, "cell.world_up") for number in section["world_up"]
@@ -95,9 +95,9 @@ def _machine(value: Any, key: str = "cell.machine") -> Any:
     if isinstance(value, dict) and value:
         fields.known_keys(value, ("file", "base", "tip", "name", "calibration"), key)
         texts = {
-            name: fields.text(one, f"{key}.{name}").strip()
-            for name, one in value.items()
-            if one is not None
+            name: fields.text(text, f"{key}.{name}").strip()
+            for name, text in value.items()
+            if text is not None
         }
         if "calibration" in texts or "name" in texts:
             if set(texts) != {"name", "calibration"}:
@@ -112,8 +112,8 @@ def _machine(value: Any, key: str = "cell.machine") -> Any:
             raise InputError(
                 "BAD_VALUE", f"{key}.file", "the file is missing; write machine: {file: robot.urdf}"
             )
-        meant = urdf_reference.reference(texts["file"])
-        if meant is None or len(texts["file"]) != len(meant.file):
+        reference = urdf_reference.reference(texts["file"])
+        if reference is None or len(texts["file"]) != len(reference.file):
             raise InputError(
                 "BAD_VALUE",
                 f"{key}.file",
@@ -122,7 +122,7 @@ def _machine(value: Any, key: str = "cell.machine") -> Any:
                 "without braces",
                 texts["file"],
             )
-        return str(urdf_reference.Reference(meant.file, texts.get("base"), texts.get("tip")))
+        return str(urdf_reference.Reference(reference.file, texts.get("base"), texts.get("tip")))
     return value
 
 
@@ -136,7 +136,7 @@ def _external(value: Any) -> str:
             "[1500, 0, 0, 0, 0, 0], carries: part}",
         )
     return f"{external.MORE} ".join(
-        str(_one_external(one, f"{external.WHERE}[{k}]")) for k, one in enumerate(value)
+        str(_one_external(entry, f"{external.WHERE}[{k}]")) for k, entry in enumerate(value)
     )
 
 
@@ -144,10 +144,10 @@ def _one_external(value: Any, key: str) -> external.External:
     section = fields.mapping(value, key)
     fields.known_keys(section, ("machine", "pose", "carries"), key)
     pose = _pose(section.get("pose"), f"{key}.pose")
-    wanted = section.get("machine")
-    if not isinstance(wanted, dict):
-        wanted = fields.text(wanted, f"{key}.machine").strip()
-    machine = _machine(wanted, f"{key}.machine")
+    machine_text = section.get("machine")
+    if not isinstance(machine_text, dict):
+        machine_text = fields.text(machine_text, f"{key}.machine").strip()
+    machine = _machine(machine_text, f"{key}.machine")
     return external.External(machine, pose, section.get("carries") or external.PART)
 
 
@@ -168,7 +168,7 @@ def _shape(value: Any) -> str:
     return file
 
 
-def _touched(value: Any) -> str:
+def _touched_text(value: Any) -> str:
     """What `cell.touched` says as the text that a cell keeps."""
     if isinstance(value, str):
         return value
@@ -178,24 +178,24 @@ def _touched(value: Any) -> str:
             touched.WHERE,
             "give a list such as - {part: [0, 0, 0], robot: [900.4, 2.1, -99.7]}",
         )
-    found = []
-    for number, one in enumerate(value):
+    points = []
+    for number, entry in enumerate(value):
         key = f"{touched.WHERE}[{number}]"
-        section = fields.mapping(one, key)
+        section = fields.mapping(entry, key)
         fields.known_keys(section, ("part", "robot"), key)
-        found.append(
+        points.append(
             touched.Touched(
                 *(_point(section.get(name), f"{key}.{name}") for name in ("part", "robot"))
             )
         )
-    return f"{touched.MORE} ".join(map(str, found))
+    return f"{touched.MORE} ".join(map(str, points))
 
 
 def _point(value: Any, key: str) -> touched.Point:
     """Three lengths of a job file."""
     if not isinstance(value, list) or len(value) != 3:
         raise InputError(
-            "BAD_VALUE", key, "{} is not a point; give [x, y, z]", quantity.shown(value)
+            "BAD_VALUE", key, "{} is not a point; give [x, y, z]", quantity.quote(value)
         )
     x, y, z = (quantity.read(number, f.LENGTH, key) for number in value)
     return x, y, z
@@ -203,11 +203,11 @@ def _point(value: Any, key: str) -> touched.Point:
 
 def _pose(value: Any, key: str) -> external.Pose:
     """Six quantities of a job file, or what a pendant shows."""
-    if (shown := fields.as_shown(value, key)) is not None:
-        return shown
+    if (controller_pose := fields.as_shown(value, key)) is not None:
+        return controller_pose
     if not isinstance(value, list) or len(value) != 6:
         raise InputError(
-            "BAD_VALUE", key, "{} is not a pose; give [x, y, z, RX, RY, RZ]", quantity.shown(value)
+            "BAD_VALUE", key, "{} is not a pose; give [x, y, z, RX, RY, RZ]", quantity.quote(value)
         )
     kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3
     x, y, z, a, b, c = (
@@ -224,8 +224,8 @@ def _obstacles(value: Any) -> str:
             obstacles.WHERE,
             "give a list such as - {file: table.step, pose: [0, 0, -200, 0, 0, 0]}",
         )
-    found = [_obstacle(one, f"{obstacles.WHERE}[{k}]", k + 1) for k, one in enumerate(value)]
-    return f"{obstacles.MORE} ".join(map(str, found))
+    bodies = [_obstacle(entry, f"{obstacles.WHERE}[{k}]", k + 1) for k, entry in enumerate(value)]
+    return f"{obstacles.MORE} ".join(map(str, bodies))
 
 
 def _obstacle(value: Any, key: str, number: int) -> obstacles.Obstacle:
@@ -249,7 +249,7 @@ def _obstacle(value: Any, key: str, number: int) -> obstacles.Obstacle:
                 "BAD_VALUE",
                 f"{key}.box",
                 "{} is not a box; give its edges along x, y and z such as [1200, 800, 30]",
-                quantity.shown(edges),
+                quantity.quote(edges),
             )
         width, depth, height = (quantity.read(edge, f.LENGTH, f"{key}.box") for edge in edges)
         size = (width, depth, height)

@@ -31,12 +31,12 @@ def build(
     section = mapping(values, prefix)
     fields = {field.name: field for field in dataclasses.fields(factory)}  # type: ignore[arg-type]
     known_keys(section, (*fields, *also), prefix)
-    given = {
+    arguments = {
         name: _value(f.spec_of(field), field, section[name], f"{prefix}.{name}")
         for name, field in fields.items()
         if name in section
     }
-    return factory(**given)
+    return factory(**arguments)
 
 
 def mapping(values: Any, prefix: str) -> dict[str, Any]:
@@ -46,26 +46,28 @@ def mapping(values: Any, prefix: str) -> dict[str, Any]:
             "BAD_VALUE",
             prefix,
             "{} is not a section; write its keys below {}:",
-            quantity.shown(values),
+            quantity.quote(values),
             prefix,
         )
     return values
 
 
-def known_keys(section: dict[str, Any], known: Iterable[str], prefix: str) -> None:
+def known_keys(section: dict[str, Any], names: Iterable[str], prefix: str) -> None:
     """Raises InputError UNKNOWN_KEY for the first key that is not known, naming the nearest one."""
-    known = tuple(known)
+    names = tuple(names)
     for key in section:
-        if key not in known:
-            raise unknown_key(f"{prefix}.{key}" if prefix else key, key, known)
+        if key not in names:
+            raise unknown_key(f"{prefix}.{key}" if prefix else key, key, names)
 
 
-def unknown_key(dotted: str, key: str, known: tuple[str, ...]) -> InputError:
+def unknown_key(dotted: str, key: str, names: tuple[str, ...]) -> InputError:
     """The error for a key nobody reads."""
     import difflib
 
-    near = difflib.get_close_matches(key.lower().replace("-", "_"), known, n=1)
-    hint = Text("did you mean {}?", near[0]) if near else Text("use one of {}", ", ".join(known))
+    matches = difflib.get_close_matches(key.lower().replace("-", "_"), names, n=1)
+    hint = (
+        Text("did you mean {}?", matches[0]) if matches else Text("use one of {}", ", ".join(names))
+    )
     return InputError("UNKNOWN_KEY", dotted, "there is no key {!r}; {}", key, Word(hint))
 
 
@@ -76,7 +78,7 @@ def text(value: Any, key: str) -> str:
             "BAD_VALUE",
             key,
             "{} is not a text; put numbers in quotes",
-            _shown(value),
+            _quote(value),
         )
     return value
 
@@ -89,15 +91,15 @@ def _value(spec: f.Spec, field: dataclasses.Field[Any], value: Any, key: str) ->
         return None
     if isinstance(value, str) and value in spec.words:
         return math.inf if value == "inf" else value
-    if _is_pose(spec, field) and (shown := as_shown(value, key)) is not None:
-        return shown
+    if _is_pose(spec, field) and (pose := as_shown(value, key)) is not None:
+        return pose
     if isinstance(value, list):
         return _list(spec, field, value, key)
     if spec.kind == f.POSE or spec.kind in f.END_OF:
-        wanted = "[x, y, z, RX, RY, RZ]" if spec.kind == f.POSE else "[smallest, largest]"
+        example = "[x, y, z, RX, RY, RZ]" if spec.kind == f.POSE else "[smallest, largest]"
         also = Text.joined("", (Text(" or {}", word) for word in spec.words))
         raise InputError(
-            "BAD_VALUE", key, "{} is not a list; give {}{}", _shown(value), Word(wanted), also
+            "BAD_VALUE", key, "{} is not a list; give {}{}", _quote(value), Word(example), also
         )
     if spec.kind in quantity.WANTED:
         return _number(value, spec, key)
@@ -126,11 +128,11 @@ def _plain(spec: f.Spec, value: Any, key: str) -> Any:
         raise _unknown_choice(key, value, spec.choices)
     if spec.kind == f.FLAG and not isinstance(value, bool):
         raise InputError(
-            "BAD_VALUE", key, "{} is neither true nor false; use true or false", _shown(value)
+            "BAD_VALUE", key, "{} is neither true nor false; use true or false", _quote(value)
         )
     if spec.kind == f.COUNT and (isinstance(value, bool) or not isinstance(value, int)):
         raise InputError(
-            "BAD_VALUE", key, "{} is not a whole number; give one such as 3", _shown(value)
+            "BAD_VALUE", key, "{} is not a whole number; give one such as 3", _quote(value)
         )
     if spec.kind == f.TEXT:
         return text(value, key)
@@ -140,13 +142,13 @@ def _plain(spec: f.Spec, value: Any, key: str) -> Any:
 def _unknown_choice(key: str, value: Any, choices: tuple[str, ...]) -> InputError:
     import difflib
 
-    near = difflib.get_close_matches(str(value).lower().replace("_", "-"), choices, n=1)
-    hint = Text("did you mean {}? ", near[0]) if near else ""
+    matches = difflib.get_close_matches(str(value).lower().replace("_", "-"), choices, n=1)
+    hint = Text("did you mean {}? ", matches[0]) if matches else ""
     return InputError(
         "BAD_VALUE",
         key,
         "{} is not known; {}use one of {}",
-        _shown(value),
+        _quote(value),
         Word(hint),
         ", ".join(choices),
     )
@@ -176,7 +178,7 @@ def _list(spec: f.Spec, field: dataclasses.Field[Any], value: list[Any], key: st
         return tuple(_finite(number, f.END_OF[spec.kind], key) for number in value)
     if spec.kind == f.TEXT and "tuple" in str(field.type):
         return tuple(text(word, key) for word in value)
-    raise InputError("BAD_VALUE", key, "{} is a list; give one value", quantity.shown(value))
+    raise InputError("BAD_VALUE", key, "{} is a list; give one value", quantity.quote(value))
 
 
 def _number(value: Any, spec: f.Spec, key: str) -> float:
@@ -185,7 +187,7 @@ def _number(value: Any, spec: f.Spec, key: str) -> float:
             "BAD_VALUE",
             key,
             "{} is not known; give {} or {}",
-            _shown(value),
+            _quote(value),
             Text.joined(" or ", spec.words),
             quantity.WANTED[spec.kind][1],
         )
@@ -200,10 +202,10 @@ def _finite(value: Any, kind: str, key: str) -> float:
     number = quantity.read(value, kind, key)
     if abs(number) > _BOUND:
         raise InputError(
-            "BAD_VALUE", key, "{} is too large; give {}", _shown(value), quantity.WANTED[kind][1]
+            "BAD_VALUE", key, "{} is too large; give {}", _quote(value), quantity.WANTED[kind][1]
         )
     return number
 
 
-def _shown(value: Any) -> str:
-    return "nothing" if value == {} else quantity.shown(value)
+def _quote(value: Any) -> str:
+    return "nothing" if value == {} else quantity.quote(value)

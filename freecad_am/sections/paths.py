@@ -16,13 +16,13 @@ from ..core.kinematics.urdf import reference as urdf_reference
 from ..core.parameters.cell import NO_SHAPE
 from ..core.process.model import wire
 
-EACH = "[]"
+ANY_INDEX = "[]"
 FEATURES = "features"
 OF_FEATURE = (
     ("part", "file"),
     ("substrate", "file"),
     ("substrate", "scan"),
-    ("fixtures", EACH, "file"),
+    ("fixtures", ANY_INDEX, "file"),
     ("strategy", "guide", "file"),
 )
 
@@ -34,40 +34,40 @@ def folder_of(path: str) -> str:
 
 def absolute(file: str, folder: str) -> str:
     """`file` as an absolute path; relative ones start at the absolute `folder`."""
-    found = os.path.normpath(os.path.join(folder, expanded(file)))
-    locate(found)  # who collects what a job is made of is told of it
-    return found
+    path = os.path.normpath(os.path.join(folder, expanded(file)))
+    locate(path)  # who collects what a job is made of is told of it
+    return path
 
 
-def of_job(values: dict[str, Any], folder: str) -> dict[str, Any]:
+def resolve_job(values: dict[str, Any], folder: str) -> dict[str, Any]:
     """The values of a job file in `folder` with absolute names of all files but those of the cell, which has files of its
     own; what is no name of a file stays as it is."""
-    at = partial(absolute, folder=folder)
-    for feature in ((), (FEATURES, EACH)):
+    resolve = partial(absolute, folder=folder)
+    for feature in ((), (FEATURES, ANY_INDEX)):
         for keys in OF_FEATURE:
-            values = _changed(values, (*feature, *keys), at)
-        values = _changed(values, (*feature, "process", "bead_model"), partial(_table, at))
-        values = _changed(values, (*feature, "process", "material"), partial(_material, at))
+            values = _changed(values, (*feature, *keys), resolve)
+        values = _changed(values, (*feature, "process", "bead_model"), partial(_table, resolve))
+        values = _changed(values, (*feature, "process", "material"), partial(_material, resolve))
     return values
 
 
-def of_cell(section: Any, folder: str) -> Any:
+def resolve_cell(section: Any, folder: str) -> Any:
     """The section `cell` of a file in `folder` with absolute names of files; where it names a cell file, that name."""
 
-    def at(file: str) -> str:
+    def resolve(file: str) -> str:
         return absolute(file.strip(), folder)
 
-    machine = partial(_machine, at)
-    section = _changed(section, (), at)
-    for keys in (("machine",), ("external", EACH, "machine")):
+    machine = partial(_machine, resolve)
+    section = _changed(section, (), resolve)
+    for keys in (("machine",), ("external", ANY_INDEX, "machine")):
         section = _changed(
-            _changed(section, keys, machine), keys, partial(_described, at, machine), dict
+            _changed(section, keys, machine), keys, partial(_described, resolve, machine), dict
         )
-    section = _changed(section, ("obstacles", EACH, "file"), at)
+    section = _changed(section, ("obstacles", ANY_INDEX, "file"), resolve)
     section = _changed(
-        section, ("nozzle", "shape"), lambda shape: shape if shape == NO_SHAPE else at(shape)
+        section, ("nozzle", "shape"), lambda shape: shape if shape == NO_SHAPE else resolve(shape)
     )
-    return _changed(section, ("nozzle", "shape", "file"), at)
+    return _changed(section, ("nozzle", "shape", "file"), resolve)
 
 
 def _changed(
@@ -80,49 +80,49 @@ def _changed(
             if isinstance(value, kind) and (value.strip() if isinstance(value, str) else value)
             else value
         )
-    key, rest = keys[0], keys[1:]
-    if key == EACH:
+    key, further = keys[0], keys[1:]
+    if key == ANY_INDEX:
         return (
-            [_changed(one, rest, change, kind) for one in value]
+            [_changed(entry, further, change, kind) for entry in value]
             if isinstance(value, list)
             else value
         )
     if not isinstance(value, dict) or key not in value:
         return value
-    return {**value, key: _changed(value[key], rest, change, kind)}
+    return {**value, key: _changed(value[key], further, change, kind)}
 
 
-def _table(at: Callable[[str], str], name: str) -> str:
+def _table(resolve: Callable[[str], str], name: str) -> str:
     """A bead table that is none of ours."""
-    return name if name in ("none", *wire.BUILT_IN) else at(name)
+    return name if name in ("none", *wire.BUILT_IN) else resolve(name)
 
 
-def _material(at: Callable[[str], str], name: str) -> str:
+def _material(resolve: Callable[[str], str], name: str) -> str:
     """The file of a material if there is one, else its name."""
-    own = at(name.strip())
-    return own if is_there(own) else name
+    path = resolve(name.strip())
+    return path if is_there(path) else name
 
 
-def _machine(at: Callable[[str], str], text: str) -> str:
+def _machine(resolve: Callable[[str], str], text: str) -> str:
     """The text of a machine: its id, its machine file, a URDF with the links meant, or one of these and a calibration."""
     measured = calibration.named(text)
     if measured is not None:
-        return str(calibration.Named(_machine(at, measured.machine), at(measured.file)))
-    meant = urdf_reference.reference(text)
-    if meant is not None:
-        return str(replace(meant, file=at(meant.file)))
-    return at(text) if os.sep in text or text.lower().endswith(".json") else text
+        return str(calibration.Named(_machine(resolve, measured.machine), resolve(measured.file)))
+    reference = urdf_reference.reference(text)
+    if reference is not None:
+        return str(replace(reference, file=resolve(reference.file)))
+    return resolve(text) if os.sep in text or text.lower().endswith(".json") else text
 
 
 def _described(
-    at: Callable[[str], str], machine: Callable[[str], str], section: dict[str, Any]
+    resolve: Callable[[str], str], machine: Callable[[str], str], section: dict[str, Any]
 ) -> dict[str, Any]:
     """The same of a machine that is a section of its own."""
-    section = _changed(_changed(section, ("name",), machine), ("calibration",), at)
-    return _changed(section, ("file",), partial(_urdf, at))
+    section = _changed(_changed(section, ("name",), machine), ("calibration",), resolve)
+    return _changed(section, ("file",), partial(_urdf, resolve))
 
 
-def _urdf(at: Callable[[str], str], file: str) -> str:
+def _urdf(resolve: Callable[[str], str], file: str) -> str:
     """The file of a URDF; other texts, which are refused, stay as they are."""
-    meant = urdf_reference.reference(file)
-    return at(file) if meant is not None and meant.file == file.strip() else file
+    reference = urdf_reference.reference(file)
+    return resolve(file) if reference is not None and reference.file == file.strip() else file

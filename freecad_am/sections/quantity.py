@@ -76,22 +76,22 @@ def read(value: Any, kind: str, key: str) -> float:
     A number without a unit is in the outer unit of `kind` (mm, deg, mm/s, s, %). Raises InputError 'BAD_VALUE' for
     what is not a quantity, 'BAD_UNIT' for an unknown unit or one of the wrong dimension.
     """
-    wanted, example = WANTED[kind]
+    expected, example = WANTED[kind]
     if isinstance(value, bool) or value is None or not isinstance(value, (int, float, str)):
-        raise InputError("BAD_VALUE", key, "{} is not a quantity; give {}", shown(value), example)
+        raise InputError("BAD_VALUE", key, "{} is not a quantity; give {}", quote(value), example)
     if isinstance(value, str):
         number, dimension = _read_text(value, kind, key)
     else:
         number, dimension = float(value), None
     if math.isnan(number):
-        raise InputError("BAD_VALUE", key, "{} is not a number; give {}", shown(value), example)
-    if dimension is not None and dimension != wanted:
-        found = DIMENSION_NAMES.get(dimension, "is of another dimension")
-        raise InputError("BAD_UNIT", key, "{} {}; give {}", shown(value), found, example)
+        raise InputError("BAD_VALUE", key, "{} is not a number; give {}", quote(value), example)
+    if dimension is not None and dimension != expected:
+        actual = DIMENSION_NAMES.get(dimension, "is of another dimension")
+        raise InputError("BAD_UNIT", key, "{} {}; give {}", quote(value), actual, example)
     return number * f.TO_INNER.get(kind, 1.0)
 
 
-def shown(value: Any) -> str:
+def quote(value: Any) -> str:
     """A value as its user wrote it, cut short where it is long."""
     if isinstance(value, bool):
         return "true" if value else "false"
@@ -108,7 +108,7 @@ def _read_text(text: str, kind: str, key: str) -> tuple[float, Dimension | None]
             "BAD_VALUE",
             key,
             "{} has a comma; use a decimal point, as in {}",
-            shown(text),
+            quote(text),
             text.replace(",", "."),
         )
     infinite = _INFINITE.fullmatch(text)
@@ -119,10 +119,10 @@ def _read_text(text: str, kind: str, key: str) -> tuple[float, Dimension | None]
         return _read_with_freecad(text, key, example)
     number, over, under, percent = float(simple[1]), simple[2], simple[3], simple[4]
     if not math.isfinite(number):
-        raise InputError("BAD_VALUE", key, "{} is too large; give {}", shown(text), example)
+        raise InputError("BAD_VALUE", key, "{} is too large; give {}", quote(text), example)
     if percent:
         if kind != f.RATIO:
-            raise InputError("BAD_UNIT", key, "{} is a percentage; give {}", shown(text), example)
+            raise InputError("BAD_UNIT", key, "{} is a percentage; give {}", quote(text), example)
         return number, None
     if over is None:
         return number, None
@@ -130,16 +130,20 @@ def _read_text(text: str, kind: str, key: str) -> tuple[float, Dimension | None]
         return _read_with_freecad(text, key, example)
     factor, dimension = UNITS[over]
     if under is not None:
-        divisor, other = UNITS[under]
+        divisor, divisor_dimension = UNITS[under]
         factor /= divisor
-        dimension = (dimension[0] - other[0], dimension[1] - other[1], dimension[2] - other[2])
+        dimension = (
+            dimension[0] - divisor_dimension[0],
+            dimension[1] - divisor_dimension[1],
+            dimension[2] - divisor_dimension[2],
+        )
     return number * factor, None if dimension == NONE else dimension
 
 
 def _read_with_freecad(text: str, key: str, example: str) -> tuple[float, Dimension | None]:
     """The same by FreeCAD's own parser, for expressions and rare units."""
     wrong = InputError(
-        "BAD_UNIT", key, "{} is not a quantity with a known unit; give {}", shown(text), example
+        "BAD_UNIT", key, "{} is not a quantity with a known unit; give {}", quote(text), example
     )
     if not text:
         raise InputError("BAD_VALUE", key, "the value is missing; give {}", example)

@@ -21,7 +21,7 @@ _INFINITE = re.compile(r"[-+]?\.?inf", re.IGNORECASE)
 _TAG = "tag:yaml.org,2002:"
 _MOST_LEVELS = 21
 _MOST_VALUES = 100_000  # aliases of aliases can stand for more values than fit in memory
-_LARGEST = 4  # MB; a job is a page of text, so a larger file is not one
+_MAX_MEGABYTES = 4  # MB; a job is a page of text, so a larger file is not one
 
 
 @dataclass
@@ -36,19 +36,19 @@ class Tree:
         """The place of a dotted key as messages name it."""
         return f"{self.label}: {key}" if key else self.label
 
-    def with_line(self, key: str, message: str) -> str:
+    def add_line(self, key: str, message: str) -> str:
         """A message with the line of its key, where the file has that key."""
         line = self.lines.get(key)
         return message if line is None else Text("{} (line {})", message, line)
 
-    def placed(self, error: InputError) -> InputError:
+    def locate(self, error: InputError) -> InputError:
         """An error about a dotted key as one about this file."""
         return InputError(
-            error.code, self.where(error.where), self.with_line(error.where, error.message)
+            error.code, self.where(error.where), self.add_line(error.where, error.message)
         )
 
 
-def read(path: str, least: str = "part: {file: ...}", keys: str = "part and strategy") -> Tree:
+def read(path: str, example: str = "part: {file: ...}", keys: str = "part and strategy") -> Tree:
     """The file as a `Tree`; what it needs at `least` and its `keys` are for messages.
 
     Raises InputError NO_FILE, EMPTY_FILE, BAD_FILE, DUPLICATE_KEY or BAD_VALUE.
@@ -73,7 +73,7 @@ def read(path: str, least: str = "part: {file: ...}", keys: str = "part and stra
             "BAD_FILE", label, "this is nested too deeply; give keys such as {}", keys
         ) from None
     if node is None:
-        raise InputError("EMPTY_FILE", label, "the file is empty; give at least {}", least)
+        raise InputError("EMPTY_FILE", label, "the file is empty; give at least {}", example)
     tree = Tree(label, {})
     if not isinstance(node, yaml.MappingNode):
         raise InputError("BAD_FILE", label, "this is not a mapping; give keys such as {}", keys)
@@ -102,7 +102,7 @@ def scalar(text: str, where: str) -> Any:
 def text_of(path: str, label: str) -> str:
     """The text of a file in UTF-8. Raises InputError NO_FILE or BAD_FILE, named `label`."""
     try:
-        return read_content(path, _LARGEST, "BAD_FILE", label).decode("utf-8-sig")
+        return read_content(path, _MAX_MEGABYTES, "BAD_FILE", label).decode("utf-8-sig")
     except FileNotFoundError:
         raise InputError("NO_FILE", path, "the file does not exist; check the path") from None
     except OSError as error:
@@ -153,12 +153,12 @@ class _Reader:
             key = key_node.value
             dotted = f"{prefix}.{key}" if prefix else key
             if key in values:
-                first = self.tree.lines[dotted]
+                first_line = self.tree.lines[dotted]
                 raise InputError(
                     "DUPLICATE_KEY",
                     self.tree.where(dotted),
                     "the key appears twice (lines {} and {}); remove one",
-                    first,
+                    first_line,
                     line,
                 )
             self.tree.lines[dotted] = line
@@ -192,7 +192,7 @@ class _Reader:
     def _enter(self, node: Any, key: str) -> None:
         if node.tag not in (_TAG + "map", _TAG + "seq"):
             raise self._foreign_tag(node, key)
-        if any(node is other for other in self.open):
+        if any(node is ancestor for ancestor in self.open):
             raise InputError(
                 "BAD_FILE",
                 self.tree.where(key),
@@ -227,4 +227,4 @@ class _Reader:
 
     def _foreign_tag(self, node: Any, key: str) -> InputError:
         message = Text("the tag {} is not allowed here; write the plain value", node.tag)
-        return InputError("BAD_VALUE", self.tree.where(key), self.tree.with_line(key, message))
+        return InputError("BAD_VALUE", self.tree.where(key), self.tree.add_line(key, message))

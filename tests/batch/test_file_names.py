@@ -27,7 +27,7 @@ def test_names_of_files_of_every_feature_are_absolute():
     }
     values = {**feature, "features": [feature, {"name": "top"}], "name": "cup.step"}
     before = copy.deepcopy(values)
-    assert paths.of_job(values, FOLDER) == {
+    assert paths.resolve_job(values, FOLDER) == {
         **wanted,
         "features": [wanted, {"name": "top"}],
         "name": "cup.step",
@@ -52,12 +52,12 @@ def test_names_of_files_of_every_feature_are_absolute():
     ],
 )
 def test_what_names_no_file_stays(values):
-    assert paths.of_job(values, FOLDER) == values
+    assert paths.resolve_job(values, FOLDER) == values
 
 
 def test_a_material_in_the_folder_of_the_job_comes_before_those_built_in(tmp_path):
     (tmp_path / "er70s-6").write_text("")
-    found = paths.of_job({"process": {"material": "er70s-6"}}, str(tmp_path))
+    found = paths.resolve_job({"process": {"material": "er70s-6"}}, str(tmp_path))
     assert found == {"process": {"material": str(tmp_path / "er70s-6")}}
 
 
@@ -81,21 +81,23 @@ def test_a_material_in_the_folder_of_the_job_comes_before_those_built_in(tmp_pat
     ],
 )
 def test_machines_of_a_cell(machine, wanted):
-    assert paths.of_cell({"machine": machine, "external": [{"machine": machine}]}, FOLDER) == {
+    assert paths.resolve_cell({"machine": machine, "external": [{"machine": machine}]}, FOLDER) == {
         "machine": wanted,
         "external": [{"machine": wanted}],
     }
 
 
 def test_other_files_of_a_cell():
-    assert paths.of_cell(" hall.yaml ", FOLDER) == "/jobs/hall.yaml"
+    assert paths.resolve_cell(" hall.yaml ", FOLDER) == "/jobs/hall.yaml"
     section = {
         "obstacles": [{"file": "table.step"}, {"box": [1, 2, 3]}],
         "nozzle": {"shape": {"file": "torch.stl"}},
     }
-    assert paths.of_cell(section, FOLDER) == {
+    assert paths.resolve_cell(section, FOLDER) == {
         "obstacles": [{"file": "/jobs/table.step"}, {"box": [1, 2, 3]}],
         "nozzle": {"shape": {"file": "/jobs/torch.stl"}},
     }
     for shape in ("none", 3, None):
-        assert paths.of_cell({"nozzle": {"shape": shape}}, FOLDER) == {"nozzle": {"shape": shape}}
+        assert paths.resolve_cell({"nozzle": {"shape": shape}}, FOLDER) == {
+            "nozzle": {"shape": shape}
+        }

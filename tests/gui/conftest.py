@@ -377,7 +377,7 @@ def rough_map(monkeypatch):
     """Of the map of the free rotation one row of six is looked at for the arm, and no more, where others stand beside it."""
     from freecad_am.gui.redundancy_map import cells
 
-    monkeypatch.setattr(cells, "FINE", cells.ROUGH)
+    monkeypatch.setattr(cells, "FINE_STRIDE", cells.ROUGH_STRIDE)
 
 
 @pytest.fixture

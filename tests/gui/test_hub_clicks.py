@@ -174,7 +174,7 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
     person.idle()
     widths = np.concatenate([bead.width for _, _, bead in api.result(toolpath)])
     scale = toolpath.ViewObject.Proxy.scale
-    assert (scale.title, scale.least, scale.most) == ("width", widths.min(), widths.max())
+    assert (scale.title, scale.lowest, scale.highest) == ("width", widths.min(), widths.max())
     person.look()
     person.screenshot("hub_width")
 

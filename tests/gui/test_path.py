@@ -61,7 +61,7 @@ def test_layers_and_points_by_sliders_and_numbers(person, hand, joint_path):
     alone = drawn(person)
     assert 0 < alone.sum() < 0.5 * lower.sum()
     assert joint_path.ViewObject.Proxy.shown == (3, 3, None)
-    low, high = rows.of_layers(3, 3)
+    low, high = rows.layer_rows(3, 3)
     assert (point.minimum(), point.maximum()) == (0, high - low - 1)
     point.setValue((high - low) // 2)
     person.idle()
@@ -218,7 +218,7 @@ def test_a_stretch_of_a_large_path_changes_little(person, joint_path):
         for last in range(view.rows.layer_count - 1, 0, -3):
             view.show((first, last, 5))
         # but for what lies before the first piece, no more than the last segment, of tubes the last block, is made anew
-        before = view.rows.of_layers(first, first)[0]
+        before = view.rows.layer_rows(first, first)[0]
         assert max(end - start for start, end in made) < 2 * PIECE
         assert (
             max((end - start for start, end in made if start not in (before, *cuts)), default=0)
@@ -331,7 +331,7 @@ def test_a_click_on_the_path_goes_to_the_point(person, hand, joint_path, look):
         hand.at(where(view, hand, aim[wanted]))
         person.until(lambda: proxy.shown is not None, "the click to count", 5)
         first, layer, count = proxy.shown
-        row = rows.of_layers(layer, layer)[0] + count - 1
+        row = rows.layer_rows(layer, layer)[0] + count - 1
         # as seen a pixel or two away, where points of the dome's side are close to each other; beads are 5 mm apart
         away = np.subtract(where(view, hand, aim[row]), where(view, hand, aim[wanted]))
         assert (
@@ -349,7 +349,7 @@ def test_a_click_on_the_path_goes_to_the_point(person, hand, joint_path, look):
     # what is hidden is not hit: with the lower layers alone a click on a higher one does nothing
     proxy.show((0, 2, None))
     person.idle(0.1)
-    top = int(rows.of_layers(rows.layer_count - 3, rows.layer_count - 3)[0])
+    top = int(rows.layer_rows(rows.layer_count - 3, rows.layer_count - 3)[0])
     hand.at(where(view, hand, aim[top]))
     person.idle(0.3)
     assert proxy.shown == (0, 2, None)
@@ -421,7 +421,7 @@ def test_the_nozzle_stands_where_the_stretch_ends_that_is_shown(person, joint_pa
 
     end = stands()
     person.field(panel, "to_spin").setValue(3)
-    low, high = rows.of_layers(3, 3)
+    low, high = rows.layer_rows(3, 3)
     assert np.allclose(stands()[0], rows.points[high - 1], atol=1e-3)
     person.field(panel, "point_slider").setValue(7)
     bead = rows.bead(rows.bead_of(low + 7))

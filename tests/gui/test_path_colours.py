@@ -37,14 +37,14 @@ def test_joint_paths_are_coloured_by_what_the_machine_has_left(person, joint_pat
     )
     scale = vobj.Proxy.scale
     assert (scale.title, scale.unit) == ("joint margin", "%")
-    assert scale.least == pytest.approx(100 * share[motion.deposit].min())
-    assert scale.most == pytest.approx(100 * share[motion.deposit].max())
+    assert scale.lowest == pytest.approx(100 * share[motion.deposit].min())
+    assert scale.highest == pytest.approx(100 * share[motion.deposit].max())
     assert scale.text_at(7) == f"joint margin {100 * share[motion.deposit][7]:.3g} %"
     vobj.Colouring = "joint speed"
     ratio = speed_ratios(motion.joints, motion.duration, machine.max_speed).max(axis=1)
-    assert vobj.Proxy.scale.most == pytest.approx(100 * ratio[motion.deposit].max())
+    assert vobj.Proxy.scale.highest == pytest.approx(100 * ratio[motion.deposit].max())
     vobj.Colouring = "condition"
-    assert vobj.Proxy.scale.least == pytest.approx(joint_path.SmallestCondition)
+    assert vobj.Proxy.scale.lowest == pytest.approx(joint_path.SmallestCondition)
     for kind in colouring.JOINT_KINDS:
         vobj.Colouring = kind
         person.idle()

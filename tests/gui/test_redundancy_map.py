@@ -545,11 +545,13 @@ def _coloured_by_all_axes(path, cell):
         axis=1,
     )
     view.Colouring = "joint margin"
-    assert view.Proxy.scale.least == pytest.approx(100.0 * share[motion.deposit].min())
-    assert view.Proxy.scale.most == pytest.approx(100.0 * share[motion.deposit].max())
+    assert view.Proxy.scale.lowest == pytest.approx(100.0 * share[motion.deposit].min())
+    assert view.Proxy.scale.highest == pytest.approx(100.0 * share[motion.deposit].max())
     ratio = speed_ratios(motion.joints, motion.duration, cell.machine.max_speed)
     view.Colouring = "joint speed"
-    assert view.Proxy.scale.most == pytest.approx(100.0 * ratio.max(axis=1)[motion.deposit].max())
+    assert view.Proxy.scale.highest == pytest.approx(
+        100.0 * ratio.max(axis=1)[motion.deposit].max()
+    )
     view.Colouring = "joint margin"
 
 

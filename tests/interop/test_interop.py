@@ -15,7 +15,7 @@ from freecad_am import api
 from freecad_am.core.geometry.frames import rotation_about
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
-from freecad_am.interop.lines import Line, attitudes, of_motion, of_toolpath, thinned
+from freecad_am.interop.lines import Line, attitudes, lines_of_motion, lines_of_toolpath, thinned
 from freecad_am.sections import cell as job_cell
 from tests.core.kinematics.test_calibration import FILE as calibrated_robot
 
@@ -70,8 +70,8 @@ def polylines(path):
 def test_motion_and_toolpath_give_the_same_beads(job):
     planned = api.result(job)
     ours, theirs = (
-        of_toolpath(api.result(job.Toolpath)),
-        [line for line in of_motion(planned.motion) if line.deposit],
+        lines_of_toolpath(api.result(job.Toolpath)),
+        [line for line in lines_of_motion(planned.motion) if line.deposit],
     )
     names, others = (
         [(line.layer, line.bead, line.closed) for line in lines] for lines in (ours, theirs)
@@ -80,9 +80,9 @@ def test_motion_and_toolpath_give_the_same_beads(job):
     for one, other in zip(ours, theirs, strict=True):
         gaps = np.linalg.norm(one.points[:, None] - other.points[None], axis=2).min(axis=1)
         assert gaps.max() < 1e-9  # planning adds points, and leaves none out
-    travelled = np.concatenate([line.points for line in of_motion(planned.motion)])
+    travelled = np.concatenate([line.points for line in lines_of_motion(planned.motion)])
     assert np.isfinite(travelled).all()
-    joined = of_motion(planned.motion)
+    joined = lines_of_motion(planned.motion)
     for before, after in zip(joined, joined[1:], strict=False):
         assert np.array_equal(before.points[-1], after.points[0])
 
@@ -158,7 +158,7 @@ def test_cam_path_runs_through_every_bead_and_survives_saving(job, tmp_path):
             if on:
                 runs[-1].append(place)
                 assert words["F"] > 0.0
-    wanted = [line.points for line in of_motion(api.result(job).motion) if line.deposit]
+    wanted = [line.points for line in lines_of_motion(api.result(job).motion) if line.deposit]
     assert len(runs) == len(wanted)
     for run, points in zip(runs, wanted, strict=True):
         assert np.abs(np.array(run) - points).max() < 1e-9
@@ -178,7 +178,7 @@ def test_trajectory_keeps_within_what_was_asked_and_survives_saving(job, tmp_pat
     made = api.make_trajectory(job, tolerance=0.05, turn=1.0)
     assert "Touched" not in made.State
     waypoints = made.Trajectory.Waypoints
-    lines = of_motion(api.result(job).motion)
+    lines = lines_of_motion(api.result(job).motion)
     assert 2 < len(waypoints) < 0.8 * sum(len(line.points) for line in lines)
     at = np.array([list(waypoint.Pos.Base) for waypoint in waypoints])
     nozzle = np.array(

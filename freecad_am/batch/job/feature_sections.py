@@ -32,7 +32,7 @@ def as_text(section: dict[str, Any]) -> dict[str, Any]:
             bead_classes.WHERE,
             "{} is not understood; write classes below it such as contour: {{travel_speed: "
             "8 mm/s, schedule: 3}}",
-            quantity.shown(classes),
+            quantity.quote(classes),
         )
     fields.known_keys(classes, bead_classes.CLASSES, bead_classes.WHERE)
     parameters_by_name = {

@@ -119,7 +119,7 @@ def read_without_part(path: str) -> WithoutPart:
     saved = tree.read(path, "cell: {machine: ...}", "cell")
     try:
         folder = paths.folder_of(path)
-        values = paths.of_job(saved.values, folder)
+        values = paths.resolve_job(saved.values, folder)
         fields.known_keys(values, SECTIONS, "")
         cell = job_cell.read(values.get("cell"), folder)
         if cell is None:
@@ -128,7 +128,7 @@ def read_without_part(path: str) -> WithoutPart:
             cell, _joints(values.get("joints") or {}), _program(values.get("program"), cell)
         )
     except InputError as error:
-        raise saved.placed(error) from None
+        raise saved.locate(error) from None
 
 
 def from_tree(job: tree.Tree, path: str) -> Job:
@@ -136,12 +136,12 @@ def from_tree(job: tree.Tree, path: str) -> Job:
     try:
         return _checked(job, path)
     except InputError as error:
-        raise job.placed(error) from None
+        raise job.locate(error) from None
 
 
 def _checked(job: tree.Tree, path: str) -> Job:
     folder = paths.folder_of(path)
-    values = paths.of_job(job.values, folder)
+    values = paths.resolve_job(job.values, folder)
     fields.known_keys(values, SECTIONS, "")
     version = values.get("version", 1)
     if version != 1 or isinstance(version, bool):
@@ -149,7 +149,7 @@ def _checked(job: tree.Tree, path: str) -> Job:
             "BAD_VERSION",
             "version",
             "{} is not understood; write version: 1",
-            quantity.shown(version),
+            quantity.quote(version),
         )
     name = _name(values.get("name"), path)
     if values.get("features") is None:
@@ -204,7 +204,7 @@ def _name(name: Any, path: str) -> str:
             "BAD_NAME",
             "name",
             "{} is used in file names; use no slash, control character or leading dot",
-            quantity.shown(name),
+            quantity.quote(name),
         )
     if len(name.encode()) > _LONGEST_NAME:
         raise InputError(

@@ -43,7 +43,7 @@ def filled_in(section: Any) -> Any:
     try:
         stated = _defaults(saved.values, file)
     except InputError as error:
-        raise saved.placed(error) from None
+        raise saved.locate(error) from None
     return _over(stated, section)
 
 
@@ -58,7 +58,7 @@ def _file(name: str) -> Path:
         "NO_FILE",
         KEY,
         "unknown material {}; use one of {}, or the path of a material file",
-        quantity.shown(name),
+        quantity.quote(name),
         ", ".join(built_in()),
     )
 
@@ -103,7 +103,7 @@ def _range(value: Any) -> tuple[float | None, float | None]:
             "BAD_VALUE",
             "speed_range",
             "{} is not a range; give [slowest, fastest]",
-            quantity.shown(value),
+            quantity.quote(value),
         )
     low, high = (quantity.read(end, f.SPEED, "speed_range") for end in value)
     if not 0.0 < low <= high < 1e9:
@@ -133,7 +133,7 @@ def _checked(
                 "BAD_VALUE",
                 key,
                 "{} is out of range; give more than 0",
-                quantity.shown(stated[key]),
+                quantity.quote(stated[key]),
             )
         if (
             key == "travel_speed"
@@ -145,7 +145,7 @@ def _checked(
                 "BAD_VALUE",
                 key,
                 "{} is outside speed_range; change one of the two",
-                quantity.shown(stated[key]),
+                quantity.quote(stated[key]),
             )
     if values.get("wire") in (None, {}):
         return {}
@@ -157,7 +157,7 @@ def _checked(
                 "BAD_VALUE",
                 f"wire.{key}",
                 "{} is out of range; give more than 0",
-                quantity.shown(wire[key]),
+                quantity.quote(wire[key]),
             )
     return {"wire": dict(wire)}
 
@@ -176,7 +176,7 @@ def _schedules(value: Any) -> dict[str, Any]:
                 "BAD_VALUE",
                 f"schedules.{name}",
                 "{} is not a number of a schedule; give a whole number from 1 to {}",
-                quantity.shown(number),
+                quantity.quote(number),
                 bead_classes.LARGEST_SCHEDULE,
             )
     classes = {name: {"schedule": number} for name, number in table.items() if name != ALL}

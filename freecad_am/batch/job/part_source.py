@@ -111,7 +111,7 @@ def guide_of(value: Any, part_section: dict[str, Any]) -> PartSource | None:
             key,
             "{} is not a guide; write {{edges: [Edge1]}}, {{object: Spine}}, {{file: spine.step}}, or "
             "auto",
-            quantity.shown(value),
+            quantity.quote(value),
         )
     fields.known_keys(value, ("file", "object", "edges", "set"), key)
     guide_section = {name: value[name] for name in ("file", "object", "set") if name in value}
@@ -154,7 +154,7 @@ def _names(value: Any, key: str, pattern: re.Pattern[str]) -> tuple[str, ...]:
             "BAD_VALUE",
             key,
             "{} names no {}s; write [{}1, {}2]",
-            quantity.shown(value),
+            quantity.quote(value),
             kind.lower(),
             kind,
             kind,
@@ -171,6 +171,6 @@ def _settings(section: Any, key_of_part: str) -> list[tuple[str, str, str]]:
                     "BAD_VALUE", f"{key_of_part}.set.{name}.{key}", "give one value such as 45 mm"
                 )
             settings.append(
-                (name, key, quantity.shown(value) if isinstance(value, bool) else str(value))
+                (name, key, quantity.quote(value) if isinstance(value, bool) else str(value))
             )
     return settings

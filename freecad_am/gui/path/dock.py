@@ -360,7 +360,7 @@ class PathDock(Follower):
             offer(combo, names, names.index(getattr(vobj, name)), translated)
         form.directions.setChecked(vobj.ShowDirections)
         from_layer, to_layer, count = view.shown or (0, rows.layer_count - 1, None)
-        low, high = rows.of_layers(to_layer, to_layer)
+        low, high = rows.layer_rows(to_layer, to_layer)
         form.from_.set(0, rows.layer_count - 1, from_layer)
         form.to.set(0, rows.layer_count - 1, to_layer)
         row = max(low, (high if count is None else low + count) - 1)
@@ -425,7 +425,7 @@ class PathDock(Follower):
         if rows is None or not 0 <= layer < rows.layer_count:
             return
         beads = np.flatnonzero(rows.layers == layer)
-        row = rows.of_layers(layer, layer)[1] - 1
+        row = rows.layer_rows(layer, layer)[1] - 1
         if bead is not None and bead < len(beads):
             start, end = rows.starts[beads[bead]], rows.starts[beads[bead] + 1]
             row = int(min(start + (point or 0), end - 1))

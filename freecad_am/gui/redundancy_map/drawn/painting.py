@@ -150,7 +150,7 @@ class Painting:
     def _draw_curve(self, painter: Any, curve: Curve) -> None:
         across, values = (
             self.canvas.x_of(np.arange(self.canvas.count)),
-            self.canvas.shown(curve.values),
+            self.canvas.wrap_values(curve.values),
         )
         down = self.canvas.y_of(values)
         cut = np.union1d(self.canvas.seams, np.flatnonzero(np.abs(np.diff(values)) > np.pi) + 1)
@@ -177,7 +177,7 @@ class Painting:
         painter.setBrush(QtGui.QColor(255, 40, 40))
         across, down = (
             self.canvas.x_of(self.canvas.bad[:, 0]),
-            self.canvas.y_of(self.canvas.shown(self.canvas.bad[:, 1])),
+            self.canvas.y_of(self.canvas.wrap_values(self.canvas.bad[:, 1])),
         )
         _, rows = np.unique(np.round(across / 3.0), return_index=True)
         for k in rows:
