@@ -17,7 +17,7 @@ from ..core.types import Array, Integers, Mask
 
 LINE, STEP, DOTS, MARKED, OUTLINE = "line", "step", "dots", "marked", "outline"
 INF = float("inf")
-# limits are in sight where values come as near as this share of them
+# a limit is in the range of y if values reach this share of the limit
 SHOWN_FROM = 0.4
 PAD = 0.06
 
@@ -30,7 +30,7 @@ class Quantity(NamedTuple):
 
     @property
     def label(self) -> str:
-        """As it stands along the axis."""
+        """The label of the axis."""
         return f"{self.name}, {self.unit}" if self.unit else self.name
 
 
@@ -38,9 +38,7 @@ class Quantity(NamedTuple):
 class Curve:
     """Values y over x, (n,) each; NaN lifts the pen.
 
-    colour: a number of the palette, a word of `Look`, or #rrggbb. kind: LINE; STEP, where y is that of the way from the x
-    before; DOTS; MARKED, a line with dots; OUTLINE, a curve of the plane, as wide as `width` in the units of x where that is
-    more than 0. layer: (n,) int of each value, where it has one. Of all but DOTS and OUTLINE x never falls.
+    colour: a number of the palette, a word of `Look`, or #rrggbb. kind: LINE; STEP, with y of the segment from the previous x; DOTS; MARKED, a line with dots; OUTLINE, a curve of the plane, as wide as `width` in the units of x if it is positive. layer: (n,) int of each value, if it has one. Except for DOTS and OUTLINE, x never falls.
     """
 
     name: str
@@ -65,11 +63,11 @@ class Bars:
 class Chart:
     """One frame with its scales.
 
-    limits: least and most value allowed, infinite where there is none; what lies beyond is shaded, values there are marked.
-    band: a range of x that is as wanted. marks: values of y with a name to compare with; upright: of x. borders: x of the
-    starts of layers, and layers, their numbers. span: of y, where it is not as the values ask for. unlimited: why there are
-    no limits, where one would look for them. plane: x and y are places in a plane, drawn to the same scale. names: x and y
-    of places that have a name.
+    limits: lowest and highest allowed value, infinite without a limit; the area beyond is shaded
+    and its values are marked. band: the target range of x. marks: named reference values of y;
+    upright: of x. borders: x of the starts of layers, and layers, their numbers. span: range of y,
+    if the values do not set it. unlimited: reason for missing limits. plane: x and y are places in
+    a plane, drawn to the same scale. names: x and y of places that have a name.
     """
 
     title: str
@@ -89,7 +87,7 @@ class Chart:
     names: tuple[tuple[float, float, str], ...] = ()
 
     def wrong(self, values: Array) -> Mask:
-        """Which values (n,) lie beyond the limits."""
+        """Return a mask (n,) of the values beyond the limits."""
         low, high = self.limits
         slack = 1e-9 * max(1.0, *(abs(end) for end in self.limits if np.isfinite(end)), 1.0)
         with np.errstate(invalid="ignore"):
@@ -97,11 +95,11 @@ class Chart:
 
     @property
     def wrong_count(self) -> int:
-        """How many values lie beyond the limits."""
+        """Number of values beyond the limits."""
         return int(sum(self.wrong(curve.y).sum() for curve in self.curves))
 
     def across(self) -> tuple[float, float]:
-        """The range of x of all that is in it."""
+        """Return the range of x of all contents."""
         if self.bars is not None:
             return float(self.bars.edges[0]), float(self.bars.edges[-1])
         low, high = _ends([curve.x for curve in self.curves], [])
@@ -110,7 +108,7 @@ class Chart:
         return (low, high) if high > low else (low - 0.5, low + 0.5)
 
     def up(self) -> tuple[float, float]:
-        """The range of y of all that is in it; a limit that no value comes near stays out of sight."""
+        """Return the range of y of all contents; it leaves out limits that no value approaches."""
         if self.span is not None:
             return self.span
         if self.bars is not None:
@@ -127,7 +125,8 @@ class Chart:
 
 @dataclass(frozen=True)
 class Picture:
-    """Charts one below the other. name: of the picture in a catalogue. lacking: why there is none."""
+    """Charts one below the other. name: of the picture in a catalogue. lacking: the reason for a
+    missing chart."""
 
     name: str
     title: str
@@ -170,7 +169,7 @@ STEPS = 60
 
 
 def fit(measured: Measured, model: BeadModel, target: float | None = None) -> Chart:
-    """Curves and dots coloured by radius; `wanted` is a width drawn across, mm."""
+    """Curves and dots coloured by radius; `target` is a width drawn across, mm."""
     speed = np.linspace(*model.speeds, STEPS)
     radii = np.unique(measured.radius)
     curves = []
@@ -202,7 +201,7 @@ TRAVEL = (
     "travel",
     "spread",
     "fit",
-)  # pictures by name whose speeds are those of the deposition point
+)  # names of pictures whose speeds belong to the deposition point
 JOINTS = ("place", "angle", "speed", "acceleration", "jerk")  # quantities of axes
 
 
@@ -215,7 +214,7 @@ def in_units(picture: Picture, scale: Scale) -> Picture:
 
 
 def convert_chart(chart: Chart, scale: Scale, travel: bool = False) -> Chart:
-    """A chart in other units. travel: its speeds are those of the deposition point."""
+    """A chart in other units. travel: its speeds belong to the deposition point."""
     x = _in_unit(chart.x, chart.across(), travel, scale)
     y = (
         x

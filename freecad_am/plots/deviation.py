@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Charts of a predicted deposit against the part: from the front and from behind, by colours of what it reaches beyond the
-faces, how that is spread, and layer by layer."""
+"""Charts of a predicted deposit against the part: maps from the front and from behind, coloured by
+the deviation from the faces, its distribution, and its values by layer."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from ..core.process.shape.compare import name_of
 from ..core.types import Array
 from .chart import DOTS, MARKED, Bars, Chart, Curve, Quantity
 
-TILT = math.radians(30.0)  # from above, as the part is looked at
+TILT = math.radians(30.0)  # from above, as in the other views
 FACING = 0.05  # cosine to the eye of faces that are seen
 
 
 @dataclass(frozen=True)
 class _View:
-    """A picture's name, what is across in it, and where the eye is."""
+    """A view: its title, its horizontal direction, and the direction to the eye."""
 
     title: str
     across: tuple[float, float, float]
@@ -29,7 +29,7 @@ class _View:
 
     @property
     def up(self) -> Array:
-        """What is up in it."""
+        """The vertical direction."""
         return np.cross(self.eye, self.across)
 
 
@@ -48,7 +48,8 @@ def charts(deviations: DeviationMap, allowance: float) -> tuple[Chart, ...]:
 
 
 def _map(deviations: DeviationMap, view: _View) -> Chart | None:
-    """What faces the eye, the most inside drawn last; of the view from below what no other one shows."""
+    """Draw the places that face the eye, the lowest deviation last; the view from below shows the
+    places of no other view."""
     facing = deviations.normals @ np.asarray(view.eye) > FACING
     if view is _VIEWS[-1]:
         for earlier in _VIEWS[:-1]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Pictures drawn by matplotlib: charts in, a Figure out, and where in it each frame lies."""
+"""Pictures drawn by matplotlib: charts in; a Figure and the position of each frame out."""
 
 from __future__ import annotations
 
@@ -21,10 +21,11 @@ POINTS_KEPT = 4  # points to a column that are drawn as they are
 
 
 def envelope(x: Array, y: Array, columns: int, low: float, high: float) -> Index:
-    """The points, rising numbers into x and y (n,), that look like all of them between x = low and high.
+    """Return rising indices of the points of x and y (n,) that draw the same curve between x = low
+    and high.
 
-    x never falls. NaN in y is kept where it is to be seen as a gap. One point beyond either end is kept, for the lines that
-    lead there.
+    x never falls. Visible gaps (NaN in y) are kept. One point beyond either end is kept, for the
+    lines that lead out of the frame.
     """
     start = max(int(np.searchsorted(x, low, side="left")) - 1, 0)
     end = min(int(np.searchsorted(x, high, side="right")) + 1, len(x))
@@ -50,7 +51,7 @@ NAME_OFFSET = (6.0, 4.0)  # points from a place to its name
 
 
 def named(axes: Any, chart: Chart, colour: str, size: float) -> None:
-    """Put a ring about each place of a chart that has a name, and this beside it, of so many points."""
+    """Draw a ring at each named place of a chart, with the name next to it; size: points."""
     for x, y, name in chart.names:
         axes.add_line(Line2D([x], [y], color=colour, **RING))
         axes.annotate(
@@ -66,10 +67,10 @@ def named(axes: Any, chart: Chart, colour: str, size: float) -> None:
 
 
 DPI = 100.0
-# of a frame, in pixels: what is left free at its sides, above for its title, below for its scale
+# margins of a frame, px: at its sides, above for its title, below for its scale
 LEFT_MARGIN, RIGHT_MARGIN, TOP_MARGIN, BOTTOM_MARGIN, BARE_MARGIN = 66.0, 14.0, 24.0, 37.0, 6.0
 NUMBERS = 12.0  # above a frame that has the numbers of layers
-KEYS = 12.0  # of a row of names of curves, where they have no room beside the title
+KEYS = 12.0  # px of a row of curve names that do not fit next to the title
 TEXT, TITLE, SMALL_TEXT = 7.6, 8.6, 6.4  # points
 CHARACTER = 6.0  # pixels, about, of a text
 TITLE_SCALE = 1.2  # of a title, which is larger
@@ -81,8 +82,8 @@ Range = tuple[float, float]
 
 @dataclass(frozen=True)
 class Window:
-    """The part that is shown, by the number of a chart: across, the range of x, by 0 for all charts that share it; up, that
-    of y. All there is, where left out."""
+    """The visible ranges by the number of a chart: across, the range of x, with key 0 for all
+    charts that share it; up, the range of y. A missing key means the full range."""
 
     across: Mapping[int, Range] = field(default_factory=dict)
     up: Mapping[int, Range] = field(default_factory=dict)
@@ -90,7 +91,8 @@ class Window:
 
 @dataclass(frozen=True)
 class Place:
-    """Where the frame of a chart lies in its picture: pixels from the left and from the top, and the ranges it shows."""
+    """Position of a chart's frame in its picture: pixels from the left and from the top, and its
+    ranges."""
 
     left: float
     top: float
@@ -150,7 +152,7 @@ def figure(
 
 
 def share(charts: Sequence[Chart]) -> bool:
-    """Whether several charts count the same across, so that they are looked at together."""
+    """Whether several charts share the x axis."""
     return len(charts) > 1 and len({chart.x for chart in charts}) == 1
 
 
@@ -171,18 +173,19 @@ def _to_scale(chart: Chart, panel: Place) -> Place:
 
 
 def _named(chart: Chart) -> list[Curve]:
-    """The curves whose names are told."""
+    """Return the curves with a name."""
     return [curve for curve in chart.curves if curve.kind != DOTS and curve.name]
 
 
 def _titled(chart: Chart, look: Look) -> str:
-    """The title of a chart, with how many values lie beyond its limits."""
+    """Return the title of a chart, with the number of values beyond its limits."""
     count = chart.wrong_count
     return look.words.beyond.format(chart.title, f"{count:,}") if count else chart.title
 
 
 def _rows_of_keys(chart: Chart, look: Look, width: float) -> list[list[Curve]]:
-    """The names of curves in rows between title and frame, none where they have room beside the title."""
+    """Return rows of curves for the legend between title and frame; empty if the legend fits next
+    to the title."""
     named = _named(chart)
     widths = [CHARACTER * (len(curve.name) + 3.0) for curve in named]
     if len(named) < 2 or CHARACTER * TITLE_SCALE * len(_titled(chart, look)) + sum(widths) <= width:
@@ -308,7 +311,7 @@ class _Frame:
             )
 
     def _borders(self, axes: Any) -> None:
-        """Where layers begin; some of them where there are many."""
+        """Draw the starts of layers, thinned if many."""
         chart = self.chart
         if chart.borders is None or chart.layers is None:
             return
@@ -380,7 +383,7 @@ class _Frame:
         )
         axes.add_line(Line2D(x, y, color=colour, linewidth=1.1, **dots, **style))
         wrong = self.chart.wrong(y)
-        if wrong.any():  # with dots where they are few: one alone makes no line
+        if wrong.any():  # a few values also get dots: a single one draws no line
             marker = {"marker": "o", "markersize": 2.6} if wrong.sum() <= FEW_WRONG else {}
             axes.add_line(
                 Line2D(
@@ -420,7 +423,8 @@ class _Frame:
                 )
 
     def _across(self, axes: Any, value: float, colour: str, name: str, left: bool = False) -> None:
-        """A dashed line with its name at its right or left end, below it where there is no room above."""
+        """Draw a dashed line with its name at its right or left end, below the line if the space
+        above is too small."""
         axes.add_line(
             Line2D(
                 [0.0, 1.0],

@@ -21,15 +21,16 @@ from .chart import DOTS, Picture
 from .look import VARIABLES
 
 INCH = 100.0  # pixels
-MIN_SIZE = 700, 450  # pixels that words beside the map have room in
+MIN_SIZE = 700, 450  # px, room for the texts around the map
 FONT_SIZE = 8.0  # points
 
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """colours (R, C, 3) 0..255, lowest row first; hatched (R, C). columns, rows: places, counted in cells, with the texts
-    beside them. lines: columns and rows along which a line is drawn. curves: rows (C,) over the columns, NaN lifts the pen,
-    with a colour. ramp (n, 3) from `low` to `high`, what it counts in `scale`; classes: names with their colours."""
+    """colours (R, C, 3) 0..255, lowest row first; hatched (R, C). columns, rows: positions in
+    cells, with their labels. lines: columns and rows along which a line is drawn. curves: rows (C,)
+    over the columns, NaN lifts the pen, with a colour. ramp (n, 3) from `low` to `high`, what it
+    counts in `scale`; classes: names with their colours."""
 
     title: str
     up: str
@@ -48,7 +49,7 @@ class Cells:
 
 
 def figure(cells: Cells, width: int, height: int) -> Figure:
-    """The map as a figure of so many pixels, LEAST at least."""
+    """Return the map as a figure of this size in pixels, at least MIN_SIZE."""
     size = max(width, MIN_SIZE[0]) / INCH, max(height, MIN_SIZE[1]) / INCH
     drawing = Figure(figsize=size, dpi=INCH, layout="constrained")
     axes = drawing.add_subplot()
@@ -90,7 +91,7 @@ def figure(cells: Cells, width: int, height: int) -> Figure:
 
 
 KINDS = ("png", "svg", "pdf")
-# what must be left out of a file for it not to tell when or with what it was made
+# metadata to leave out, so that a file is the same at any time and with any version
 _UNDATED = {
     "png": {"Software": None},
     "svg": {"Date": None, "Creator": None},
@@ -120,8 +121,8 @@ def image(figure: Figure, kind: str) -> bytes:
 
 
 def pixels(figure: Figure, ratio: float = 1.0) -> tuple[bytes, int, int]:
-    """The figure as width times height pixels of four bytes, red, green, blue and opacity; ratio: of them to one of the
-    figure."""
+    """The figure as width times height pixels of four bytes, red, green, blue and opacity; ratio:
+    output pixels per pixel of the figure."""
     figure.set_dpi(ratio * figure.dpi)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
@@ -154,10 +155,11 @@ def inline(figure: Figure, title: str) -> str:
 
 
 def values(picture: Picture) -> Iterator[str]:
-    """The values that are drawn, in pieces of a file of comma separated values; a point is the decimal sign.
+    """Yield the drawn values as chunks of a CSV file with a decimal point.
 
-    Where all curves share their places across: a column of these, that of layers, a column per curve. Otherwise, and of
-    histograms, a row per value with the name of its chart and curve. Empty where there is no value.
+    If all curves share their x values: a column of x, the layer, and a column per curve. Otherwise,
+    and for histograms: a row per value with the name of its chart and curve. A missing value is
+    empty.
     """
     curves = [(chart, curve) for chart in picture.charts for curve in chart.curves]
     if curves and all(curve.x is curves[0][1].x for _, curve in curves):

@@ -18,7 +18,7 @@ from .source import Source
 
 TIME, PATH = "time", "path"
 OVER = (TIME, PATH)
-# units of time in s and of path in mm, largest first; a unit is taken when there are at least three of it
+# units of time in s and of path in mm, largest first; a unit applies from three units on
 TIMES: tuple[tuple[float, str], ...] = ((3600.0, "h"), (60.0, "min"), (1.0, "s"))
 LENGTHS: tuple[tuple[float, str], ...] = ((1000.0, "m"), (1.0, "mm"))
 
@@ -43,15 +43,16 @@ class Rows:
         return selected
 
     def select_rates(self, values: Array) -> Array:
-        """(k, ...) values (n, ...) of the segments that end at the rows, such as speeds; 0 where it stands."""
+        """(k, ...) values (n, ...) of the segments that end at the rows, such as speeds; 0 during
+        waits."""
         selected = values[self.index]
         selected[self.standing] = 0.0
         return selected
 
 
 def rows(source: Source, over: str = TIME, layers: tuple[int, int] | None = None) -> Rows:
-    """The rows of layers, the last included, of all when left out. over: TIME, s of the job with its waits; or PATH, the way
-    of the deposition point, rapid moves included."""
+    """Return the rows of layers, the last included; of all layers by default. over: TIME, s of the
+    job with its waits; or PATH, the path length of the deposition point, rapid moves included."""
     motion, times = source.motion, source.times
     waits = times.leave > times.arrive
     index = np.repeat(np.arange(len(motion)), 1 + waits)
@@ -87,11 +88,11 @@ def rows(source: Source, over: str = TIME, layers: tuple[int, int] | None = None
 
 
 CONTINUOUS = " (endless)"
-# what is told where a machine file has no limit, and where none can have one
+# texts for a machine file without a limit, and for quantities that have no limits
 NO_SPEED = "no limit known: the machine file has no max_speed"
 NO_ACCELERATION = "no limit known: the machine file has no max_acceleration"
 NO_JERK = "no limit known: the machine file has no max_jerk"
-MOST_SHARE = 250.0  # % of the limit; what is faster is cut off, or the rest would not be seen
+MOST_SHARE = 250.0  # % of the limit; the scale ends here, so that slower values stay readable
 
 
 def angles(source: Source, rows: Rows) -> tuple[Chart, ...]:
@@ -163,7 +164,7 @@ def jerks(source: Source, rows: Rows) -> tuple[Chart, ...]:
 
 
 def shares(source: Source, rows: Rows) -> tuple[Chart, ...]:
-    """The speeds of all axes while depositing, as shares of the largest they can do, in one chart."""
+    """The speeds of all axes while depositing, as shares of their limits, in one chart."""
     machine = _cell(source).machine
     values = 100.0 * np.abs(rows.select_rates(source.rates.speed)) / machine.max_speed
     largest = float(np.nanmax(values, initial=0.0))
@@ -279,7 +280,8 @@ LEAST_PART = 1e-3  # of the largest layer; a share of less means nothing
 
 
 def travel(source: Source, rows: Rows) -> tuple[Chart, ...]:
-    """The speed of the deposition point, as asked for and, where the machine cannot keep it, what it becomes."""
+    """Chart the programmed speed of the deposition point and, if the machine cannot keep it, the
+    achieved speed."""
     motion, feed = source.motion, source.feed
     speed = np.where(motion.point > 0, motion.speed, np.nan)
     rapid, deposit = (
@@ -312,7 +314,7 @@ def travel(source: Source, rows: Rows) -> tuple[Chart, ...]:
 
 
 def deposit(source: Source, rows: Rows) -> tuple[Chart, ...]:
-    """The deposit rate of each segment, and the mass that has been deposited so far."""
+    """Chart the deposit rate of each segment and the cumulative mass."""
     motion, density = source.motion, source.process.density
     mass = source.volumes / MM3_PER_CM3 * density
     rate = np.divide(
@@ -344,8 +346,8 @@ def deposit(source: Source, rows: Rows) -> tuple[Chart, ...]:
 def distances(
     values: Array, layer_height: float, band: float | None = None, name: str = ""
 ) -> Chart:
-    """How the local distances (n,) mm between layers are spread about the layer height, and the band they may lie in. name:
-    of the feature, where there are several."""
+    """Chart the distribution of the local distances (n,) mm between layers about the layer height,
+    and their tolerance band. name: of the feature, if the job has several."""
     low, high = float(values.min(initial=layer_height)), float(values.max(initial=layer_height))
     pad = max(0.15 * (high - low), 0.002 * layer_height)
     edges = np.linspace(low - pad, high + pad, BINS + 1)
@@ -362,7 +364,7 @@ def distances(
 
 
 def spacing(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
-    """`distances` of layers; none where no layer lies on another."""
+    """`distances` of layers; empty if no layer rests on another."""
     values, layer = source.distances
     selected = values[(layer >= layers[0]) & (layer <= layers[1])]
     return (
@@ -398,7 +400,7 @@ def heights(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
 
 
 def height_charts(figures: dict[str, Any] | None, layers: tuple[int, int]) -> tuple[Chart, ...]:
-    """The charts of what `predicted.beads` finds."""
+    """Chart the figures that `predicted.beads` finds."""
     rows = (
         []
         if figures is None
@@ -440,12 +442,13 @@ def height_charts(figures: dict[str, Any] | None, layers: tuple[int, int]) -> tu
 
 
 def by_layer(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
-    """What is deposited layer by layer beside what the part has there, and the share of it; none but of plane layers."""
+    """Chart the deposited and the part's volume by layer, and their ratio; empty for layers that
+    are not plane."""
     if source.slabs is None:
         return ()
     end = (
         layers[1] + 1 if layers[1] + 1 < len(source.toolpath.layers) else None
-    )  # with what is left out at the top
+    )  # including the part's volume above the last layer
     part_volume, deposited = (values[layers[0] : end] / MM3_PER_CM3 for values in source.slabs)
     if not len(part_volume):
         return ()

@@ -31,7 +31,7 @@ _SCALE = np.array(
 
 @dataclass(frozen=True)
 class Words:
-    """What is written in a frame besides the texts of its chart, to be filled in by `format`."""
+    """Texts of a frame in addition to those in its chart, filled in by `format`."""
 
     layer: str = "layer {}"
     beyond: str = "{}: {} points beyond the limit"
@@ -41,8 +41,8 @@ class Words:
 
 @dataclass(frozen=True)
 class Look:
-    """ink: titles; soft: all other text; grid; bad: limits and what breaks them; good: bands that are wanted; paper: the
-    ground, "none" where it is that of a page. All as #rrggbb."""
+    """ink: titles; soft: all other text; grid; bad: limits and violations; good: target bands;
+    paper: the background, "none" for the background of a page. All as #rrggbb."""
 
     ink: str
     soft: str
@@ -61,7 +61,7 @@ class Look:
 
 LIGHT = Look("#1d2430", "#667085", "#dfe3ea", "#b8322a", "#1a7f4b", "#ffffff")
 DARK = Look("#e6e9ef", "#98a2b3", "#323a47", "#ff7a70", "#4cc38a", "#1a202b")
-# of a page that sets the colours itself: each stands for a variable of its style
+# for a page that sets the colours: each is a variable of its style
 PAGE = Look("#010203", "#010204", "#010205", "#010206", "#010207", "none")
 VARIABLES = {
     PAGE.ink: "--ink",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What pictures are made from, and what is derived of it once it is asked for."""
+"""The data of pictures, with derived data computed on demand."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from ..core.types import Array, Integers
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """A job: its toolpath as it is run, and its motion, that of the deposit alone where there is no cell.
+    """A job: its toolpath as run and its motion, without rapids if it has no cell.
 
-    condition, threshold: (n,) of the rows of the motion, NaN where there is none. band: share of the layer height by which
-    local distances may differ, None where nobody asks. solids: what is filled, where it is; cut_at: share of a layer height
-    above its plane at which a plane layer is cut.
+    condition, threshold: (n,) per row of the motion, NaN if undefined. band: tolerance of local
+    distances as a share of the layer height, None without one. solids: the filled solids in place;
+    cut_at: share of a layer height above its plane at which a plane layer is cut.
     """
 
     toolpath: Toolpath
@@ -45,7 +45,7 @@ class Source:
 
     @cached_property
     def group(self) -> Group | None:
-        """The bodies in plane layers, None where layers are others."""
+        """The bodies in plane layers, None for other layers."""
         return None if self.solids is None else group_of(self.solids)
 
     @cached_property

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""report.json: what was planned, and how good it is."""
+"""report.json: the planned job and its quality."""
 
 from __future__ import annotations
 
@@ -41,7 +41,8 @@ if TYPE_CHECKING:  # slow to import, and jobs without a cell have none
 
 @dataclass(frozen=True)
 class Feature:
-    """What is deposited, and how. shape: gives what was found of its part (the result of the stage)."""
+    """A feature of the job and its parameters. shape: returns the result of the stage, the shape of
+    its part."""
 
     name: str
     strategy: LayerParameters
@@ -52,7 +53,8 @@ class Feature:
 
 @dataclass(frozen=True)
 class Job:
-    """A job. process: of the program; features may differ from it. cell: None where a path alone is planned."""
+    """A job. process: of the program; features may differ from it. cell: None for a job that only
+    plans a toolpath."""
 
     name: str
     features: tuple[Feature, ...]
@@ -63,9 +65,9 @@ class Job:
 
 @dataclass(frozen=True)
 class Results:
-    """What was made of a job. toolpath: as it was cut. planned: None where there is no joint path; seconds: that it took.
-    issues: of all stages. programs: names of the files. distances: between the layers as they are run. preflight: its
-    promises."""
+    """Results of a job. toolpath: as it was cut. planned: None without a joint path; seconds: its
+    planning time. issues: of all stages. programs: names of the files. distances: between the
+    layers in the order of motion. preflight: its promises."""
 
     toolpath: Toolpath
     planned: Planned | None
@@ -86,8 +88,8 @@ def build(
     process: ProcessParameters,
     issues: Sequence[Issue],
 ) -> dict[str, Any]:
-    """The report of a toolpath alone; `add_joints` and what `made` looks at complete it. Lengths mm, times s; None where
-    there is no value."""
+    """Return the report of a toolpath; `add_joints` and `make_report` complete it. Lengths mm,
+    times s; None for missing values."""
     times = timeline(motion, process, [layer.wait for layer in toolpath.layers])
     sums = totals.totals(motion, times, process, toolpath)
     return {
@@ -143,7 +145,8 @@ def features(
     balances: Sequence[Balance | None],
     compared: Sequence[list[dict[str, Any]]],
 ) -> list[dict[str, Any]]:
-    """The key `features`: what each of several features comes to. compared: of each, how else its wall may be cut."""
+    """The key `features`: the figures of each feature. compared: for each feature, the rows of
+    other spacings of its wall."""
     entries = []
     for feature, (path, numbers), balance, rows_of_wall in zip(
         of_job, toolpath.parts, balances, compared, strict=True
@@ -221,7 +224,7 @@ def _external(cell: Cell, planned: JointPath, joints: JointParameters) -> dict[s
 
 
 def text(report: dict[str, Any]) -> str:
-    """The report as JSON; what is not finite becomes null."""
+    """Return the report as JSON; infinite values and NaN become null."""
     return json.dumps(_finite(report), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
@@ -237,7 +240,7 @@ def speed_ratio(motion: Motion, cell: Cell) -> Array:
 
 
 def summarize(spacing: Sequence[Array]) -> dict[str, float | None]:
-    """Least, mean and largest of all values, None where there are none."""
+    """Return the smallest, mean and largest value, None without values."""
     if not spacing:
         return {"min": None, "mean": None, "max": None}
     values = np.concatenate(spacing)
@@ -245,7 +248,7 @@ def summarize(spacing: Sequence[Array]) -> dict[str, float | None]:
 
 
 def _scan(toolpath: Toolpath) -> dict[str, Any] | None:
-    """Of the scan that layers were fitted to, which few jobs have."""
+    """Return the figures of the scan to which layers were fitted, None without a scan."""
     if toolpath.fitted is None:
         return None
     from . import scan_figures
@@ -254,7 +257,7 @@ def _scan(toolpath: Toolpath) -> dict[str, Any] | None:
 
 
 def _predicted_shape(toolpath: Toolpath) -> dict[str, Any] | None:
-    """Of the deposit that is predicted for a machining allowance, which few jobs have."""
+    """Return the figures of the deposit predicted for a machining allowance, None without one."""
     if toolpath.predicted is None:
         return None
     from . import predicted_figures

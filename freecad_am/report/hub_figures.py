@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Pictures of solids on a hub: layers laid flat."""
+"""Pictures of solids on a hub: unrolled layers."""
 
 from __future__ import annotations
 
@@ -17,15 +17,16 @@ from ..core.types import Array
 from ..plots.look import shade
 from . import svg
 
-FRAME_WIDTH, EDGES = 388.0, 68.0  # of a picture, between and beside its frame
+FRAME_WIDTH, EDGES = 388.0, 68.0  # px: width of the frame, and of both margins
 AXES = (("around the hub, mm", "along it, mm"), ("x, mm", "y, mm"))
 PIECES = 6  # colours along a bead
 
 
 def layer_plots(solids: SolidsOnHub, toolpath: Toolpath) -> list[str]:
-    """First and middle layer of each group laid flat, coloured by speed where a bead model sets it, else by order.
+    """Draw the first and middle layer of each group unrolled, coloured by speed if a bead model
+    sets it, else by order.
 
-    A layer that is too narrow for a bead has none, and no picture.
+    A layer that is too narrow for a bead has no picture.
     """
     plots = []
     runs = _runs(toolpath.layers)
@@ -45,7 +46,7 @@ def layer_plots(solids: SolidsOnHub, toolpath: Toolpath) -> list[str]:
 
 
 def _runs(layers: Sequence[Layer]) -> list[range]:
-    """The layers that lie one on the other, from hub to tip."""
+    """Return the stacks of layers, each from hub to tip."""
     starts = [index for index, layer in enumerate(layers) if layer.first]
     return [range(start, end) for start, end in zip(starts, [*starts[1:], len(layers)])]
 

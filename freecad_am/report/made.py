@@ -62,7 +62,7 @@ class Made:
 
 
 def as_run(results: Results, cell: Cell | None) -> tuple[Toolpath, Motion]:
-    """The toolpath as it is run, and its motion: that of the deposit alone where nothing was planned."""
+    """Return the toolpath as run and its motion; without a joint path, the motion of the beads."""
     if results.planned is None:
         return results.toolpath, timeline.deposit_motion(
             results.toolpath, 0 if cell is None else len(cell.machine.columns)
@@ -71,7 +71,8 @@ def as_run(results: Results, cell: Cell | None) -> tuple[Toolpath, Motion]:
 
 
 def make_report(job: Job, results: Results, cell: Cell | None, timed: Timed, tell: Tell) -> Made:
-    """The report of a job. timed: takes the time of a step by its name, tell: says what is done. `timing_s` stays empty."""
+    """Return the report of a job. timed: measures a step by its name; tell: reports progress.
+    `timing_s` stays empty."""
     toolpath, motion = as_run(results, cell)
     with timed("report"):
         content = figures.build(job.name, toolpath, motion, job.process, results.issues)
@@ -84,7 +85,7 @@ def make_report(job: Job, results: Results, cell: Cell | None, timed: Timed, tel
             for feature, (path, _) in zip(job.features, toolpath.parts, strict=True)
         ]
         content["deposit"] = deposit_balance.as_dict(deposit_balance.sum_balances(balances))
-    with timed("preflight"):  # after what can be done while some of it is still looked for
+    with timed("preflight"):  # last, because the second solver may still be running
         content["preflight"] = [promise.as_dict() for promise in results.preflight()]
     distances = results.distances()
     content["spacing_mm"] = figures.summarize(distances)
@@ -101,8 +102,8 @@ def make_report(job: Job, results: Results, cell: Cell | None, timed: Timed, tel
 
 
 def compared_walls(job: Job, toolpath: Toolpath, distances: Sequence[Array]) -> list[OfFeature]:
-    """Of each feature what the page shows, with what other spacings of a wall would be: nothing for other families.
-    distances: between all layers."""
+    """Return the page's data of each feature; walls include the other spacings. distances: between
+    all layers."""
     walls = []
     for feature, (path, _) in zip(job.features, toolpath.parts, strict=True):
         gaps = spacing.between_layers(path) if toolpath.features else distances

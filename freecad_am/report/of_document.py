@@ -36,10 +36,11 @@ PROGRAMS = "program"  # the folder that commands write programs into
 
 
 def reported(obj: Any) -> Callable[[], str]:
-    """What makes the page of a toolpath, a joint path or a program without the document, from which all is read now. It
-    tells how far it is (`objects.progress`).
+    """Return a function that draws the page of a toolpath, joint path or program. It reads the
+    document now, not when called, and reports progress (`objects.progress`).
 
-    Raises InputError for any other object, for one without a result, and where that or what it is made of does not fit.
+    Raises InputError for any other object, without a result, and for a result that does not match
+    its inputs.
     """
     toolpath, path, program = _stages(obj)
     features = features_of(toolpath)
@@ -63,7 +64,7 @@ def reported(obj: Any) -> Callable[[], str]:
     )
     spent = {stage.Proxy.kind.replace(" ", "_"): stage.Seconds for stage in stages}
 
-    # read now: a scheme that is chosen while the page is drawn is that of the next one
+    # read now: a change of units while the page is drawn applies to the next page
     page_units = units.ReportUnits(in_user_units, scale_of) if window_is_open() else units.METRIC
 
     def work() -> str:
@@ -78,7 +79,7 @@ def reported(obj: Any) -> Callable[[], str]:
 
 
 def _stages(obj: Any) -> tuple[Any, Any, Any]:
-    """Toolpath, joint path and program, None where there is none."""
+    """Return toolpath, joint path and program, None for missing ones."""
     stage = stage_of(obj)
     if stage is None or stage.kind not in KINDS:
         label = getattr(obj, "Label", repr(obj))
@@ -128,8 +129,8 @@ def _files(program: Any) -> list[str]:
 
 
 def _issues(features: list[Any], toolpath: Any, path: Any, program: Any) -> list[Issue]:
-    """Those of all stages, as a command tells them: a toolpath repeats those about its wall, and what is told of heights at
-    the speeds as run stands for what was told at those asked for."""
+    """Return the issues of all stages, as a command prints them: a toolpath repeats issues of its
+    wall, and the height issues at the achieved speeds replace those at the programmed speeds."""
     issues = [issue for feature in features for issue in issues_of(feature)]
     issues += [issue for issue in issues_of(toolpath) if issue not in issues]
     later = [] if path is None else list(issues_of(path))
@@ -139,7 +140,7 @@ def _issues(features: list[Any], toolpath: Any, path: Any, program: Any) -> list
 
 
 def _steps(job: Job, results: Results, cell: cells.Cell | None) -> Made:
-    """The report, telling of each of its steps."""
+    """Return the report and show its progress step by step."""
 
     @contextlib.contextmanager
     def timed(stage: str) -> Iterator[None]:

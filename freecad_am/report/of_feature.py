@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the report shows of one feature, apart from what draws it: jobs without a page need none of that."""
+"""Data of one feature for the report, in a module that imports no drawing code, for jobs without a
+page."""
 
 from __future__ import annotations
 
@@ -14,8 +15,9 @@ if TYPE_CHECKING:  # slow to import, and a job of other families never needs it
 
 
 class OfFeature(NamedTuple):
-    """What is shown of each feature. name: empty of a single one. spacing: (points,) mm from each of its layers to what lies
-    below it; band: share of the layer height by which that may differ. compared, rows: how else its wall may be cut."""
+    """Data of a feature. name: empty if the job has one feature. spacing: (points,) mm from each
+    layer to the surface below; band: its tolerance as a share of the layer height. compared, rows:
+    other spacings of its wall."""
 
     name: str
     toolpath: Toolpath

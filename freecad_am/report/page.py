@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""report.html: the report to look at, one file without links; its one script draws the path."""
+"""report.html: the report as one file without links; its one script draws the path."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ def render(content: Content) -> str:
 
 
 def _select_rows(content: Content) -> columns.Shown:
-    """The rows of the path to turn, with their joints where there is a machine."""
+    """Return the path's rows for the 3D viewer, with joint values if the job has a machine."""
     machine = content.report["machine"] if content.source.cell is not None else None
     return (
         columns.select_rows(content.source, machine["labels"], machine["units"])
@@ -215,7 +215,7 @@ def _process(content: Content, pictures: Pictures) -> str:
 
 
 def _hub_layers(content: Content, pictures: Pictures) -> str:
-    """Layers of solids on a hub laid flat, and what the bead model makes of them."""
+    """Draw unrolled layers of solids on a hub, and the charts of the bead model."""
     if content.solids is None:
         return ""
     plots = hub_figures.layer_plots(content.solids, content.toolpath) + pictures.beads()
@@ -277,7 +277,7 @@ def _spacing_motion(report: dict[str, Any]) -> str:
 
 
 def _totals(report: dict[str, Any]) -> str:
-    """What the job takes and deposits, and of what material."""
+    """Return the table of time, deposit and material."""
     sums = report["totals"]
     return pairs_of(
         "Time and material",
@@ -324,7 +324,8 @@ def _optimality(report: dict[str, Any]) -> str:
 
 
 def _comparison(report: dict[str, Any]) -> str:
-    """The method of the job beside those it was compared with: figures of the whole, then those of each axis."""
+    """Return the comparison of the job's method with the others: total figures, then figures per
+    axis."""
     if not report["comparison"]:
         return ""
     methods = [report["joints"], *report["comparison"]]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The pictures of the report that matplotlib draws, as elements of its page; without it there are none."""
+"""The pictures of the report that matplotlib draws, as elements of its page; empty without
+matplotlib."""
 
 from __future__ import annotations
 
@@ -23,7 +24,7 @@ MISSING = "The plots are left out, because matplotlib is not installed here; ins
 
 
 class Pictures:
-    """The pictures of one job, each list empty where there is nothing to draw, or nothing to draw with."""
+    """The pictures of one job; a list is empty without data or without matplotlib."""
 
     def __init__(self, source: Source) -> None:
         self.source = source

@@ -12,7 +12,7 @@ from .tables import figure_text
 from .turned.columns import Shown
 
 _MOST_ISSUES = 200
-# how a promise is marked: what was not checked is never green
+# mark of a promise: an unchecked promise is never green
 _MARKS = {True: ("good", "kept"), False: ("error", "broken"), None: ("unknown", "not checked")}
 
 
@@ -40,7 +40,7 @@ def findings(issues: list[dict[str, Any]], path_rows: Shown) -> str:
 
 
 def place_of(position: dict[str, Any], path_rows: Shown) -> str:
-    """Layer, bead and point, as far as they are told; a click shows them in the path."""
+    """Return layer, bead and point, as far as known, as a link into the path."""
     words = " ".join(
         f"{word} {position[word]}"
         for word in ("layer", "bead", "point")

@@ -22,7 +22,7 @@ MM3 = 1000.0  # in a cm3
 
 
 def as_dict(shape: PredictedShape) -> dict[str, Any]:
-    """The key `predicted_shape` of a report. Of `layers` those that have beads."""
+    """Return the key `predicted_shape` of a report. `layers` lists only layers with beads."""
     return {
         "fed_cm3": shape.fed / MM3,
         "laid_cm3": shape.laid / MM3,
@@ -46,7 +46,8 @@ def as_dict(shape: PredictedShape) -> dict[str, Any]:
 
 
 def _layer(shape: PredictedShape, layer: int) -> dict[str, Any]:
-    """A row of `layers`; least and mean are those of the places nearest to it, None where there are none."""
+    """A row of `layers`; smallest and mean deviation refer to the nearest places, None without
+    any."""
     row: dict[str, Any] = {"layer": layer, "drift_mm": float(shape.drift[layer])}
     if shape.deviation is not None:
         smallest, mean = (
@@ -75,7 +76,7 @@ def _deviation(deviation: DeviationMap) -> dict[str, Any]:
 
 
 def section(shape: PredictedShape, pictures: Sequence[str], path_rows: Shown) -> str:
-    """The section of the page, with the maps and charts that are drawn of it."""
+    """Return the section of the page, with its maps and charts."""
     drifts = shape.drift[np.isfinite(shape.drift)]
     figures = pairs_of(
         "Predicted deposit against the part",
@@ -107,7 +108,8 @@ def _unit(shape: PredictedShape) -> tuple[float, str]:
 
 
 def _worst(deviation: DeviationMap, path_rows: Shown) -> str:
-    """The worst places with their names in the maps; a click shows what of the path is nearest."""
+    """Return the table of the worst places by their names in the maps; a click shows the nearest
+    point of the path."""
     rows = "".join(
         f"<tr><td>{row['name']}</td><td>{units.text(format(row['beyond_mm'], '.3f') + ' mm')}</td>"
         f"<td>{units.text(place(np.array(row['place'])) + ' mm')}</td>"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a report says of layers that were fitted to a scan: figures, and the first of them before and after."""
+"""Layers fitted to a scan in the report: figures, and the first layer before and after."""
 
 from __future__ import annotations
 

@@ -67,12 +67,12 @@ def rows(
     toolpath: Toolpath,
     distances: Sequence[Array],
 ) -> list[dict[str, Any]]:
-    """The rows of report.json without motion; that of the method planned comes first."""
+    """Return the rows of report.json without motion; the planned method comes first."""
     if not compared:
         return []
     by_method = {result.method: _row(result) for result in compared}
     planned = strategy.spacing
-    if planned not in by_method:  # a wall cut by this method alone
+    if planned not in by_method:  # a wall that was cut only by this method
         spread = of_report.summarize(distances)
         by_method[planned] = _empty(planned) | {
             "layers": len(toolpath.layers),
@@ -89,7 +89,8 @@ def rows(
 
 
 def _corners(toolpath: Toolpath) -> dict[str, Any]:
-    """How many layers have corners, and the sharpest, by the tangents of their beads; None where those are not known."""
+    """Return the number of layers with corners and the sharpest corner, from the bead tangents;
+    empty without tangents."""
     sharpest: dict[int, float] = {}
     for layer, _, bead in toolpath:
         if bead.tangents is None:
@@ -128,7 +129,8 @@ def motion_of(
 
 
 def motions(job: Job, tell: Callable[[str], None]) -> dict[str, dict[str, Any] | str]:
-    """The motion of every further spacing of `strategy.compare` of the one wall of a job, or why there is none."""
+    """The motion of every further spacing of `strategy.compare` of a job's only wall, or the error
+    message."""
     results: dict[str, dict[str, Any] | str] = {}
     for spacing in dict.fromkeys(job.features[0].strategy.compare):
         if spacing == job.features[0].strategy.spacing:

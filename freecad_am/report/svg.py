@@ -45,7 +45,7 @@ def thinned(x: Array, y: Array, columns: int = _MOST_COLUMNS) -> tuple[Array, Ar
 
 
 def ticks(low: float, high: float, count: int = 6) -> list[float]:
-    """Round numbers inside low..high, at most about `most`."""
+    """Round numbers inside low..high, at most about `count`."""
     if not high > low:
         return [low]
     step = round_step(0.999 * (high - low) / count, (1, 2, 2.5, 5, 10))

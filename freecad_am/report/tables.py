@@ -30,7 +30,7 @@ def axis_names(report: dict[str, Any]) -> list[str]:
 
 
 def in_units(word: str, report: dict[str, Any]) -> str:
-    """The name of a figure of the axes, with mm beside degrees where some of them slide."""
+    """Return the name of a figure per axis, with mm after degrees if some axes are prismatic."""
     name, _, unit = word.rpartition(", ")
     mixed = unit.startswith("deg") and "mm" in report["machine"]["units"]
     return f"{name}, {unit} or {unit.replace('deg', 'mm')}" if mixed else word
@@ -68,7 +68,7 @@ def table_of(rows: Iterable[tuple[str, Iterable[str]]]) -> str:
 
 
 def figure_text(value: Any) -> str:
-    """A figure with the digits that tell something."""
+    """Format a figure with its significant digits."""
     if value is None:
         return "\u2013"
     if isinstance(value, bool):

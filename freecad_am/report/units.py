@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The units of the page: metric as commands write it, and those of the user's scheme where the window asks for it.
+"""The units of the page: metric for commands, the user's unit scheme for the window.
 
-The figures of the report, report.json, are metric always.
+The figures of report.json are always metric.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ _FIGURE = re.compile(r"-?[\d,]+(?:\.\d+)?(?:e[-+]\d+)?")
 
 @dataclass(frozen=True)
 class ReportUnits:
-    """text: a text of numbers, with its quantities in the units of the page. scale: of values of up to a number in a unit
-    of ours, how many of the page's unit make one, and its name."""
+    """text: converts the quantities in a text to the units of the page. scale: for values up to a
+    maximum in an internal unit, the factor to the page's unit, and its name."""
 
     text: Callable[[str], str]
     scale: Callable[[float, str], tuple[float, str]]
@@ -48,7 +48,7 @@ def text(words: str) -> str:
 
 
 def scale(largest: float, unit: str) -> tuple[float, str]:
-    """How many of the page's unit make one `unit`, for values of up to `most`, and its name."""
+    """How many of the page's unit make one `unit`, for values of up to `largest`, and its name."""
     return _units.get().scale(largest, unit)
 
 
@@ -61,7 +61,7 @@ def message(words: str) -> str:
 
 
 def label(words: str, largest: float) -> tuple[str, float]:
-    """A label such as 'local distance, mm' of values of up to `most`, in the unit of the page, and the factor of values."""
+    """A label such as 'local distance, mm' of values of up to `largest`, in the unit of the page, and the factor of values."""
     match = _LABEL.fullmatch(words)
     if match is None:
         return words, 1.0

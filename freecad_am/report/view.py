@@ -24,7 +24,8 @@ _MOST_TRIANGLES = 6000  # of a body
 
 
 def picture(toolpath: Toolpath, platform_diameter: float | None = None) -> str:
-    """The inline SVG of a toolpath; the axis of the feature stands upright. What a wall grows on lies behind it."""
+    """Return the inline SVG of a toolpath, with the feature's axis upright and the substrate behind
+    the wall."""
     inverse = np.linalg.inv(toolpath.frame)
     beads = [
         (layer, bead.points @ inverse[:3, :3].T + inverse[:3, 3], bead.build @ inverse[:3, :3].T)
@@ -45,7 +46,7 @@ def picture(toolpath: Toolpath, platform_diameter: float | None = None) -> str:
     last_layer = max(1, len(toolpath.layers) - 1)
     stride = max(1, toolpath.point_count // _TICKS)
     facing = _facing(beads, toolpath.family)
-    # what lies farther away is drawn first; the far half of each layer lies behind the near half of all others
+    # painter's algorithm: the far half of each layer is behind the near halves of all layers
     far_halves, near_halves = (
         [
             _half(points, step, scale, shift, shade(layer / last_layer), towards, side)
@@ -66,8 +67,8 @@ def picture(toolpath: Toolpath, platform_diameter: float | None = None) -> str:
 
 
 def _facing(beads: list[tuple[int, Array, Array]], family: str) -> list[Array]:
-    """Per bead, (n,): more than 0 where the wall faces the eye. About the axis of parts of revolution that is a side of
-    it; elsewhere the outside of the bead tells, which is the side away from the middle of its layer."""
+    """Per bead, (n,): positive where the wall faces the eye. For parts of revolution this is a side
+    of the axis; for walls it is the outside of the bead, away from the middle of its layer."""
     level = math.cos(_ELEVATION)
     eye = np.array([math.cos(_AZIMUTH) * level, math.sin(_AZIMUTH) * level, math.sin(_ELEVATION)])
     if family != "surface":

@@ -46,7 +46,8 @@ def distance_plots(compared: Sequence[Compared], layer_height: float) -> list[st
 
 
 def step_plot(wall: Compared, layer_height: float) -> str:
-    """How far each layer lies above the one below along the lines up the wall, in % of the layer height (figure 9)."""
+    """Plot the step from the layer below along the lines up the wall, in % of the layer height
+    (figure 9)."""
     steps = [100.0 * step / layer_height for step in wall.step]
     low, high = (
         float(f([f(step[np.isfinite(step)]) for step in steps if np.isfinite(step).any()]))
@@ -91,7 +92,8 @@ def deposit_plot(toolpath: Toolpath, local: Sequence[Array]) -> str:
 
 
 def both_paths(compared: Sequence[Compared]) -> str:
-    """The layers of iso-parameter and constant distance in one picture (figure 10); empty where one of them is missing."""
+    """Draw the layers of iso-parameter and constant distance in one picture (figure 10); empty
+    without both methods."""
     by_method = {wall.method: wall for wall in compared}
     if not {METHODS[0], METHODS[2]} <= set(by_method):
         return ""

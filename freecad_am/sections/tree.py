@@ -49,7 +49,7 @@ class Tree:
 
 
 def read(path: str, example: str = "part: {file: ...}", keys: str = "part and strategy") -> Tree:
-    """The file as a `Tree`; what it needs at `least` and its `keys` are for messages.
+    """The file as a `Tree`; `example` (the least content) and `keys` are for messages.
 
     Raises InputError NO_FILE, EMPTY_FILE, BAD_FILE, DUPLICATE_KEY or BAD_VALUE.
     """

@@ -136,7 +136,9 @@ def test_a_fanuc_from_its_urdf_checked_by_its_pendant(person, hand, wizard, tmp_
     person.screenshot("machine_5_poses_right")
     go_on(person, hand, wizard, "NamePage")
     person.type(wizard, "machineTitle", "")
-    assert refused(person, hand, wizard, "FinishButton").startswith("Manufacturer and model: the field is empty")
+    assert refused(person, hand, wizard, "FinishButton").startswith(
+        "Manufacturer and model: the field is empty"
+    )
     hand.enter(wizard, "machineTitle", "FANUC of hall 3")
     assert person.field(wizard, "machineName").text() == "fanuc-of-hall-3"
     assert "only as reliable as its check poses" in refused(person, hand, wizard, "FinishButton")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Colours of the points of a path by what they tell - layer, local distance, tilt, speed, width of the bead, kind of bead,
-and of a joint path how near the machine comes to what it cannot do - and how to read them."""
+"""Colours of the points of a path by quantity - layer, local distance, tilt, speed, bead width,
+kind of bead, and for a joint path the margins of the machine - with their scales."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ..texts.in_language import marked, translated
 
 Colour = tuple[float, float, float]
 
-# in English: names of choices, which documents hold; whoever shows a scale translates its texts
+# in English: documents store these choices; the display translates a scale's texts
 LAYER, DISTANCE, TILT = marked("layer"), marked("local distance"), marked("tilt")
 SPEED, WIDTH, KIND = marked("speed"), marked("width"), marked("kind of bead")
 KINDS = (LAYER, DISTANCE, TILT, SPEED, WIDTH, KIND)
@@ -52,11 +52,12 @@ _ROUNDED = 1e-9  # shares that differ by less are alike
 
 @dataclass(frozen=True, eq=False)
 class Scale:
-    """How to read colours: the ramp goes from low to high; `ticks` are numbers beside it with their texts.
+    """A colour scale: the ramp goes from low to high; `ticks` are its numbers with their labels.
 
-    `below` and `above`: texts of values outside, '' when there are none. `without`: what has no value, '' when all have
-    one, and its colour. least, most: of all values. `classes`: names with their colours, where there is no ramp. values:
-    (n,) of all points, in the unit, NaN of those without one; None where there is nothing to be told.
+    `below` and `above`: texts of values outside, '' without any. `without`: text of points without
+    a value, '' if all have one, and its colour. lowest, highest: of all values. `classes`: names with
+    their colours, instead of a ramp. values: (n,) of all points, in the unit, NaN for points
+    without a value; None without values to show.
     """
 
     title: str
@@ -74,7 +75,7 @@ class Scale:
     values: Array | None = field(default=None, compare=False, repr=False)
 
     def text_at(self, row: int) -> str:
-        """The value of a point, in words; '' where there is none to be told."""
+        """Return the value of a point as text; '' without one."""
         if self.values is None:
             return ""
         value = float(self.values[row])
@@ -88,7 +89,8 @@ class Scale:
 
 
 def coloured(toolpath: Toolpath, kind: str, band: float) -> tuple[Array, Scale]:
-    """Colours (n, 3) of all points in the order of deposit, and their scale. band: share of the layer height."""
+    """Return colours (n, 3) of the points in the order of deposit, and their scale. band: share of
+    the layer height."""
     if kind == DISTANCE:
         return _by_distance(toolpath, band)
     beads = [bead for _, _, bead in toolpath]
@@ -126,7 +128,7 @@ def class_of(bead: Bead) -> tuple[str, Colour]:
 
 
 def numbered(toolpath: Toolpath) -> list[int]:
-    """The number of each layer, counted from what it stands on: anew where another solid is begun."""
+    """Return the number of each layer above its substrate; a new solid restarts the count."""
     numbers: list[int] = []
     for layer in toolpath.layers:
         numbers.append(0 if layer.first or not numbers else numbers[-1] + 1)
@@ -147,7 +149,7 @@ def _classed(
 
 
 def automatic(values: Array, title: str, unit: str) -> Scale:
-    """A scale from the least to the most value, with round numbers beside it."""
+    """Return a scale from the lowest to the highest value, with round numbers."""
     low, high = float(values.min()), float(values.max())
     if high - low <= _TOLERANCE * max(1.0, abs(high)):
         return Scale(title, unit, low, low, ((low, f"{low:.4g}"),), low, high)
@@ -204,10 +206,12 @@ def _by_distance(toolpath: Toolpath, band: float) -> tuple[Array, Scale]:
 
 
 def by_machine(values: Array, kind: str) -> tuple[Array, Scale]:
-    """Colours (n, 3) of what a machine has left or uses up, one of MARGIN, RATIO, CONDITION, and their scale.
+    """Return colours (n, 3) of a machine quantity, one of MARGIN, RATIO, CONDITION, and their
+    scale.
 
-    values: (n,) shares, NaN where the machine does not reach the point. Margins and speeds are told in percent; beyond a
-    limit, and faster than an axis can, is a colour of its own. Where nothing else is left there is no ramp.
+    values: (n,) shares, NaN where the machine does not reach the point. Margins and speeds are in
+    percent; violated limits and speeds have separate colours. Without any valid value the scale has
+    no ramp.
     """
     finite = np.isfinite(values)
     without = "" if finite.all() else marked("unreachable")
@@ -249,7 +253,7 @@ def unknown(count: int, kind: str, why: str) -> tuple[Array, Scale]:
 
 
 def round_numbers(low: float, high: float, min_step: float) -> Array:
-    """About TICKS round numbers from low to high, apart by one, two or five times a power of ten, `least` or more."""
+    """About TICKS round numbers from low to high, apart by one, two or five times a power of ten, `min_step` or more."""
     step = max(min_step, round_step((high - low) / TICKS, (1.0, 2.0, 5.0, 10.0)))
     numbers = np.arange(np.ceil(low / step - _TOLERANCE), np.floor(high / step + _TOLERANCE) + 1.0)
     rounded: Array = numbers * step + 0.0  # no minus before zero
@@ -257,7 +261,7 @@ def round_numbers(low: float, high: float, min_step: float) -> Array:
 
 
 def _texts(ticks: Array) -> tuple[tuple[float, str], ...]:
-    """Numbers with as many decimals as tell them apart."""
+    """Format numbers with enough decimals to distinguish them."""
     step = float(ticks[1] - ticks[0]) if len(ticks) > 1 else 0.0
     decimals = max(0, -int(np.floor(np.log10(step) + _TOLERANCE))) if step > 0.0 else 3
     while not np.allclose(

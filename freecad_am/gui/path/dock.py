@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The dock beside the 3D view that shows a path layer by layer and point by point, and tells of the bead that is reached."""
+"""The dock that shows a path layer by layer and point by point in the 3D view, with the facts of
+the last bead."""
 
 from __future__ import annotations
 
@@ -27,7 +28,8 @@ from .pieces import Rows
 
 
 class Row:
-    """A slider with arrows at its ends and its number beside it; `moved` is called when the user has moved it."""
+    """A slider with arrows at its ends and a number field; `moved` is called after the user moves
+    it."""
 
     def __init__(self, name: str, text: str, help: str, page: int) -> None:
         self.label, self.slider, self.box = (
@@ -64,19 +66,19 @@ class Row:
 
     def _slid(self, value: int) -> None:
         if value != self.box.value():
-            self.box.setValue(value)  # which tells
+            self.box.setValue(value)  # emits the change
 
     def set(self, lowest: int, highest: int, value: int) -> None:
-        """Bounds and value; tells nobody."""
+        """Set bounds and value without a signal."""
         for widget in (self.slider, self.box):
             blocked = widget.blockSignals(True)
             widget.setRange(lowest, highest)
             widget.setValue(value)
             widget.blockSignals(blocked)
-        hold(self.box)  # as wide as its widest number so far
+        hold(self.box)  # keeps the width of its widest number
 
     def value(self) -> int:
-        """What is entered."""
+        """The entered value."""
         return int(self.box.value())
 
     def most(self) -> int:
@@ -84,7 +86,7 @@ class Row:
         return int(self.box.maximum())
 
 
-LINES = 3  # of what is told of a point, at most
+LINES = 3  # maximum lines of a point's facts
 LABEL = 14  # letters of a choice that are to be seen, at least
 _LAYER_PAGE, _POINT_PAGE = 10, 100
 
@@ -182,10 +184,11 @@ def _combo(name: str, help: str) -> Any:
 
 
 def facts(rows: Rows, row: int) -> str:
-    """The bead that a row belongs to: its layer, number, kind, speed, width, length and time; and the row's place.
+    """Describe the bead of a row: its layer, number, kind, speed, width, length and time; and the
+    row's position.
 
-    Numbers count from 0, as in messages, programs and `waypoints.csv`; of layers of several beads the number in the layer
-    is told too, by which the dock counts.
+    Numbers count from 0, as in messages, programs and `waypoints.csv`; layers of several beads also
+    show the number in the layer, as the dock does.
     """
     index = rows.bead_of(row)
     bead, layer = rows.bead(index), int(rows.layers[index])
@@ -281,7 +284,7 @@ class PathDock(Follower):
         for row in (self.form.from_, self.form.to, self.form.point):
             row.moved = self._update_range
 
-    # ---- what is looked at
+    # ---- selected path
 
     def open(self, obj: Any = None) -> None:
         """Show the dock, and in it this path."""
@@ -291,12 +294,12 @@ class PathDock(Follower):
         self.fill()
 
     def follow(self, obj: Any) -> None:
-        """Show this path, where the dock is open; in front of others only what was."""
+        """Show this path if the dock is open; keep the order of the docks."""
         self._take(obj)
         self.fill()
 
     def view(self) -> PathView | None:
-        """The view of the path that is looked at, None when there is none (any more)."""
+        """The view of the selected path, None without one."""
         obj = self._object()
         return None if obj is None else obj.ViewObject.Proxy
 
@@ -312,7 +315,7 @@ class PathDock(Follower):
         return path
 
     def _take(self, obj: Any) -> None:
-        """Look at a path: it is made visible, and what lies at the same place is hidden."""
+        """Select a path: show it, and hide the path at the same place."""
         self.target = (obj.Document.Name, obj.Name)
         if not obj.ViewObject.Visibility:
             _show(obj, True)
@@ -327,7 +330,7 @@ class PathDock(Follower):
             self._take(paths[index])
         self.fill()
 
-    # ---- what is shown of it
+    # ---- visible range
 
     def fill(self) -> None:
         """Show the state of the path; nothing while the dock is closed."""
@@ -388,7 +391,7 @@ class PathDock(Follower):
         self._show(view, None if is_complete else (from_layer, to_layer, count))
 
     def _show(self, view: PathView, stretch: tuple[int, int, int | None] | None) -> None:
-        """Show a stretch of a path, and in the fields what it is."""
+        """Show a stretch of a path and its range in the fields."""
         view.show(stretch)
         self.fill()
         redraw.views_with_fields(view.obj.Document.Name)
@@ -400,7 +403,7 @@ class PathDock(Follower):
             self._show(view, None)
 
     def _closed(self) -> None:
-        """All paths are whole again: nothing would tell what is left out of them."""
+        """Show all paths completely: without the dock nothing indicates a hidden stretch."""
         self.form.single.setChecked(False)
         for document in App.listDocuments().values():
             for view in (obj.ViewObject.Proxy for obj in _paths(document)):
@@ -419,7 +422,8 @@ class PathDock(Follower):
         self._show(view, (start, layer, row + 1 - rows.layer_rows(layer, layer)[0]))
 
     def go_to(self, obj: Any, layer: int, bead: int | None, point: int | None) -> None:
-        """Open, and show a path up to a point of a bead of a layer, counted from 0; the layer alone where these are None."""
+        """Open, and show a path up to a point of a bead of a layer, counted from 0; the whole layer
+        if they are None."""
         self.open(obj)
         rows = obj.ViewObject.Proxy.rows
         if rows is None or not 0 <= layer < rows.layer_count:
@@ -448,7 +452,7 @@ class PathDock(Follower):
 
 
 def _show(obj: Any, visible: bool) -> None:
-    """Show or hide a path; to look at one does not count as a change of the document."""
+    """Show or hide a path without marking the document as changed."""
     groups = [parent for parent in obj.InListRecursive if GROUP_TOUCHED in parent.PropertiesList]
     changing = [(obj, VISIBILITY), (obj.ViewObject, VISIBILITY)]
     changing += [(group, GROUP_TOUCHED) for group in groups]
@@ -474,7 +478,8 @@ _dock: PathDock | None = None
 
 
 def show(obj: Any = None) -> None:
-    """Open the dock, of a path, of the selected one or that of the selected job or stage, or else of what is to be seen."""
+    """Open the dock for a path; by default the selected one, the path of the selected job or stage,
+    or a visible path."""
     _get_dock().open(obj or next(filter(_is_path, job_selection()), None))
 
 

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Legends in the upper left corner of the 3D views and of pictures saved from them: a bar of colours with numbers for each
-path to be seen.
+"""Legends in the upper left corner of the 3D views and of pictures saved from them: a colour bar
+with numbers for each visible path.
 
-A legend is an image in the scene of its path, drawn last and through a camera of its own, so that it stays put and sharp
-whatever the view's camera does, and comes and goes with its path. Those that are seen together stand side by side.
+A legend is an image in the scene of its path, drawn last and through a camera of its own, so that
+it stays fixed and sharp under camera moves, and appears and disappears with its path. Several
+visible legends are placed side by side.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from ..preferences import watch
 from ..texts.in_language import tr, translated
 from .colouring import ABOVE_COLOUR, BELOW_COLOUR, DISTANCE, Scale
 
-_FINE = 0.01  # mm; distances that differ by less are told to 1e-5 mm
+_FINE = 0.01  # mm; smaller differences of distances show 1e-5 mm
 _MARGIN, _PAD, _BAR_WIDTH, _BAR_HEIGHT, _STEPS = 10, 9, 16, 150, 150
 # ground, edge and texts by whether the theme is dark
 _COLOURS = {
@@ -106,7 +107,8 @@ def _look(legend: weakref.ref[Legend], action: Any) -> None:
 
 
 def _picture(entry: Entry, left: int) -> Any:
-    """The pixels (rows from below, columns, 4) of a legend that stands this far from the corner of the view."""
+    """The pixels (rows from below, columns, 4) of a legend at this distance from the corner of the
+    view."""
     ratio = float(Gui.getMainWindow().devicePixelRatio())
     wide, high = left + _MARGIN + _width(*entry), _MARGIN + _height(*entry)
     image = QtGui.QImage(round(ratio * wide), round(ratio * high), QtGui.QImage.Format_RGBA8888)
@@ -126,7 +128,7 @@ def _picture(entry: Entry, left: int) -> Any:
     return np.ascontiguousarray(rows[::-1, : image.width()])
 
 
-# ---- what is in a legend
+# ---- contents of a legend
 
 
 def _lines(names: tuple[str, ...], scale: Scale) -> list[str]:
@@ -229,7 +231,7 @@ _due = False
 
 
 def renew_soon() -> None:
-    """Bring all legends up to date, once what is going on now is done."""
+    """Update all legends after the current event."""
     global _due
     if not _watching:
         _watching.append(_Observer())
@@ -249,7 +251,7 @@ def _renew() -> None:
 
 
 def _arrange(document: Any) -> None:
-    """Show the legends of what is to be seen in a document side by side, with names where there are several."""
+    """Show the legends of the visible paths side by side, with names if several."""
     visible = []
     for obj in document.Objects:
         view = getattr(obj.ViewObject, "Proxy", None)
@@ -276,7 +278,7 @@ def visible_scales(document: Any) -> list[Scale]:
 
 
 class _Observer:
-    """What happens to documents without the view providers being told."""
+    """Document events that do not reach the view providers."""
 
     def slotDeletedObject(self, obj: Any) -> None:
         """Called by FreeCAD."""

@@ -26,7 +26,7 @@ from .pieces import PathNodes, Rows
 REACH_PX = 8.0  # px from the mouse
 STILL = 3  # px the mouse may move while the button is down
 LOOK_EVERY = 15  # ms, whether the button has been let go
-DEEP = 1.5  # widths of a bead, by how much points may lie behind the foremost
+DEEP = 1.5  # in bead widths: depth tolerance of points behind the foremost
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,11 +41,12 @@ class Sight:
 
 
 class ClickNode:
-    """A node in the scene of a path. `wanted` says whether anybody asks; `seen` gives points (n, 3) that are shown, how far
-    what is drawn about them reaches, and the width of beads, mm; `clicked` is called with the number of one of them.
+    """A node in the scene of a path. `is_active` returns whether a listener is active; `visible_points` gives
+    points (n, 3) that are visible, the reach of their drawing, and the bead width, mm; `clicked` is
+    called with the number of the clicked point.
 
-    The scene hears of a button that goes down; when it comes up again FreeCAD's selection may keep that to itself.
-    Whoever wants to hear of clicks must hold this: the scene does not.
+    The scene receives button presses, but FreeCAD's selection may consume the releases. The caller
+    must keep a reference to this object: the scene does not.
     """
 
     def __init__(
@@ -56,7 +57,7 @@ class ClickNode:
     ) -> None:
         self.wanted, self.seen, self.clicked = is_active, visible_points, clicked
         self.node = coin.SoEventCallback()
-        # pivy never gives back what it is handed here, so that is no more than a weak reference
+        # pivy never releases this object, so pass a weak reference
         self.node.addEventCallback(
             coin.SoMouseButtonEvent.getClassTypeId(), _event, weakref.ref(self)
         )
@@ -89,11 +90,11 @@ def _event(listener: weakref.ref[ClickNode], node: Any) -> None:
 
 
 def _sight(action: Any) -> Sight:
-    """How the view that an action goes through shows what is at its place in the scene."""
+    """Return the projection of the view at the action's place in the scene graph."""
     region, volume = action.getViewportRegion(), coin.SoViewVolumeElement.get(action.getState())
     placed = coin.SoGetMatrixAction(region)  # an action for events knows no transformations
     placed.apply(action.getCurPath())
-    # held by names: pivy frees what they are read from
+    # keep references: pivy frees their sources
     model, screen, toward = placed.getMatrix(), volume.getMatrix(), volume.getProjectionDirection()
     model, screen, toward = (
         np.array(matrix.getValue(), float) for matrix in (model, screen, toward)
@@ -102,15 +103,16 @@ def _sight(action: Any) -> Sight:
 
 
 def _pair(short: Any) -> Array:
-    """(2,) of an SbVec2s, of which some versions of pivy give no values at once."""
+    """(2,) of an SbVec2s, for versions of pivy without direct access to its values."""
     return np.array([short[0], short[1]], float)
 
 
 def nearest(points: Array, reach: float, width: float, sight: Sight, position: Array) -> int | None:
-    """The number of the point that is meant by a place on the screen (2,), px from its lower left; None where none is near.
+    """Return the number of the point at a screen position (2,), px from the lower left; None
+    without a point nearby.
 
-    points: (n, 3). reach: mm about them that belongs to them. width: mm by which points may lie behind the foremost one,
-    nearly.
+    points: (n, 3). reach: mm, radius of their drawing. width: mm, bead width, for the depth
+    tolerance behind the foremost point.
     """
     world = points @ sight.to_world[:3, :3] + sight.to_world[3, :3]
     projected = world @ sight.to_screen[:3] + sight.to_screen[3]
@@ -157,10 +159,11 @@ OPTIONS: dict[str, tuple[str, Any, str]] = {
 
 
 class PathView(StageView):
-    """Draws beads from blue at the least to yellow at the most of what is told.
+    """Draws beads coloured from blue (lowest value) to yellow (highest value).
 
-    What is hidden is drawn when it is first to be seen, so that opening a document reads no result for nothing.
-    `shown`: first and last layer, and how many points of the last one, None for all; None for the whole path.
+    A hidden path is drawn when first shown, so that opening a document reads no unneeded result.
+    `shown`: first and last layer, and how many points of the last one, None for all; None for the
+    whole path.
     """
 
     options: ClassVar[dict[str, tuple[str, Any, str]]] = OPTIONS
@@ -181,11 +184,13 @@ class PathView(StageView):
         raise NotImplementedError
 
     def coloured(self, obj: Any, kind: str) -> tuple[Array, Scale]:
-        """Colours of all points. Raises InputError while undo brings back a result in parts."""
+        """Return the colours of all points. Raises InputError while undo restores a result in
+        parts."""
         raise NotImplementedError
 
     def limited(self, start: int, end: int) -> None:
-        """Rows from `first` to before `end` are shown: show of what else is drawn what goes with them."""
+        """Rows from `start` to before `end` are visible: show the matching range of other
+        drawings."""
 
     # ---- of the stage's view
 
@@ -201,7 +206,8 @@ class PathView(StageView):
         root.addChild(self.legend.node)
 
     def refresh(self) -> None:
-        """Draw what is stored now; in a document that is being opened once it is, and once it is to be seen."""
+        """Draw the stored result; while a document opens, wait until it is open and the path is
+        visible."""
         if self.obj is None:
             return
         opening = self.obj.Document.Restoring
@@ -249,7 +255,7 @@ class PathView(StageView):
             notify(self)
 
     def _colour(self, vobj: Any) -> None:
-        """Colour the beads anew where that would be other colours."""
+        """Colour the beads again if the colours changed."""
         preferred = preferences.ramp(), preferences.speed_unit(), scale_of(ORDINARY["mm"], "mm")
         key = (self.drawn, vobj.Colouring, *preferred, *self.colours_depend_on(vobj.Object))
         if self.rows is not None and len(self.rows) and key != self.coloured_by:
@@ -264,7 +270,7 @@ class PathView(StageView):
         self.style(self.obj.ViewObject)
 
     def colours_depend_on(self, obj: Any) -> tuple[Any, ...]:
-        """What else than the result the colours are made of."""
+        """Inputs of the colours in addition to the result."""
         return ()
 
     # ---- the stretch that is shown
@@ -296,7 +302,8 @@ class PathView(StageView):
             listener(self)
 
     def last_point(self) -> tuple[Array, Array] | None:
-        """The last point (3,) that is shown of a stretch, and the tool axis (3,) there; None where all is shown, or none."""
+        """Return the last visible point (3,) of a stretch and its tool axis (3,); None if the whole
+        path or nothing is visible."""
         start, end = self.stretch()
         if self.rows is None or self.shown is None or end <= start:
             return None
@@ -336,7 +343,7 @@ _followers: list[Callable[[PathView], None]] = []
 def listen_to_clicks(
     is_active: Callable[[], bool], choose: Callable[[PathView, int], None]
 ) -> None:
-    """Call `choose` with a row of a path when that is clicked in a 3D view, as long as `wanted`."""
+    """Call `choose` with a row of a path when that is clicked in a 3D view, as long as `is_active`."""
     _choosers.append((is_active, choose))
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Coin nodes of a path of which any stretch can be shown at once.
+"""Coin nodes of a path that can show any stretch quickly.
 
-A path is cut into pieces of a few thousand points. Pieces are made when they are first seen and switched on and off; of the
-one in which a stretch ends only the number of what is drawn changes. What lies before the first piece of a stretch is made
-anew when the stretch begins elsewhere.
+A path is cut into pieces of a few thousand points. Pieces are made when they are first seen and
+switched on and off; the piece in which a stretch ends only changes its count of primitives. The
+rows before the first piece of a stretch are rebuilt when the stretch begins elsewhere.
 """
 
 from __future__ import annotations
@@ -29,8 +29,9 @@ PIECE = 4096  # rows of a piece, about
 @dataclass(frozen=True, eq=False)
 class Rows:
     """n points (n, 3) mm of m beads in order. starts: (m + 1,) first row of each bead, and n. layers: (m,) of each bead,
-    rising. width: (n,) mm. read: gives the beads, asked for when more than lines is drawn or told. layer_height: mm of beads
-    that know no height of their own, asked for when tubes are drawn. read_bead: gives one bead, where that is soon done."""
+    rising. width: (n,) mm. read: returns the beads, called when more than lines is needed.
+    layer_height: mm of beads without a height, called for tubes. read_bead: returns one bead, if
+    that is fast."""
 
     points: Array
     starts: Index
@@ -48,7 +49,7 @@ class Rows:
         width: float,
         layer_height: Callable[[], float],
     ) -> Rows:
-        """`width` (mm) is that of beads that know none."""
+        """`width` (mm) applies to beads without a width."""
         points = np.concatenate([*(bead.points for bead in beads), np.zeros((0, 3))])
         starts = np.concatenate([[0], np.cumsum([len(bead) for bead in beads], dtype=np.intp)])
         columns = [
@@ -72,7 +73,7 @@ class Rows:
         return tuple(self.read())
 
     def bead(self, index: int) -> Bead:
-        """One of the beads. The first one that is told of is read alone; who asks for another looks through them."""
+        """Return a bead. The first request reads a single bead; a second one reads all beads."""
         if self.read_bead is None or "beads" in vars(self):
             return self.beads[index]
         alone = self._bead_cache
@@ -104,7 +105,7 @@ class Rows:
         return min(int(np.searchsorted(self.starts, row, side="right")) - 1, len(self.layers) - 1)
 
     def counts(self, start: int, end: int) -> Index:
-        """How many rows of each bead lie from `first` to before `end`."""
+        """Return the number of rows of each bead from `start` to before `end`."""
         low, high = np.searchsorted(self.starts, [start, end], side="right")
         return np.diff(np.unique(np.concatenate([[start], self.starts[low:high], [end]])))
 
@@ -122,7 +123,7 @@ class Rows:
 
     @cached_property
     def height(self) -> Array:
-        """(n,) mm, as predicted, else that of a layer."""
+        """(n,) mm, as predicted, else the layer height."""
         height = self.layer_height()
         columns = [
             np.full(len(bead), height) if bead.height is None else bead.height
@@ -145,12 +146,12 @@ class Rows:
 
     @property
     def sides(self) -> int:
-        """Of tubes, fewer where there are many."""
+        """Sides of the tubes, fewer for long paths."""
         count = len(self.sections)
         return 8 if count <= FINER else 6 if count <= FINE else 4
 
     def tube(self, start: int, end: int) -> tuple[tubes.Mesh, Index]:
-        """Tubes from row `first` to before `end`, and the row of each of their sections."""
+        """Tubes from row `start` to before `end`, and the row of each of their sections."""
         low, high = np.searchsorted(self.sections, [start, end])
         rows = np.unique(np.concatenate([[start], self.sections[low:high], [end - 1]]))
         bead = np.searchsorted(self.starts, rows, side="right")
@@ -161,7 +162,9 @@ class Rows:
         ), rows
 
 
-BLOCK = 128  # sections by which a piece of tubes grows: Coin reads all of it anew then
+BLOCK = (
+    128  # sections by which a piece of tubes grows: Coin reads the whole piece again at each step
+)
 _SHININESS = 0.2
 # as texts, which Coin reads in a fifth of the time that pivy takes to find a field; there are many pieces
 ALL, BY_VERTEX = f"whichChild {coin.SO_SWITCH_ALL}", "materialBinding PER_VERTEX"
@@ -169,8 +172,8 @@ ALL, BY_VERTEX = f"whichChild {coin.SO_SWITCH_ALL}", "materialBinding PER_VERTEX
 
 @dataclass(frozen=True)
 class Piece:
-    """The node of a stretch of rows. cut: draws those before a row, and says from which row on the rest of them is to be
-    drawn apart, which is that row where all are drawn."""
+    """The node of a stretch of rows. cut: draws the rows before a row, and returns the row from
+    which the rest must be drawn separately (the row itself if all are drawn)."""
 
     node: Any
     cut: Callable[[int], int]
@@ -195,7 +198,7 @@ class Look:
         self.forget(np.zeros(1, dtype=np.intp))
 
     def forget(self, cuts: Index) -> None:
-        """Pieces between these rows, none of which is made."""
+        """Reset to pieces between these rows, not yet built."""
         self.cuts = cuts
         self.made: dict[int, Piece] = {}
         self.drawn: dict[
@@ -220,12 +223,12 @@ class Look:
         self._switch(False)
 
     def _switch(self, on: bool) -> None:
-        if on != self.seen:  # a node that is given what it has takes it for a change
+        if on != self.seen:  # Coin treats setting an equal value as a change
             self.seen = on
             self.node.whichChild = coin.SO_SWITCH_ALL if on else coin.SO_SWITCH_NONE
 
     def show(self, start: int, end: int) -> None:
-        """Draw the rows from `first` to before `end`."""
+        """Draw the rows from `start` to before `end`."""
         self._switch(True)
         indices = np.flatnonzero((self.cuts[:-1] >= start) & (self.cuts[:-1] < end))
         targets = {
@@ -256,7 +259,7 @@ class Look:
         switch.set(ALL)
         return row, row if new and row == end else self.made[index].cut(
             row
-        )  # a new one draws all of it
+        )  # a new piece draws all rows
 
     def _stretch(self, start: int, end: int) -> Any:
         assert self.make is not None
@@ -294,7 +297,7 @@ class PathNodes:
         self.drawn_directions: tuple[int, float] | None = None
 
     def set(self, rows: Rows) -> None:
-        """Another path, all of it shown once it is painted."""
+        """Set another path, shown completely once painted."""
         self.rows, self.first, self.end, self.painted = rows, 0, len(rows), False
         self.points = rows.points.astype(np.float32)
         if self.drawn_directions is not None:
@@ -310,7 +313,7 @@ class PathNodes:
         self.show(self.first, self.end)
 
     def show(self, start: int, end: int) -> None:
-        """Show the rows from `first` to before `end`."""
+        """Show the rows from `start` to before `end`."""
         self.first, self.end = start, end
         if not self.painted:
             return
@@ -365,7 +368,7 @@ class PathNodes:
 
     def _tubes(self, begin: int, end: int) -> Piece:
         mesh, rows = self.rows.tube(begin, end)
-        # the triangles by the section they end at, so that a part of the tubes is the first of them
+        # sort the triangles by their last section, so that a prefix of the triangles is a part of the tubes
         section = mesh.triangles.max(axis=1) // self.rows.sides
         corners = np.full((len(section), 4), -1, dtype=np.int32)
         corners[:, :3] = mesh.triangles[np.argsort(section, kind="stable")]
@@ -390,7 +393,7 @@ class PathNodes:
                 filled = sections
             if row >= end:
                 return row
-            # what is left to the row, but at least the last segment, which has the face at the end
+            # the rows up to `row`, but at least the last segment, which has the end face
             start = int(self.rows.starts[self.rows.bead_of(row - 1)])
             return min(int(rows[max(sections - 1, 0)]), max(start, begin, row - 2))
 
@@ -399,7 +402,7 @@ class PathNodes:
 
 
 def _line_set(points: Any, counts: Callable[[int], Any], end: int, colours: Any = None) -> Piece:
-    """Polylines of these points; `counts` of each that are before a row."""
+    """Polylines of these points; `counts` per line that are before a row."""
     values, shape = coin.SoVertexProperty(), coin.SoLineSet()
     fill(values.vertex, points)
     if colours is not None:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The dock of a placement: poses are tried beside the window and drawn as a map, the best is entered by a click."""
+"""The dock of a placement: it tries poses in the background, draws them as a map, and enters the
+best by a click."""
 
 from __future__ import annotations
 
@@ -38,7 +39,8 @@ SECTION, HIGH = "place", 160  # pixels of the table at least
 
 
 class Form(QtGui.QWidget):
-    """The widgets at their places; whoever makes it connects them. values: what the fields show, as a macro has them."""
+    """The widgets of the dock; the caller connects their signals. values: of the fields, in the
+    form of a macro."""
 
     def __init__(self, values: dict[str, Any]) -> None:
         super().__init__()
@@ -71,7 +73,7 @@ class Form(QtGui.QWidget):
         for label, lines in (
             (self.key, 1),
             (self.summary, 2),
-        ):  # lines, with which what is below stays where it is
+        ):  # lines; a fixed height keeps the widgets below in place
             label.setWordWrap(True)
             label.setMinimumHeight(lines * label.fontMetrics().lineSpacing())
             label.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
@@ -85,11 +87,11 @@ class Form(QtGui.QWidget):
         column.addStretch(1)
 
     def values(self) -> dict[str, Any]:
-        """What is entered, as a macro passes it. InputError for what cannot be read."""
+        """Return the entered values in the form of a macro. InputError for unreadable input."""
         return {key: field.value for key, field in self.fields.items()}
 
     def tell(self, text: str, wrong: bool = False) -> None:
-        """Say what goes on, or what came of it."""
+        """Show the progress or the result."""
         self.summary.setText(text)
         set_role(self.summary, INVALID if wrong else PLAIN)
 
@@ -130,7 +132,7 @@ def _reach() -> Any:
     box.setObjectName("reach")
     box.setSizePolicy(
         QtGui.QSizePolicy.Fixed, QtGui.QSizePolicy.Fixed
-    )  # Qt takes clicks on its text alone
+    )  # Qt only accepts clicks on its text
     box.setToolTip(
         tr("Show the workspace of the robot: blue for few directions, yellow for all directions")
     )
@@ -153,8 +155,8 @@ TELL_EVERY = 100  # ms
 
 
 class Work:
-    """One kind of work at a time. `done` gets its result, None where it was cancelled or failed; `tell` what goes on, and
-    whether it is an error."""
+    """One kind of work at a time. `done` receives its result, None after a cancel or an error;
+    `tell` the progress text, and whether it is an error."""
 
     def __init__(
         self, form: Any, on_done: Callable[[Any], None], tell: Callable[[str, bool], None]
@@ -210,7 +212,7 @@ FIT = 150  # ms
 
 
 class PlacementDock:
-    """Tries poses of one joint path or toolpath until it is closed, or until what it shows goes."""
+    """Tries poses of one joint path or toolpath until the dock closes or its object is deleted."""
 
     def __init__(self, obj: Any, view: Any) -> None:
         self.obj, self.gone, self.entering = obj, False, False
@@ -251,11 +253,11 @@ class PlacementDock:
         self.form.reach.clicked.connect(lambda *_: self._reach())
         self.form.colour.activated.connect(lambda *_: self._paint())
         self.form.table.itemSelectionChanged.connect(self._paint)
-        self.scroll.setWidget(self.form)  # what was there goes
+        self.scroll.setWidget(self.form)  # remove the old widget
         self._name_buttons()
 
     def _speak(self) -> None:
-        """The window has another language: what is entered and found stays."""
+        """Rebuild in the window's new language; entries and results stay."""
         values, has_reach = {}, self.form.reach.isChecked()
         with contextlib.suppress(AmError):
             values = self.form.values()
@@ -272,7 +274,7 @@ class PlacementDock:
         self.form.compute.setText(tr("Cancel") if runs else tr("Compute"))
         self.form.use.setEnabled(not runs and bool(self.numbers))
 
-    # ---- what is computed
+    # ---- computation
 
     def _compute(self) -> None:
         """Try the poses, or stop that."""
@@ -330,7 +332,7 @@ class PlacementDock:
         self._paint()
         self._fit()
 
-    # ---- what is shown
+    # ---- display
 
     def _show(self) -> None:
         self.form.table.blockSignals(True)
@@ -352,7 +354,7 @@ class PlacementDock:
                 self.scene.fit()
 
     def _stand(self) -> None:
-        """Draw the machine as the cell stands now."""
+        """Draw the machine of the current cell."""
         if self.scene is not None:
             self.scene.stand(self.placing.settings, self.placing.job().toolpath)
             self._paint()
@@ -376,7 +378,7 @@ class PlacementDock:
     # ---- making it the choice
 
     def _use(self) -> None:
-        """Enter the pose that is chosen into the cell; what follows it is renewed."""
+        """Enter the chosen pose into the cell and renew the dependent stages."""
         number = self.chosen()
         if self.found is None or number is None:
             return
@@ -398,7 +400,7 @@ class PlacementDock:
     # ---- the end
 
     def _changed_object(self, obj: Any, name: str) -> None:
-        """What was found is of inputs that are no more."""
+        """Discard results of outdated inputs."""
         if name != "Key" or self.entering or self.found is None:
             return
         self.found, self.numbers = None, []
@@ -423,7 +425,7 @@ class PlacementDock:
             _open.remove(self)
 
     def end(self, why: str, document_goes: bool = False) -> None:
-        """End it by itself, and say why."""
+        """Close the dock and show the reason."""
         if not self.gone:
             self.close(document_goes)
             Gui.getMainWindow().statusBar().showMessage(
@@ -432,7 +434,7 @@ class PlacementDock:
 
 
 class _Shown:
-    """What a lookout looks at."""
+    """Return the objects for a lookout to watch."""
 
     def __init__(self, placing: Placing) -> None:
         self.document, self.objects = placing.document, placing.names
@@ -442,8 +444,8 @@ _open: list[PlacementDock] = []  # Python must keep it as long as it is open; th
 
 
 def show(obj: Any) -> PlacementDock | None:
-    """Open the dock for a joint path or toolpath in a 3D view of its document, in place of the one that is open. Raises
-    InputError where there is nothing to place."""
+    """Open the dock for a joint path or toolpath in a 3D view of its document and close the open
+    one. Raises InputError without anything to place."""
     placing_of(obj)
     document = Gui.getDocument(obj.Document.Name)
     views = document.mdiViewsOfType("Gui::View3DInventor")

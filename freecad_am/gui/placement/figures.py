@@ -28,8 +28,8 @@ ROWS = 200
 
 @dataclass(frozen=True, eq=False)
 class Coloured:
-    """shown: (m,) numbers of the poses that are drawn, the best of each place. colours: (m, 3). least, most: of the figures
-    that colours tell, NaN where there is none."""
+    """numbers: (m,) numbers of the drawn poses, the best of each position. colours: (m, 3). lowest,
+    highest: range of the coloured figures, NaN without any."""
 
     numbers: Integers
     colours: Array
@@ -60,8 +60,9 @@ def figure(placed: Placed, number: int, name: str) -> float:
 
 
 def coloured(placed: Placed, name: str) -> Coloured:
-    """The poses coloured by a figure: those that serve from the least to the most, others grey; by their share all of them.
-    Of poses at the same place the best one is shown, or the one that serves most."""
+    """Colour the poses by a figure: feasible poses from lowest to highest, others grey; by their
+    share, all poses. At each position the best pose is shown, or the pose with the largest
+    share."""
     rank = {number: k for k, number in enumerate(ranked(placed, MARGIN))}
     order = sorted(
         range(len(placed.poses)), key=lambda k: (rank.get(k, len(rank)), -placed.judged[k].share, k)

@@ -141,7 +141,7 @@ class Scene:
         self.machine.set(machine_scenery(settings, toolpath, folders))
 
     def positions_of(self, moves: str, poses: Array) -> Array:
-        """(n, 3) where poses (n, 6) of what is moved are in the view."""
+        """Return the positions (n, 3) in the view of poses (n, 6) of the moved object."""
         if moves == POSITIONER:
             links = self.cell.links(self.joints)
             base = frames.inverse(links[0]) @ self.cell.world(self.joints[None])[0]
@@ -153,7 +153,7 @@ class Scene:
         return positions
 
     def show(self, placed: Placed | None, coloured: Coloured | None, number: int | None) -> None:
-        """Draw a cube at each place, the best pose of those there, in its colour."""
+        """Draw a cube at each position in the colour of its best pose."""
         if placed is None or coloured is None:
             self.places = np.zeros((0, 3))
             self.cubes.set(self.places, self.places, 1.0)
@@ -172,7 +172,7 @@ class Scene:
         self.cloud.set(points, ramp(reach.share))
 
     def fit(self) -> None:
-        """Bring all of it into sight."""
+        """Fit the view to the whole scene."""
         self.view.fitAll()
 
     def remove(self, document_goes: bool = False) -> None:

@@ -14,12 +14,12 @@ from ..picking.shape_inputs import job_named, job_selection
 from ..texts.in_language import error_line, tr, translated_error
 from . import dock
 
-KINDS = ("joint path", "toolpath")  # what is placed, the one that tells most first
+KINDS = ("joint path", "toolpath")  # kinds of placed objects, the most complete first
 
 
 def placement() -> None:
-    """Place what is selected, a joint path, a toolpath with a cell, or a program's; where nothing of a job is, the last one
-    of the document."""
+    """Place the selected joint path, toolpath with a cell, or the path of the selected program;
+    without such a selection, the last one of the document."""
     selected = [path for path in map(_path, job_selection()) if path is not None]
     if not selected and job_named():
         _say(

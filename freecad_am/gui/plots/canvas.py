@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A picture in the window: drawn beside it, zoomed and moved by mouse and wheel, read by pointing."""
+"""A picture in the window: drawn in the background, zoomed and moved by mouse and wheel, read by
+pointing."""
 
 from __future__ import annotations
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from ...plots.draw import Place
 
 
-# all that stands alone in pictures, which `plots` draws in English for reports
+# standalone texts of pictures, which `plots` draws in English for reports
 WORDS = (
     marked("Joint angles"),
     marked("Joint speeds"),
@@ -93,7 +94,7 @@ WORDS = (
 
 
 def frame_words() -> Words:
-    """What is written in frames."""
+    """Return the texts of frames."""
     return Words(
         layer=tr("layer {}"),
         beyond=tr("{}: {} points beyond the limit"),
@@ -103,8 +104,8 @@ def frame_words() -> Words:
 
 
 def in_words(picture: Picture, user_units: bool = True) -> Picture:
-    """A picture in the language of the window; what is a name, such as that of an axis, stays. user_units: whether
-    quantities in its texts are in the user's units."""
+    """Translate a picture to the language of the window; names, such as axis names, stay.
+    user_units: whether quantities in its texts are in the user's units."""
 
     def translate_chart(chart: Chart) -> Chart:
         return replace(
@@ -144,10 +145,11 @@ class Drawn:
 
 
 class Canvas(QtGui.QWidget):
-    """`say` is told what the pointer is at; what is shown of x and y is in `across` and `up`, by the number of a chart.
+    """`say` receives the value at the pointer; the visible ranges of x and y are in `across` and
+    `up`, by the number of a chart.
 
-    A picture is drawn by a thread of its own; one that is asked for meanwhile is drawn after it. It is let end, not
-    cancelled: to stop matplotlib amid its caches is no good.
+    A thread draws a picture; a request in the meantime is drawn next. The thread runs to its end:
+    stopping matplotlib while it fills its caches is unsafe.
     """
 
     def __init__(self, interactive: bool = True) -> None:
@@ -170,7 +172,7 @@ class Canvas(QtGui.QWidget):
         self.timer.timeout.connect(self._look)
 
     def show_picture(self, picture: Picture | None, text: str = "", keep: bool = False) -> None:
-        """Show another picture, or a text where there is none. keep: the part of it that is looked at."""
+        """Show another picture, or a text instead. keep: whether to keep the visible range."""
         self.picture, self.text = picture if picture is not None and picture.charts else None, text
         if not keep:
             self.across, self.up = {}, {}
@@ -185,10 +187,10 @@ class Canvas(QtGui.QWidget):
 
     @property
     def ready(self) -> bool:
-        """Whether what is seen is what was asked for."""
+        """Whether the display is up to date."""
         return self._worker is None and (self.picture is None or self.drawn is not None)
 
-    # ---- what is looked at
+    # ---- visible range
 
     def show_all(self) -> None:
         """Show all there is."""
@@ -196,7 +198,8 @@ class Canvas(QtGui.QWidget):
         self._changed()
 
     def zoom(self, factor: float, chart: int = 0, share: float = 0.5, up: bool = False) -> None:
-        """Show 1 / factor of what is shown, about a place at `share` of the frame; of y with `up`, else of x."""
+        """Show 1 / factor of the visible range, about a point at `share` of the frame; zoom y with
+        `up`, else of x."""
         if self.drawn is None:
             return
         frame, number = self.drawn.places[chart], self._across_of(chart)
@@ -225,7 +228,7 @@ class Canvas(QtGui.QWidget):
     # ---- drawing
 
     def draw(self) -> None:
-        """Draw what is to be shown, as soon as what is drawn now is done."""
+        """Draw the requested picture after the running one."""
         if self.picture is None or self.width() < MIN_DRAG or self.height() < MIN_DRAG:
             return
         if self._worker is not None:
@@ -326,7 +329,7 @@ class Canvas(QtGui.QWidget):
             self._drag = (self._chart_at(event.pos()), event.pos(), event.pos())
 
     def mouseMoveEvent(self, event: Any) -> None:
-        """Move, or tell what the pointer is at."""
+        """Move the range, or read the value at the pointer."""
         self._pointer = event.pos()
         if self.drawn is None or not self.interactive:
             return
@@ -438,7 +441,7 @@ def _render(
     across: Mapping[int, Range],
     up: Mapping[int, Range],
 ) -> tuple[bytes, int, int, float, tuple[Chart, ...], tuple[Place, ...], bool]:
-    """Drawn by matplotlib, whose import takes some time: beside the window."""
+    """Draw with matplotlib, in the background because its import is slow."""
     from ...plots import draw, files
 
     figure, frames = draw.figure(charts, look, *size, draw.Window(across, up))

@@ -39,24 +39,24 @@ LABEL_LETTERS, MIN_LETTERS, MAX_LETTERS = (
     9,
     14,
     36,
-)  # letters: of a label there is room for, to which it shrinks and grows
+)  # letters: width of a label, and its minimum and maximum
 CHANGES = ("Key", "Status", "Label", "StartAtLayer", "StartAtBead")
 KINDS = (TOOLPATH, JOINT_PATH, PROGRAM, "cell")
 
 
 class PlotsDock(Follower):
-    """One for all documents; it follows what was selected last, and changes of it."""
+    """One dock for all documents; it follows the last selection and its changes."""
 
     def __init__(self) -> None:
         self.target: tuple[str, str] | None = (
             None  # names of document and object that were asked for
         )
-        self.source: tuple[Any, Source] | None = None  # its key, and what was made from it
+        self.source: tuple[Any, Source] | None = None  # its key and its data
         self.picture: Picture | None = None
         self.metric: Picture | None = None  # the same in mm, for values in a file
-        self.shown: tuple[Any, ...] = ()  # object, picture and axis that are looked at
+        self.shown: tuple[Any, ...] = ()  # object, picture and axis of the display
         self.layers_of: tuple[str, str] | None = (
-            None  # whose layers are chosen: names are those of other documents too
+            None  # object of the chosen layers; names repeat in other documents
         )
         self.dock = dock_area.dock(NAME, dock_area.BELOW, high=HEIGHT)
         self.canvas = Canvas()
@@ -109,7 +109,7 @@ class PlotsDock(Follower):
         self.dock.hold(tr("Plots"), Scrolled(form))
 
     def _speak(self) -> None:
-        """The window has another language: what is chosen stays."""
+        """Rebuild in the window's new language; choices stay."""
         indices = [(name, getattr(self, name).currentIndex()) for name in ("which", "over")]
         layers = [
             (name, getattr(self, name).maximum(), getattr(self, name).value())
@@ -210,7 +210,7 @@ class PlotsDock(Follower):
         column.addWidget(self.scroll, 1)
         column.addLayout(below)
 
-    # ---- what is looked at
+    # ---- selection
 
     def open(self, obj: Any = None) -> None:
         """Show the dock, and in it the pictures of an object."""
@@ -220,7 +220,7 @@ class PlotsDock(Follower):
         self.fill()
 
     def object(self) -> Any:
-        """What is looked at: what was asked for, else the latest in the document; None when there is nothing (any more)."""
+        """The selected object, else the latest of the document; None without any."""
         if self.target is not None and self.target[0] in App.listDocuments():
             found = App.getDocument(self.target[0]).getObject(self.target[1])
             if plottable(found):
@@ -228,7 +228,7 @@ class PlotsDock(Follower):
         candidates = _plottable()
         return (
             max(candidates, key=lambda obj: kind_of(obj) == JOINT_PATH) if candidates else None
-        )  # asked anew: a later stage may come
+        )  # not stored: a later stage may follow
 
     def _chosen(self, index: int) -> None:
         candidates = _plottable()
@@ -276,11 +276,16 @@ class PlotsDock(Follower):
             source = cached or make()
             return source, catalogue.picture(name, source, over, layers)
 
-        identity = (*_identity(obj), name, over, layers)  # told now: the object may be gone then
+        identity = (
+            *_identity(obj),
+            name,
+            over,
+            layers,
+        )  # read now: the object may be deleted later
         self.building.start(work, lambda worker: self._built(worker, key, identity))
 
     def _layers(self, obj: Any) -> None:
-        """The layers there are to choose from; all of them of another object."""
+        """Set the range of layers; select all layers of a new object."""
         toolpath = made_from(obj)[min(1, len(made_from(obj)) - 1)]
         last_layer = max(len(toolpath.Proxy.value(toolpath).layers) - 1, 0)
         is_new, self.layers_of = self.layers_of != _identity(obj), _identity(obj)

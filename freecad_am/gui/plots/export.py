@@ -21,8 +21,8 @@ ENDINGS = (*KINDS, CSV)
 def content(
     picture: Picture, ending: str, size: tuple[int, int], across: Ranges, up: Ranges
 ) -> bytes:
-    """The file for an ending, one of ENDINGS: an image on white of the part that is looked at (`draw.Window`), or all values
-    of the picture."""
+    """The file for an ending, one of ENDINGS: an image on white of the visible range
+    (`draw.Window`), or all values of the picture."""
     if ending == CSV:
         return "".join(values(picture)).encode()
     return image(

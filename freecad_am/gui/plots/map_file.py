@@ -38,9 +38,10 @@ def save(board: Any, branch: int, canvas: Any, obj: Any) -> None:
 
 
 def values(board: Any, picture: Picture) -> Iterator[str]:
-    """A header and a row for each cell, column by column, in the units of machine files; '' where a cell is out of reach.
+    """A header and a row for each cell, column by column, in the units of machine files; '' for a
+    cell out of reach.
 
-    `state`: what stands against a cell, '' where nothing does.
+    `state`: the objection to a cell, '' without one.
     """
     names, across = _across(board)
     up_name, up = _up(board)
@@ -75,7 +76,7 @@ def values(board: Any, picture: Picture) -> Iterator[str]:
 
 
 def _across(board: Any) -> tuple[list[str], list[list[str]]]:
-    """Names and texts (C,) of what goes across."""
+    """Return names and texts (C,) of the columns."""
     labels = [
         [str(number) for number in board.place(column)] for column in range(len(board.columns))
     ]
@@ -88,7 +89,7 @@ def _across(board: Any) -> tuple[list[str], list[list[str]]]:
 
 
 def _up(board: Any) -> tuple[str, Array]:
-    """Name and values (R,) of what goes upwards."""
+    """Return name and values (R,) of the rows."""
     if board.pair is not None:
         return _axis(board, board.pair.up, board.pair.values)
     assert board.map is not None

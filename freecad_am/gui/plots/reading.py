@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is told of the place of a picture that is pointed at, and the ranges that zooming and moving lead to."""
+"""Text for the pointed position of a picture, and ranges after zooming and moving."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from ...plots.chart import DOTS, OUTLINE, STEP, Chart, Curve
 from ..texts.in_language import tr
 
 Range = tuple[float, float]
-MIN_SHARE = 1e-6  # of all there is
+MIN_SHARE = 1e-6  # of the full range
 
 
 def text_at(chart: Chart, x: float) -> str:
-    """The place x and the values there: of curves those of the point that is nearest, of steps that of the way."""
+    """Return x and the values at x: of the nearest point of a curve, of the segment of a step
+    curve."""
     texts = [f"{chart.x.name} {x:.5g} {chart.x.unit}".rstrip()]
     if chart.bars is not None:
         bin = int(np.searchsorted(chart.bars.edges, x, side="right")) - 1
@@ -40,7 +41,8 @@ def _nearest(curve: Curve, x: float) -> int:
 
 
 def zoomed(limits: Range, factor: float, share: float, full: Range | None) -> Range:
-    """A range 1 / factor as wide, the place at `share` of it staying where it is; no wider than `most`."""
+    """Return a range 1 / factor as wide, with the position at `share` fixed; no wider than
+    `full`."""
     low, high = limits
     width = (high - low) / factor
     if full is not None:
@@ -50,7 +52,7 @@ def zoomed(limits: Range, factor: float, share: float, full: Range | None) -> Ra
 
 
 def shift_range(limits: Range, by: float, full: Range | None) -> Range:
-    """A range moved, as far as `most` goes."""
+    """A range moved, as far as `full` goes."""
     low, high = limits[0] + by, limits[1] + by
     if full is not None:
         back = max(full[0] - low, 0.0) - max(high - full[1], 0.0)

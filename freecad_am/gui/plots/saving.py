@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Asks where a picture is to be saved, and writes it beside the window."""
+"""Ask for the file of a picture and write it in the background."""
 
 from __future__ import annotations
 
@@ -49,7 +49,8 @@ def kind_of(obj: Any) -> str:
 
 
 def made_from(obj: Any) -> list[Any]:
-    """The objects that pictures of a toolpath, joint path or program come from, None where one is missing."""
+    """Return the source objects of pictures of a toolpath, joint path or program, None for missing
+    ones."""
     if kind_of(obj) == PROGRAM:
         return [obj.JointPath] if kind_of(obj.JointPath) != JOINT_PATH else made_from(obj.JointPath)
     if kind_of(obj) == JOINT_PATH:
@@ -109,7 +110,8 @@ def maker_of(obj: Any) -> Callable[[], Source]:
 
 
 def _filled(feature: Any) -> tuple[SolidsOnHub | None, float]:
-    """What is filled in plane layers, None for other features, and the share of a layer height at which layers are cut."""
+    """Return the solids in plane layers, None for other features, and the share of a layer height
+    at which layers are cut."""
     stage = stage_of(feature)
     if not isinstance(stage, SolidFeature) or not feature.Key:
         return None, 0.5
@@ -135,8 +137,8 @@ def save(picture: Picture, metric: Picture, obj: Any, canvas: Canvas) -> None:
 
 
 def ask(title: str, obj: Any, name: str, content: Callable[[str], bytes]) -> None:
-    """Ask for a file, and write to it, beside the window, what `content` gives for its ending, png, svg, pdf or csv. Say why
-    not where the object that it shows is out of date."""
+    """Ask for a file and write in the background what `content` gives for its ending, png, svg, pdf
+    or csv. Show an error if the object is out of date."""
     stale = next((stage for stage in made_from(obj) if stage is not None and is_stale(stage)), None)
     if stale is not None:
         text = tr("{} is out of date; recompute the document, then save.").format(stale.Label)

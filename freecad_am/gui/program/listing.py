@@ -11,7 +11,7 @@ FAINT = 70  # of 255, the ground of a marked line
 
 
 def listing(name: str) -> Any:
-    """A field of that name for lines that are shown as they stand, in letters of one width."""
+    """Return a read-only field of that name for unwrapped lines in a monospaced font."""
     text = QtGui.QPlainTextEdit()
     text.setObjectName(name)
     text.setReadOnly(True)
@@ -23,7 +23,7 @@ def listing(name: str) -> Any:
 
 
 def mark(text: Any, line: int, focus: bool = False) -> None:
-    """Mark a line, from 0; `there`: and put the cursor into it, so that it is seen."""
+    """Mark a line, from 0; `focus`: also move the cursor into it and scroll to it."""
     cursor = QtGui.QTextCursor(text.document().findBlockByNumber(line))
     if focus:
         text.setTextCursor(cursor)

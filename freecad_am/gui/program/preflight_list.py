@@ -36,7 +36,7 @@ class PreflightList:
         self.widget.itemClicked.connect(lambda item: _clicked(item, go))
 
     def show(self, promises: Sequence[Promise]) -> None:
-        """Show these, in place of those before."""
+        """Replace the list by these promises."""
         self.widget.clear()
         for promise in promises:
             self.widget.addItem(_row(promise))
@@ -55,7 +55,8 @@ def summary(promises: Sequence[Promise]) -> str:
 
 
 def _row(promise: Promise) -> Any:
-    """Two lines: what is promised, and how far it is kept and where. How it was checked is the tip."""
+    """Return an item of two lines: the promise; its figure and position. The tooltip explains the
+    check."""
     mark, colour = {True: ("✓", GOOD), False: ("✗", INVALID), None: ("?", FAINT)}[promise.ok]
     further = [translated(promise.figure), "" if promise.place is None else _where(promise.place)]
     item = QtGui.QListWidgetItem(
@@ -76,7 +77,7 @@ def _row(promise: Promise) -> Any:
 
 
 def _where(position: Place) -> str:
-    """The place as findings tell it."""
+    """Format the position as in issues."""
     return translated(Issue(NOTE, "", "", *position).where)
 
 

@@ -42,7 +42,7 @@ class Located:
 
     @classmethod
     def of(cls, post: str, files: dict[str, bytes], motion: Motion) -> Located | None:
-        """Of a program as it runs; None where its lines are not one for each move."""
+        """Locate the lines of a program; None if it does not have one line per move."""
         lines, rows = lines_of(post, files), np.flatnonzero(motion.moves)
         return cls(motion, rows, lines) if len(lines) == len(rows) else None
 
@@ -52,8 +52,8 @@ class Located:
         return None if move is None else int(self.rows[move])
 
     def line_at(self, layer: int, bead: int, position: Array) -> tuple[str, int] | None:
-        """File and line, from 0, that lay the point of a bead that is nearest to a position (3,), mm; None where the program
-        has none of it."""
+        """Return file and line, from 0, of the point of a bead nearest to a position (3,), mm; None
+        if the program does not have the bead."""
         motion, rows = self.motion, self.rows
         indices = np.flatnonzero(
             motion.deposit[rows] & (motion.layer[rows] == layer) & (motion.bead[rows] == bead)
@@ -72,7 +72,7 @@ class Located:
         return tr("{} point {}").format(text, int(motion.point[row]))
 
     def show(self, path: Any, row: int) -> None:
-        """Show the joint path in the 3D view up to a row; of a rapid, up to the bead that it leads to."""
+        """Show the joint path in the 3D view up to a row; for a rapid, up to its next bead."""
         motion, drawn = self.motion, path.ViewObject.Proxy.rows
         layer, bead = int(motion.layer[row]), int(motion.bead[row])
         beads = [] if drawn is None else np.flatnonzero(drawn.layers == layer)
@@ -111,7 +111,7 @@ class ProgramWindow:
         self.place = QtGui.QLabel()
         self.place.setObjectName("place")
         self.located: Located | None = None
-        self.filling = False  # while the cursor is moved by what is shown, not by a click
+        self.filling = False  # while the program moves the cursor, not the user
         self.export_button = _button(
             tr("Export…"),
             "export",
@@ -162,7 +162,7 @@ class ProgramWindow:
         except (
             AmError,
             AttributeError,
-        ):  # its joint path is gone, or undo has not yet brought all of it back
+        ):  # its joint path is deleted, or undo has not yet restored it completely
             self.sums.setText("")
         set_role(self.state, PLAIN if fits else INVALID)
         set_role(self.text, PLAIN if fits else FAINT)
@@ -221,7 +221,7 @@ class ProgramWindow:
             self.place.setText(tr("Line {}: {}").format(line + 1, self.located.text_at(row)))
 
     def _refused(self) -> str:
-        """Why there is nothing to export, '' where there is."""
+        """Return the reason for a missing export, '' if possible."""
         refused = refusal(self.obj)
         return "" if refused is None else translated_error(refused)
 
@@ -242,7 +242,8 @@ def _button(text: str, name: str, help: str, act: Any) -> Any:
 
 
 def _clicked(view: Any, row: int) -> None:
-    """A point of a path was clicked in the 3D view: programs of it that are open mark its line."""
+    """A point of a path was clicked in the 3D view: open programs of the path mark the line of the
+    point."""
     rows = view.rows
     if rows is None or row >= len(rows):
         return
@@ -280,7 +281,7 @@ def _of(obj: Any) -> ProgramWindow | None:
 
 
 def refusal(obj: Any) -> AmError | None:
-    """Why a program cannot be exported, None where it can."""
+    """Return the error that prevents the export of a program, or None."""
     try:
         files_of(obj)
     except AmError as error:
@@ -289,8 +290,8 @@ def refusal(obj: Any) -> AmError | None:
 
 
 def export(obj: Any, window: Any = None) -> str:
-    """Ask for a folder, first the one of last time or the document's, and write the files; says what came of it, and why
-    there is nothing to write before a folder is asked for."""
+    """Ask for a folder (default: the last one or the document's) and write the files; return the
+    result as text. Without anything to write, return the reason before asking."""
     if (refused := refusal(obj)) is not None:
         App.Console.PrintError(error_line(refused))
         Gui.getMainWindow().statusBar().showMessage(translated_error(refused), 5000)

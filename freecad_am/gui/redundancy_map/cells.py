@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Has the cells of a map computed beside the window, and shows them: at first without the robot's links, then with these as
-they are known roughly, then in every row."""
+"""Compute the cells of a map in the background and show them: first without the robot's links, then
+with a coarse link check, then with every row checked."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..background.worker import Background, Worker
 from .drawn.board import Board
 from .drawn.painting import Canvas, painted
 
-ROUGH_STRIDE, FINE_STRIDE = 6, 1  # one of so many rows is looked at
+ROUGH_STRIDE, FINE_STRIDE = 6, 1  # row stride of the link checks
 
 
 class Cells:
@@ -24,7 +24,7 @@ class Cells:
         self.background = Background(form)
 
     def cancel(self) -> None:
-        """End what is being computed."""
+        """Cancel the computation."""
         self.background.cancel()
 
     def show(self, board: Board, branch: int, kind: str) -> None:
@@ -45,7 +45,7 @@ class Cells:
         self.background.start(lambda: board.compute(branch), take)
 
     def _go_on(self) -> None:
-        """Look at the links of the robot, until every row was looked at."""
+        """Check the robot's links until every row is checked."""
         board, branch = self.board, self.branch
         previous = board.looked.get(branch)
         if previous == FINE_STRIDE:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Plans all methods beside the window, and tells how far it is."""
+"""Plan all methods in the background and show the progress."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ class Comparison:
         return self.background.worker is not None
 
     def start(self, source: Source, task: Task) -> None:
-        """Plan the beads of the toolpath, from their own seams, by all methods; with external axes those of the plan, which
-        tell where these axes are."""
+        """Plan the beads of the toolpath, from their own seams, by all methods; with external axes,
+        the beads of the plan, which hold their positions."""
         beads = (
             source.beads if source.cell.external else tuple(bead for _, _, bead in source.toolpath)
         )

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the curve that is worked on means: told at once of some of its points, and of all of them a little later."""
+"""Figures of the edited curve: at once for a sample of its points, a little later for all
+points."""
 
 from __future__ import annotations
 
@@ -133,7 +134,7 @@ MIN_WIDTH = 190  # pixels of the controls
 
 
 class Form(QtGui.QWidget):
-    """The widgets at their places; whoever makes it connects them."""
+    """The widgets of the map; the caller connects their signals."""
 
     def __init__(self, canvas: Any, controls: Any, figures: Any) -> None:
         super().__init__()
@@ -195,7 +196,7 @@ class Form(QtGui.QWidget):
         row.addWidget(Scrolled(beside), 4)
 
     def tell(self, text: str, wrong: bool = False) -> None:
-        """Say how the curve stands, or what goes on."""
+        """Show the state of the curve, or the progress."""
         self.verdict.setText(text)
         set_role(self.verdict, INVALID if wrong else PLAIN)
 
@@ -288,13 +289,13 @@ def joint_ranges(joints: Array, station: Station) -> list[tuple[str, bool]]:
 
 
 def _units(machine: Machine) -> list[str]:
-    """What stands behind the values of the axes."""
+    """The units of the axes."""
     return [" mm" if unit == "mm" else "°" for unit in machine.units]
 
 
 class Consequences:
-    """`status` says how the joint path itself stands, and whether that is wrong. followed: what the curve asks of the
-    machine at the points that are looked at while it is dragged."""
+    """`status` returns the state of the joint path, and whether it is an error. followed: the curve
+    evaluated at the sample points of a drag."""
 
     followed: Followed
 
@@ -303,13 +304,13 @@ class Consequences:
         self.background = Background(owner)
 
     def take(self, draft: Draft) -> None:
-        """Look at another draft, which is as it was planned."""
+        """Switch to another draft, which equals its plan."""
         self.draft = draft
         self.planned = rotation_curve.sums(draft.follow(draft.live.planned))
         self.planned_exact: Sums | None = None
 
     def planned_sums(self) -> Sums:
-        """The figures of what was planned, of all points where they are known."""
+        """Return the figures of the plan, of all points if computed."""
         return self.planned_exact or self.planned
 
     def cancel(self) -> None:
@@ -317,14 +318,14 @@ class Consequences:
         self.background.cancel()
 
     def now(self) -> None:
-        """Tell at once what the curve as it is now means."""
+        """Show the figures of the edited curve at once."""
         draft = self.draft
         self.followed = draft.evaluate()
         self._show_sums(rotation_curve.sums(self.followed), self.planned, draft.thinned)
         self.form.show_joints(joint_ranges(self.followed.joints, draft.source.cell))
 
     def exactly(self) -> None:
-        """The same of all points, where only some have been looked at."""
+        """Compute the figures at all points if the draft is sampled."""
         draft, planned = self.draft, self.planned_exact
         if not draft.thinned:
             return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The fields beside the map: what it shows, and the curve by its numbers."""
+"""The fields next to the map: its display, and the numbers of the curve."""
 
 from __future__ import annotations
 
@@ -145,7 +145,7 @@ class Controls(QtGui.QWidget):
             up,
         )
 
-    # ---- what is shown
+    # ---- display
 
     def fill(self, board: Board, draft: Draft, bead: int) -> None:
         """Show a state."""

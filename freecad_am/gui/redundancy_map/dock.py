@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The dock of a map of the free rotation: cells, curves, consequences; the curve can be made that of the joint path."""
+"""The dock of a map of the free rotation: cells, curves, figures; the edited curve can replace the
+curve of the joint path."""
 
 from __future__ import annotations
 
@@ -83,7 +84,7 @@ class RedundancyMapDock:
     """Shows the map of one joint path until it is closed, or until the joint path goes."""
 
     def __init__(self, obj: Any, closed: Callable[[RedundancyMapDock], None]) -> None:
-        """closed: is told when it is."""
+        """closed: called when the dock closes."""
         self.obj, self.closed, self.gone = obj, closed, False
         self.dock = dock_area.dock(NAME, dock_area.BELOW, WIDTH_SHARE, HEIGHT)
         self.holder = QtGui.QStackedWidget()
@@ -132,7 +133,7 @@ class RedundancyMapDock:
             old_form.deleteLater()
 
     def _speak(self) -> None:
-        """The window has another language: what is chosen stays."""
+        """Rebuild in the window's new language; choices stay."""
         old_controls, hidden = (
             self.controls,
             [name for name in self.figures.rows if not self.figures.shows(name)],
@@ -177,7 +178,7 @@ class RedundancyMapDock:
         self._renew_cells()
 
     def renew(self) -> None:
-        """Show what the joint path is now; close where there is nothing to show any more."""
+        """Show the current joint path; close if it has no result any more."""
         if self.gone:
             return
         try:
@@ -251,13 +252,13 @@ class RedundancyMapDock:
     # ---- consequences
 
     def _changed(self) -> None:
-        """Tell at once what the curve as it is now means."""
+        """Show the figures of the edited curve at once."""
         self.consequences.now()
         self._fill_controls()
         self._show_curves()
 
     def _changed_for_good(self) -> None:
-        """And of all points a little later."""
+        """Show the figures of all points a little later."""
         self._changed()
         self.consequences.exactly()
 
@@ -363,7 +364,7 @@ class RedundancyMapDock:
         self.closed(self)
 
     def end(self, why: str) -> None:
-        """End it by itself, and say why."""
+        """Close the dock and show the reason."""
         if not self.gone:
             self.close()
             Gui.getMainWindow().statusBar().showMessage(

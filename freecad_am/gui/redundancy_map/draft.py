@@ -48,9 +48,9 @@ from ..texts.in_language import tr, translated
 
 @dataclass(frozen=True)
 class Source:
-    """All that is read of the document. objects: names of those it was read from. beads: of the toolpath, with their places
-    (layer, index), from the seams that the plan moved them to. width: mm of beads that tell none. shapes: meshes that a user
-    gave the links of the robot."""
+    """Inputs read from the document. objects: names of the objects read. beads: of the toolpath,
+    with their keys (layer, index), starting at the seams of the plan. width: mm of beads without a
+    width. shapes: meshes of the robot's links from the user."""
 
     document: str
     name: str
@@ -72,7 +72,8 @@ class Source:
 
     @cached_property
     def arm(self) -> ArmContact:
-        """The robot with what is around it and, in the order of the beads, the deposit; made in the background."""
+        """The robot with its obstacles and the deposit in the order of the beads; built in the
+        background."""
         deposited = Beads.of(self.beads, self.width, self.toolpath.layer_height).solid(LINK_GRAIN)
         cylinders = external_links.robot_cylinders(self.cell.robot.chain, self.shapes)
         return ArmContact(self.cell, cylinders, self.toolpath.surroundings, deposited)
@@ -88,7 +89,7 @@ class Source:
 
 
 def source_of(obj: Any) -> Source:
-    """What there is about a joint path. Raises InputError where there is no map of it, saying what to do."""
+    """Read the inputs for a joint path. Raises InputError with the remedy if it has no map."""
     stage = stage_of(obj)
     if stage is None or stage.kind != "joint path":
         raise InputError("NO_MAP", getattr(obj, "Label", "?"), "it is not a joint path; select one")
@@ -117,7 +118,8 @@ def source_of(obj: Any) -> Source:
 
 
 def status_of(obj: Any) -> tuple[str, bool]:
-    """How a joint path itself stands, in words of the window, and whether that is wrong; '' of one that is gone."""
+    """Return the state of a joint path in the window's language, and whether it is an error; '' for
+    a deleted one."""
     with contextlib.suppress(ReferenceError, RuntimeError):
         message = first_message(issues_of(obj))
         wrong, status = obj.Status != UP_TO_DATE, translated(obj.Status)
@@ -134,9 +136,9 @@ def _places(toolpath: Toolpath, planned: JointPath, cell: Cell) -> tuple[tuple[i
 
 
 def _as_run(toolpath: Toolpath, planned: JointPath, cell: Cell) -> tuple[Bead, ...]:
-    """The beads of a toolpath from the seams of the plan: it may start a closed one elsewhere, where an axis then has the
-    room for it that it has not from its own seam. Layers with beads that it runs in pieces are as they are. With external
-    axes they are those of the plan itself, which tell where these axes are."""
+    """Return the beads of a toolpath from the seams of the plan, which may move the seam of a
+    closed bead to keep an axis within its limits. Layers with split beads stay unchanged. With
+    external axes: the beads of the plan, which hold their positions."""
     if cell.external is not None:
         return tuple(path.bead for path in planned.beads)
     run = {(path.layer, path.index): path.bead for path in planned.beads}
@@ -160,8 +162,8 @@ LABELS = 6
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """cells: all pairs, row after row. values: (R,) rad or mm of the axis `up`, which is planned `here`. phi: the rotation
-    that is planned, rad. count: of columns."""
+    """cells: all pairs, row after row. values: (R,) rad or mm of the axis `up`, which is planned
+    `here`. phi: the planned rotation, rad. count: number of columns."""
 
     source: Source
     up: int
@@ -199,12 +201,12 @@ class Pair:
 
     @property
     def name(self) -> str:
-        """Of the axis that goes upwards."""
+        """Name of the vertical axis."""
         return self.source.cell.machine.axes[self.source.cell.robot.chain.axes + self.up]
 
     @property
     def labels(self) -> list[tuple[float, str]]:
-        """Heights and the values written beside them, deg or mm."""
+        """Heights and their labels, deg or mm."""
         machine = self.source.cell.machine
         unit = float(machine.unit_values[self.source.cell.robot.chain.axes + self.up])
         sign = " mm" if machine.chain.sliding[self.source.cell.robot.chain.axes + self.up] else "°"
@@ -225,7 +227,8 @@ class Pair:
 def pair_of(
     source: Source, position: tuple[int, int], axes: tuple[int, int], offsets: Array
 ) -> Pair:
-    """At a point (bead, point): values (C,) of the first of two external axes against those of the second over its range."""
+    """Build the map at a point (bead, point): values (C,) of the first of two external axes against
+    the second over its range."""
     bead, point = position
     values = map.span(source.task(source.branch), source.beads[bead], point, axes[1], ROWS)
     cells = map.across_two_axes(source.beads, source.cell, position, axes, (offsets, values))
@@ -242,14 +245,14 @@ def pair_of(
 
 
 POLYNOMIALS, CONSTANT = "polynomials", "constant"
-LIVE = 4000  # points that are looked at while the curve is dragged, about
+LIVE = 4000  # approximate number of sample points during a drag
 TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class Sampled:
-    """Points of all beads at which curves are followed. kept: of each bead. lasts: (T,) s. planned: (T,) rotation of the
-    plan. row: (T,) numbers of the points among all."""
+    """Points of all beads at which curves are evaluated. kept: indices per bead. lasts: (T,) s.
+    planned: (T,) rotation of the plan. row: (T,) numbers of the points among all."""
 
     points: Points
     kept: tuple[Integers, ...]
@@ -259,7 +262,8 @@ class Sampled:
 
 
 class Draft:
-    """Starts as what was planned. coefficients: (B, degree + 1) of the variable of the job, the constant first, rad."""
+    """The edited curve, which starts as the planned one. coefficients: (B, degree + 1) of the
+    variable of the job, the constant first, rad."""
 
     def __init__(self, source: Source) -> None:
         self.source, self.branch = source, source.branch
@@ -271,7 +275,7 @@ class Draft:
 
     @cached_property
     def full(self) -> Sampled:
-        """All points; making them takes time where there are many."""
+        """All points; slow for many points."""
         return self._sampled(int(self.starts[-1])) if self.thinned else self.live
 
     def copied(self) -> Draft:
@@ -289,7 +293,7 @@ class Draft:
         self.thresholds.update(duplicate.thresholds)
 
     def reset(self) -> None:
-        """Back to what was planned."""
+        """Reset to the plan."""
         source = self.source
         self.branch = source.branch
         by_place = {(path.layer, path.index): path.coefficients for path in source.planned.beads}
@@ -318,7 +322,7 @@ class Draft:
 
     @property
     def degree(self) -> int:
-        """Of the polynomials."""
+        """Degree of the polynomials."""
         return int(self.coefficients.shape[1]) - 1
 
     @property
@@ -337,7 +341,7 @@ class Draft:
 
     @property
     def edited(self) -> bool:
-        """Whether it is another curve than that of the plan."""
+        """Whether the curve differs from the plan."""
         method = self.source.planned.method
         if self.branch != self.source.branch:
             return True
@@ -359,12 +363,12 @@ class Draft:
         return task.rotation(points, value)[0]
 
     def evaluate(self, live: bool = True) -> Followed:
-        """What the curve asks of the machine."""
+        """Evaluate the curve on the machine."""
         sampled = self.live if live else self.full
         return self.follow(self.phi(sampled.points, sampled.points.bead), live)
 
     def follow(self, phi: Array, live: bool = True) -> Followed:
-        """What rotations at the points looked at ask of the machine, on the branch of the curve."""
+        """Evaluate rotations at the sample points on the branch of the curve."""
         sampled, task = self.live if live else self.full, self.source.task(self.branch)
         key = self.branch, live and self.thinned
         if key not in self.thresholds:
@@ -419,7 +423,8 @@ class Draft:
             self.coefficients[k] += by * changes[key]
 
     def set_degree(self, degree: int) -> None:
-        """Polynomials of another degree: of a higher one they are as they were, of a lower one as near as they can be."""
+        """Change the degree of the polynomials: a higher degree keeps the curve, a lower one
+        approximates it."""
         if degree > self.degree:
             zeros = np.zeros((len(self.coefficients), degree - self.degree))
             self.coefficients = np.concatenate([self.coefficients, zeros], axis=1)

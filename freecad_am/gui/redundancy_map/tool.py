@@ -19,7 +19,8 @@ _open: list[RedundancyMapDock] = []  # Python must keep it as long as it is open
 
 
 def show(obj: Any) -> RedundancyMapDock:
-    """Open the map of a joint path, in place of the one that is open. Raises InputError where there is none."""
+    """Open the map of a joint path and close the open one. Raises InputError if the path has no
+    map."""
     source_of(obj)
     while _open:
         _open[0].close()
@@ -28,8 +29,8 @@ def show(obj: Any) -> RedundancyMapDock:
 
 
 def redundancy_map() -> None:
-    """Open the map of the selected joint path, or that of the program or job that is selected; where nothing of a job is,
-    of the last one with a result."""
+    """Open the map of the selected joint path, program or job; without such a selection, of the
+    last joint path with a result."""
     selected = [path for path in map(_joint_path, job_selection()) if path is not None]
     if not selected and job_named():
         _say(

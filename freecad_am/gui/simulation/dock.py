@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The dock of a simulation: plays, tells, and ends when what it plays changes or goes."""
+"""The dock of a simulation: it plays a run and ends when an object of the run changes or is
+deleted."""
 
 from __future__ import annotations
 
@@ -28,7 +29,8 @@ MIN_WIDTH = 350  # pixels, at least
 
 
 class Simulation:
-    """Plays a run in a 3D view until it is closed, or until something it plays is gone or computed anew."""
+    """Plays a run in a 3D view until the dock closes or an object of the run is deleted or
+    recomputed."""
 
     def __init__(self, run: Run, view: Any) -> None:
         self.run, self.player = run, Player(run)
@@ -88,7 +90,7 @@ class Simulation:
             "next_finding": self._next_finding,
         }
         self.fields = Fields(self.run, self.player, self._slid, acts)
-        self.scroll.setWidget(self.fields)  # what was there goes
+        self.scroll.setWidget(self.fields)  # remove the old widget
         self._reserve_width()
         self.fields.tell_finding(None)
 
@@ -138,10 +140,10 @@ class Simulation:
     def _fit(self) -> None:
         if self.scene is not None:
             with contextlib.suppress(RuntimeError, ReferenceError):  # the view was closed
-                self._reserve_width()  # the fields are wider with what is told by now
+                self._reserve_width()  # the current texts may be wider
                 self.scene.view.fitAll()
 
-    # ---- what is shown
+    # ---- display
 
     def show(self) -> None:
         """Show the present moment."""
@@ -188,7 +190,7 @@ class Simulation:
             _open.remove(self)
 
     def end(self, why: str, document_goes: bool = False) -> None:
-        """End it by itself, and say why."""
+        """Close the dock and show the reason."""
         if self.scene is not None:
             self.close(document_goes)
             Gui.getMainWindow().statusBar().showMessage(

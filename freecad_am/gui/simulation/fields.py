@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The fields of a simulation: its time, its buttons, and what is told of the moment, of findings and of the whole job."""
+"""The fields of a simulation: its time, its buttons, and the texts of the moment, of issues and of
+the whole job."""
 
 from __future__ import annotations
 
@@ -50,7 +51,7 @@ class JointBars(QtGui.QWidget):
         self.update()
 
     def texts(self, axis: int) -> tuple[str, str, str]:
-        """Value, margin and share of speed of an axis as they are told."""
+        """Return value, margin and share of speed of an axis as texts."""
         unit = "°" if self.units[axis] == "deg" else " mm"
         if not np.isfinite(self.values[axis]):
             return "–", "–", "–"
@@ -247,11 +248,11 @@ class Fields(QtGui.QWidget):
         return grid
 
     def reserve_width(self) -> None:
-        """As wide as what is told becomes, in the language and the units of now."""
+        """Set widths for the widest texts in the current language and units."""
         for name, texts in wording.widest(self.run).items():
             self.labels[name].reserve_width(texts)
 
-    # ---- what is shown
+    # ---- display
 
     def mark_play(self) -> None:
         """The button that plays pauses while it does."""
@@ -259,13 +260,13 @@ class Fields(QtGui.QWidget):
         self.buttons["play"].setIcon(icons.player_icon(mark, colours.ink()))
 
     def show_icons(self) -> None:
-        """The icons of all buttons, in the colour that texts have in the present theme."""
+        """Set the icons of all buttons in the theme's text colour."""
         for name, button in self.buttons.items():
             button.setIcon(icons.player_icon(name, colours.ink()))
         self.mark_play()
 
     def tell(self, moment: Moment) -> None:
-        """Tell of a moment."""
+        """Show a moment."""
         self.filling = True
         self.slider.setValue(round(self.player.time / max(self.run.times.total, 1e-9) * STEPS))
         self.filling = False
@@ -287,7 +288,7 @@ class Fields(QtGui.QWidget):
             set_role(label, PLAIN if good else INVALID)
 
     def tell_finding(self, finding: Any) -> None:
-        """Tell of a finding, or how many there are."""
+        """Show an issue, or the number of issues."""
         count = len(self.run.watch.findings)
         if finding is None:
             text = wording.count_of_findings(count) if count else wording.nothing(self.run)

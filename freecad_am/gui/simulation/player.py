@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where a simulation stands, and what is to be told there. Knows neither window nor view."""
+"""Position of a simulation and its data at that time. Uses neither window nor view."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ from ...objects.staleness import STALE, UP_TO_DATE
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """All of a simulation but its pictures. title: what is played. objects: names of the objects it was made from. stale:
-    whether these have changed since. deposit: the predicted deposit, as an inspection of the toolpath has it; None if
-    there is none that fits."""
+    """Data of a simulation without its pictures. title: of the played object. objects: names of the
+    objects it was made from. stale: whether they have changed since. deposit: predicted by an
+    inspection of the toolpath; None without a current one."""
 
     document: str
     title: str
@@ -54,7 +54,8 @@ class Run:
 
 
 def run_of(obj: Any) -> Run:
-    """The run of a joint path or of a program. Raises InputError where there is nothing to play, saying what to do."""
+    """Return the run of a joint path or of a program. Raises InputError with the remedy if it has
+    nothing to play."""
     return prepared(obj)()
 
 
@@ -134,9 +135,10 @@ _TOLERANCE_S = 1e-9  # s
 
 @dataclass(frozen=True, eq=False)
 class Moment:
-    """One moment. state: of the timeline. row: the row told of. values, margins, ratios, bad: (axes,) joints and margins in
-    the units shown, shares of the largest speeds, which are wrong. links: (axes + 1,) links to be marked. asked, achieved:
-    mm/s. condition, threshold: NaN where not known. singular: whether it is below."""
+    """One moment. state: of the timeline. row: of the motion. values, margins, ratios, bad: (axes,)
+    joints and margins in display units, shares of the speed limits, violations. links: (axes + 1,)
+    links to be marked. asked, achieved: mm/s. condition, threshold: NaN where not known. singular:
+    whether condition is below threshold."""
 
     state: State
     row: int
@@ -188,7 +190,8 @@ class Player:
         self.go_to_row(int(np.clip(row, 0, len(arrive) - 1)))
 
     def step_layer(self, by: int) -> None:
-        """To the start of the next layer, or of this one, or of the one before when it is there."""
+        """Go to the start of the next layer; backwards: of this layer, or of the previous one if
+        already at the start."""
         starts = self.run.times.arrive[self.run.times.layer_rows]
         if by > 0:
             index = int(np.searchsorted(starts, self.time + _TOLERANCE_S, side="right"))
@@ -200,7 +203,8 @@ class Player:
         self.go_to_row(int(self.run.times.layer_rows[index]))
 
     def next_finding(self) -> Finding | None:
-        """To the next finding: after the one it was put on, else the first from here on; None when there are none."""
+        """Go to the next issue: after the current one, else the first from here on; None without
+        issues."""
         findings = self.run.watch.findings
         if not findings:
             return None
@@ -215,7 +219,7 @@ class Player:
         return findings[index]
 
     def moment(self) -> Moment:
-        """What there is to tell now."""
+        """Return the data of the current moment."""
         run = self.run
         state = run.times.state_at(self.time)
         row = int(state.row) if self.row is None else self.row

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The pictures of a simulation: everything of the document moves with the part, around it stand machine and nozzle.
+"""The pictures of a simulation: the whole document moves with the part, surrounded by machine and
+nozzle.
 
-The part is drawn where it is in the document when the machine is at rest. One node in front of the view's own moves all
-of the document; those of ours that the simulation draws itself are switched off meanwhile.
+The part is drawn where it is in the document when the machine is at rest. One node before the
+view's own nodes moves the whole document; the simulation hides the workbench objects that it draws
+itself.
 """
 
 from __future__ import annotations

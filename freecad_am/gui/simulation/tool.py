@@ -21,8 +21,8 @@ KINDS = ("program", "joint path")
 
 
 def simulate() -> None:
-    """Simulate the selected joint path or program, or that of the job that is selected; where nothing of a job is, the last
-    joint path of the document that has a result."""
+    """Simulate the selected joint path, program or job; without such a selection, the document's
+    last joint path with a result."""
     selected = [obj for obj in job_selection() if _kind(obj) in KINDS]
     if not selected and job_named():
         _say(
@@ -41,9 +41,9 @@ def simulate() -> None:
 
 
 def show(obj: Any) -> None:
-    """Simulate a joint path or a program in a 3D view of its document; what is wrong is said on the status bar.
+    """Simulate a joint path or a program in a 3D view of its document; errors go to the status bar.
 
-    What there is to tell of a long one is made beside the window, and can be cancelled.
+    A long run is prepared in the background and can be cancelled.
     """
     name = obj.Document.Name
     document = Gui.getDocument(obj.Document.Name)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a simulation tells, in words."""
+"""Texts of a simulation."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _HOUR = 3600.0  # s
 
 
 def clock(seconds: float) -> str:
-    """A time as minutes and seconds, with hours where there are any."""
+    """A time as minutes and seconds, with hours if any."""
     duration = max(0.0, seconds)
     minutes, remainder = divmod(duration, 60.0)
     hours, minutes = divmod(int(minutes), 60)
@@ -142,7 +142,7 @@ def _condition(condition: float, threshold: float) -> str:
 
 
 def times(run: Run, time: float) -> str:
-    """A time of the job, s, and the time of all of it."""
+    """Format a time of the job, s, and its total time."""
     return f"{clock(time)} / {clock(run.times.total)}"
 
 
@@ -150,7 +150,7 @@ def times(run: Run, time: float) -> str:
 
 
 def widest(run: Run) -> dict[str, tuple[str, ...]]:
-    """Texts as wide as those that are told of a run, by the field that tells them."""
+    """Return texts as wide as the texts of a run, by field."""
     motion, feed = run.motion, run.feed
     columns = (_wide(int(column.max())) for column in (motion.layer, motion.bead, motion.point))
     requested, slower = (
@@ -178,7 +178,7 @@ def _wide(number: int) -> int:
 
 
 def _widest_speed(speeds: Array) -> str:
-    """A text as wide as those of any of these speeds (n,) mm/s."""
+    """Return a text as wide as any of these speeds (n,) mm/s."""
     values = preferences.speed(1.0) * speeds[np.isfinite(speeds) & (speeds > 0.0)]
     if not len(values):
         return "–"

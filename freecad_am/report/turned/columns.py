@@ -25,16 +25,16 @@ from .. import units
 if TYPE_CHECKING:
     from freecad_am.plots.source import Source  # slow to import, and not every report has a page
 
-MOST_ROWS = 200_000  # of a page; of longer motions every second row is shown, every third ..
+MOST_ROWS = 200_000  # of a page; a longer motion is thinned to every second row, every third, ...
 STEPS = 65534  # of a column between its least and its largest value
-NONE = 65535  # stands for no value
+NONE = 65535  # code of a missing value
 _UNIT = 32767  # of a component of a direction
 _ROUND = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class Column:
-    """Values (k,) of the rows that are shown, NaN where there is none."""
+    """Values (k,) of the selected rows, NaN if missing."""
 
     name: str
     unit: str
@@ -43,8 +43,8 @@ class Column:
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """What a page shows of a motion. rows: (k,) of the motion, in order; times: (k,) s at which they are reached. columns:
-    what may colour the path; axes: the joints."""
+    """Rows of a motion that a page shows. rows: (k,) of the motion, in order; times: (k,) s of
+    arrival. columns: quantities for colours; axes: the joints."""
 
     motion: Motion
     rows: Integers
@@ -54,13 +54,14 @@ class Shown:
 
     @property
     def box(self) -> tuple[Array, float]:
-        """Least corner (3,) and step, mm, of the positions told in whole numbers."""
+        """Lower corner (3,) and step, mm, of the positions stored as integers."""
         positions = self.motion.position[self.rows]
         low = positions.min(axis=0)
         return low, max(float((positions.max(axis=0) - low).max()), 1e-6) / STEPS
 
     def blocks(self) -> list[list[int]]:
-        """Of each stretch of rapids and of each bead: its layer, bead, the first of the rows shown, whether it is laid."""
+        """Return layer, bead, first selected row and deposit flag of each bead and each run of
+        rapids."""
         motion, starts = self.motion, _starts(self.motion)
         first_rows = np.searchsorted(self.rows, starts)
         table = np.column_stack(
@@ -81,8 +82,8 @@ class Shown:
         }
 
     def row_of(self, layer: int | None, bead: int | None, point: int | None) -> int | None:
-        """The number of the row shown at a place, or last before it; None where there is no such bead. Without a bead the
-        first one of the layer, without a point the first one of the bead."""
+        """Return the selected row at a position or the last before it, None for an unknown bead.
+        Without a bead: the first bead of the layer; without a point: the first of the bead."""
         if layer is None:
             return None
         if bead is None:
@@ -94,7 +95,7 @@ class Shown:
 
 
 def select_rows(source: Source, labels: Sequence[str] = (), units: Sequence[str] = ()) -> Shown:
-    """What a page shows of a job. labels, units: of the axes, deg or mm."""
+    """Select the rows of a job for a page. labels, units: of the axes, deg or mm."""
     motion = source.motion
     rows = _thinned(motion)
     joints = motion.joints[rows] if labels else np.zeros((len(rows), 0))
@@ -107,7 +108,7 @@ def select_rows(source: Source, labels: Sequence[str] = (), units: Sequence[str]
 
 
 def _columns(source: Source) -> list[Column]:
-    """What may colour the path, all its rows (n,)."""
+    """Return the quantities for colours, of all rows (n,)."""
     motion, cell = source.motion, source.cell
     upright = np.degrees(np.arccos(np.clip(motion.tool @ source.toolpath.frame[:3, 2], -1.0, 1.0)))
     columns = [
@@ -172,7 +173,7 @@ class Bytes:
         return entry
 
     def text(self) -> str:
-        """All of them, in base64."""
+        """Return all columns in base64."""
         return base64.b64encode(b"".join(self._parts)).decode("ascii")
 
 
@@ -200,13 +201,14 @@ def packed(path_rows: Shown, into: Bytes) -> dict[str, Any]:
 
 
 def _deposited(motion: Motion, rows: Integers) -> Mask:
-    """(k,) whether the way to a row, from the one shown before, is laid."""
+    """Return a mask (k,) of the rows whose segment, from the previous selected row, is
+    deposited."""
     deposited: Mask = motion.deposit[rows] & (motion.point[rows] > 0)
     return deposited
 
 
 def _coloured(column: Column, deposited: Mask) -> dict[str, float]:
-    """The least and the most value of what is laid, between which colours go."""
+    """Return the colour range: smallest and largest value of the deposited rows."""
     values = column.values[deposited & np.isfinite(column.values)]
     low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)
     return {"least": low, "most": high}
@@ -264,8 +266,8 @@ class Turned:
 def build_viewer(
     path_rows: Shown, toolpath: Toolpath, width: float, platform: float | None
 ) -> Turned:
-    """The path of a job with the bodies around it. width: mm, of beads that tell none. platform: its diameter, mm, None
-    without one."""
+    """Build the 3D viewer of a job's path with the obstacles around it. width: mm, of beads without
+    a width. platform: its diameter, mm, or None."""
     into = Bytes()
     facts = packed(path_rows, into)
     bodies = [*toolpath.surroundings, *([disc(platform, toolpath.frame)] if platform else [])]
@@ -308,7 +310,7 @@ def policy() -> str:
 
 
 def _body(body: Body, stride: int, into: Bytes) -> dict[str, Any]:
-    """A body as bytes, of large ones each so many-th triangle."""
+    """Pack a body as bytes, with every `stride`-th triangle."""
     return {
         "name": body.name,
         "vertices": into.add(body.vertices, "f4"),
@@ -317,6 +319,6 @@ def _body(body: Body, stride: int, into: Bytes) -> dict[str, Any]:
 
 
 def _box(path_rows: Shown) -> list[list[float]]:
-    """Least and largest corner of what is laid, which the view turns about."""
+    """Return the lower and upper corner of the deposit, the box that the view turns about."""
     deposited = path_rows.motion.position[path_rows.motion.deposit]
     return np.stack([deposited.min(axis=0), deposited.max(axis=0)]).tolist()

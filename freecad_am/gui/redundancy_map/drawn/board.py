@@ -38,12 +38,13 @@ class Cell:
     threshold: float
     touching: bool
     outside: bool
-    arm: tuple[str, str] | None  # a link, 'base' or by its axis, and what it touches
+    arm: tuple[str, str] | None  # a link, 'base' or the name of its axis, and the touched object
 
 
 class Board:
-    """The columns of a job, or of one layer of it, or the values of an external axis (`across`) at a point (bead, point) of
-    it, the middle of the bead where none is named, and what was computed for them; `up`: another external axis upwards."""
+    """The columns of a job, or of one layer of it, or the values of an external axis (`across`) at
+    a point (bead, point) (default: the middle of the bead), with the computed cells; `up`: another
+    external axis upwards."""
 
     def __init__(
         self,
@@ -76,13 +77,13 @@ class Board:
                 self.pair = pair_of(source, (position[0], point), (across, up), self.offsets)
         self.map: RedundancyMap | None = None
         self.pictures: dict[int, Picture] = {}
-        self.looked: dict[int, int] = {}  # branches whose links were looked at, one of so many rows
+        self.looked: dict[int, int] = {}  # row stride of the link check by branch
         self.curves: dict[int, tuple[tuple[BeadPath, ...], Array]] = {}
 
     # ---- computing, in another thread
 
     def compute(self, branch: int) -> tuple[RedundancyMap, Picture]:
-        """The cells of all branches, where they are not known yet, and the picture of one."""
+        """Compute the cells of all branches, if missing, and the picture of one branch."""
         if self.pair is not None:
             return self.pair.compute(branch, self.map)
         task = self.source.task(branch)
@@ -92,7 +93,7 @@ class Board:
         return cells, self.pictures.get(branch) or redundancy_map.picture(task, cells, branch)
 
     def take(self, result: tuple[RedundancyMap, Picture]) -> None:
-        """Keep what was computed."""
+        """Store the computed map and picture."""
         self.map = result[0]
         self.pictures[result[1].branch] = result[1]
 
@@ -102,7 +103,8 @@ class Board:
         return np.asarray(self.source.starts[self.columns.bead] + self.columns.point)
 
     def arm(self, branch: int, stride: int) -> Mask:
-        """(R, C) where links of the robot touch something; one of so many rows is looked at."""
+        """Return a mask (R, C) of cells in which a robot link touches something; every `stride`-th
+        row is checked."""
         assert self.map is not None
         if self.pair is not None:
             return self.pair.arm(branch, self.map)
@@ -111,12 +113,12 @@ class Board:
         )
 
     def take_arm(self, branch: int, touched: Mask, stride: int) -> None:
-        """Keep what was looked at."""
+        """Store the link check."""
         self.looked[branch] = stride if self.pair is None else 1
         self.pictures[branch] = dataclasses.replace(self.pictures[branch], arm=touched)
 
     def shows(self, bead: int) -> bool:
-        """Whether a bead is among the columns: of many, some are; none where they are values of an axis."""
+        """Whether a bead is among the columns; false if the columns are values of an axis."""
         return self.offsets is None and bool((self.columns.bead == bead).any())
 
     @property
@@ -154,7 +156,8 @@ class Board:
 
     @property
     def marks(self) -> Integers:
-        """Columns before which a line is drawn, but for the first: where beads begin, or the external axis is planned."""
+        """Columns with a line before them, except the first: starts of beads, or the planned value
+        of the external axis."""
         if self.offsets is None:
             return self.seams
         planned = self.source.beads[int(self.columns.bead[0])].external
@@ -169,7 +172,7 @@ class Board:
 
     @property
     def labels(self) -> list[tuple[float, str]]:
-        """Columns and what is written below them: numbers of layers, or of the points of a single layer."""
+        """Columns and their labels: layer numbers, or point numbers of a single layer."""
         count = len(self.columns)
         if self.offsets is not None:
             unit = float(
@@ -189,7 +192,7 @@ class Board:
         return [(float(k), str(self.columns.point[k])) for k in points]
 
     def column_of(self, bead: int, parameter: float) -> float:
-        """Where between columns a parameter of a bead lies."""
+        """Return the fractional column of a bead's parameter."""
         columns = np.flatnonzero(self.columns.bead == bead)
         parameters = self.columns.points.parameter[columns]
         sign = 1.0 if parameters[-1] >= parameters[0] else -1.0
@@ -203,8 +206,8 @@ class Board:
     # ---- curves
 
     def values(self, phi: Array) -> Array:
-        """(C,) where rotations at the columns lie on the axis, counted on along each bead, whose mean is within half a turn
-        of 0."""
+        """Return the axis values (C,) of rotations at the columns, unwrapped along each bead, with
+        the mean within half a turn of 0."""
         value = self._unwrapped(phi)
         return value - self._turns(value)
 
@@ -212,7 +215,7 @@ class Board:
         points = self.columns.points
         value = redundancy_map.value_of(self.source.cell, points.tool, phi, self.axis)
         if self.axis == RZ:
-            # RZ follows the rotation, the other way round where the tool points down, but for what changes slowly
+            # RZ follows the rotation, reversed if the tool points down, except for a slow drift
             side = np.where((points.tool @ self.source.cell.mount[:3, 2]) < 0.0, -1.0, 1.0)
             value = side * phi + redundancy_map.in_turns(
                 value - side * phi, np.diff(self.columns.bead, prepend=-1) != 0
@@ -228,7 +231,8 @@ class Board:
         return np.asarray(np.repeat(turns, np.diff(np.append(starts, len(value)))))
 
     def draft_values(self, draft: Draft) -> Array:
-        """(C,) the curve that is worked on, in the turns of what was planned, so that it does not hop while it is moved."""
+        """Return the edited curve (C,) in the turns of the plan, so that it does not jump during a
+        drag."""
         value = self._unwrapped(draft.phi(self.columns.points, self.columns.bead))
         planned = self.source.planned.beads
         like = (
@@ -276,7 +280,7 @@ class Board:
         return by - TURN * round((by - side * (new - old)) / TURN)
 
     def cell(self, branch: int, column: int, value: float) -> Cell:
-        """What there is to tell of a place on the map."""
+        """Return the figures of a cell of the map."""
         points, task = self.columns.points, self.source.task(branch)
         sample = points.select_points(np.array([column]))
         phi = redundancy_map.rotation_of(task.cell, sample.tool, np.array([value]), self.axis)
@@ -310,7 +314,8 @@ class Board:
         )
 
     def _arm_at(self, branch: int, column: int, joints: Array) -> tuple[str, str] | None:
-        """The first link that touches something at a column, and what; none is known before links were looked at."""
+        """Return the first touching link at a column and the touched object; None before the link
+        check."""
         if branch not in self.looked:
             return None
         arm = self.source.arm
@@ -352,7 +357,7 @@ class Handle:
 
 @dataclass
 class Dragged:
-    """What is being dragged, and the value it was last dragged to. handle: None for the curve itself."""
+    """The dragged handle and its last value. handle: None for the whole curve."""
 
     handle: Handle | None
     column: int
@@ -369,13 +374,14 @@ def build_curves(
     followed: Followed,
     shows: Callable[[str], bool],
 ) -> tuple[list[Curve], list[Handle], Array]:
-    """Curves, handles of the user's own at a bead, and places (n, 2) of it that are bad, column and value.
+    """Build the curves, the handles of the edited curve at a bead, and its infeasible points (n,
+    2), column and value.
 
-    planned: beads of the joint path; compared: other methods; followed: what the user's own asks of the machine; shows:
-    whether the curve of a name is to be seen.
+    planned: beads of the joint path; compared: other methods; followed: the evaluated edited curve;
+    shows: whether the curve of a name is visible.
     """
     if board.pair is not None:
-        return [], [], np.zeros((0, 2))  # the rotation is what is planned there
+        return [], [], np.zeros((0, 2))  # the rotation is the planned one
     curves = [
         Curve(board.path_values(draft, paths), COLOURS[name], dashed=name == PLANNED_CURVE)
         for name, paths in [

@@ -94,7 +94,7 @@ class Painting:
         self._size: Any = None
 
     def paint(self, painter: Any) -> None:
-        """All of it."""
+        """Draw everything."""
         area = self.canvas.area()
         painter.drawPixmap(area.topLeft(), self._cells())
         painter.setClipRect(area)
@@ -224,7 +224,7 @@ class Painting:
         painter.drawText(box, QtCore.Qt.AlignCenter, self.canvas.title)
 
     def _heights(self, count: float) -> list[tuple[float, str]]:
-        """Heights that are marked beside the map, and their texts; about so many at most."""
+        """Return the tick heights of the map with their labels, at most about `count`."""
         if self.canvas.heights is not None:
             return list(self.canvas.heights[0])
         low, high = np.degrees(self.canvas.low), np.degrees(self.canvas.high)
@@ -276,7 +276,7 @@ class Painting:
         self._draw_classes(painter, classes, bar.right() + 14.0)
 
     def _draw_classes(self, painter: Any, classes: list[tuple[str, Any]], left: float) -> None:
-        """Swatches with their words, in two rows beside the ramp and its numbers where one has no room for them."""
+        """Draw swatches with their names, in two rows next to the ramp if one row is too narrow."""
         across, down = left, 0.0
         for text, fill in classes:
             if (
@@ -327,7 +327,7 @@ class Canvas(QtGui.QWidget):
         self.handles: list[Handle] = []
         self.bad: Array = np.zeros((0, 2))  # column, value of points that do not serve
         self.title = ""
-        # where the heights of the map are no angles: texts beside them, and that of the plan
+        # for heights that are not angles: their labels, and the planned height
         self.heights: tuple[list[tuple[float, str]], float] | None = None
         self.low, self.high = -np.pi, np.pi
         self.drag: Dragged | None = None
@@ -339,7 +339,7 @@ class Canvas(QtGui.QWidget):
         """Called by Qt."""
         return QtCore.QSize(640, 320)
 
-    # ---- what is shown
+    # ---- display
 
     def set_map(
         self, painted: Painted | None, seams: Array, layers: list[tuple[float, str]]
