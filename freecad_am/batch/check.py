@@ -86,7 +86,7 @@ def check(
     cell = cells.resolve(context.cell, np.eye(4), folders=user_machines.folders())
     name, moves = _read(files, _posts(cell, context, post))
     settings = context.program or ProgramParameters(post=name)
-    motion = followed.driven(
+    motion = followed.drive(
         cell, build_header(cell, settings, catalogue.controller(name), "check"), moves
     )
     promises = _promises(motion, cell, context)

@@ -195,9 +195,9 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
                 result = _write(stages.job, stages, cell, files, session, started, page)
             finally:
                 FreeCAD.closeDocument(stages.document.Name)
-            from freecad_am.core.strategies.size import LARGE
+            from freecad_am.core.strategies.size import LARGE_CODE
 
-            session.issues(issue for issue in stages.issues if issue.code != LARGE)
+            session.issues(issue for issue in stages.issues if issue.code != LARGE_CODE)
             return result
 
 
@@ -298,7 +298,7 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
 def as_far_as_toolpath(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
     """The stages of a job in a document up to its toolpath, as `plan`."""
     from freecad_am import api
-    from freecad_am.core.strategies.size import LARGE
+    from freecad_am.core.strategies.size import LARGE_CODE
 
     from .job.job import unused_key_issues
     from .job.shapes import Shapes, toolpath_of
@@ -324,7 +324,7 @@ def as_far_as_toolpath(job: Job, document: Any, session: Any, fails: str = "") -
     for feature in stages.features:
         stages.issues += api.issues(feature)
     session.issues(
-        issue for issue in stages.issues if issue.code == LARGE
+        issue for issue in stages.issues if issue.code == LARGE_CODE
     )  # before the work that takes long
     with stages.timed("toolpath", session):
         stages.toolpath = toolpath_of(job, document, stages.features, stages.cell, shapes[0].scan)

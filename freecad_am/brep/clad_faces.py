@@ -24,7 +24,7 @@ from .walls.patch_wall import sound
 from .walls.sheet import sheet
 from .walls.wall import faces_by_name
 
-OF_RADIUS, OF_SPACING, FINEST = (
+OF_RADIUS, OF_SPACING, FINEST_TRIANGLE = (
     0.25,
     0.5,
     0.1,
@@ -54,7 +54,7 @@ def clad_faces(
         named = [(name, faces_of_names[name]) for name in dict.fromkeys(names or faces_of_names)]
         _refuse_several(shape, named, back, label)
         radius = float(smallest_radii(sound(named, label))[0].min())
-        edge = float(np.clip(OF_RADIUS * radius, FINEST * spacing, OF_SPACING * spacing))
+        edge = float(np.clip(OF_RADIUS * radius, FINEST_TRIANGLE * spacing, OF_SPACING * spacing))
         wall = sheet(named, edge, label)
         if back:
             wall = _flip(wall)

@@ -12,7 +12,7 @@ from collections.abc import Callable
 FAILED = 1  # exit status of a copy whose work raised
 
 
-def begun(work: Callable[[], object]) -> int:
+def fork(work: Callable[[], object]) -> int:
     """Fork a copy of this process to run `work`, and return its process id.
 
     The copy exits with 0, or with FAILED if the work raises; it prints the error only with

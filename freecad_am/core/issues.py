@@ -101,10 +101,10 @@ def _pieces(text: str, values: tuple[object, ...]) -> Iterator[tuple[str, str | 
         elif isinstance(value, Text) and not form and not conversion:
             yield literal, value
         else:
-            yield literal, _written(repr(value) if conversion == "r" else value, form or "")
+            yield literal, _write(repr(value) if conversion == "r" else value, form or "")
 
 
-def _written(value: object, form: str) -> str:
+def _write(value: object, form: str) -> str:
     """A value in a form; a number that a `g` form rounds has no exponent where it is of ordinary size."""
     if form.endswith("g") and isinstance(value, (int, float)):
         return number_text(value, form)

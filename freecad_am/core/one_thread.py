@@ -76,7 +76,7 @@ def hold() -> None:
         if not _holders:
             _before = [number.get() for number in _numbers()]
         _holders += 1
-        here()
+        limit_calling_thread()
 
 
 def release() -> None:
@@ -89,7 +89,7 @@ def release() -> None:
                 number.set(before)
 
 
-def here() -> None:
+def limit_calling_thread() -> None:
     """One thread also for what the calling thread asks for: a library with OpenMP has a number for each."""
     for number in _numbers():
         number.set(1)

@@ -43,7 +43,7 @@ class Pendant:
     digits: int = 4
 
 
-def _of_bryant(angles: Array) -> Array:
+def _from_bryant(angles: Array) -> Array:
     return np.asarray(
         frames.about_x(angles[..., 0])
         @ frames.about_y(angles[..., 1])
@@ -65,7 +65,7 @@ def about_fixed(rotation: Array, still: str) -> Array:
     return np.stack((x, np.arctan2(-entry[2, 0], across), z), axis=1)
 
 
-def _of_fixed(angles: Array) -> Array:
+def _from_fixed(angles: Array) -> Array:
     return np.asarray(
         frames.about_z(angles[..., 2])
         @ frames.about_y(angles[..., 1])
@@ -95,7 +95,7 @@ def quaternions(rotation: Array) -> Array:
     return unit
 
 
-def _of_quaternions(numbers: Array) -> Array:
+def _from_quaternions(numbers: Array) -> Array:
     vector = numbers[..., 1:]
     return _about(vector, 2.0 * np.arctan2(np.linalg.norm(vector, axis=-1), numbers[..., 0]))
 
@@ -111,7 +111,7 @@ def _vectors(rotation: Array) -> Array:
     return vectors
 
 
-def _of_vectors(vectors: Array) -> Array:
+def _from_vectors(vectors: Array) -> Array:
     return _about(vectors, np.linalg.norm(vectors, axis=-1))
 
 
@@ -127,11 +127,11 @@ def _reversed(numbers: Callable[[Array], Array]) -> Callable[[Array], Array]:
 
 
 # R = Rx Ry Rz, as poses are here; Rz Ry Rx with the angle about X first, and with that about Z first
-MOVING_XYZ = Orientation(frames.to_bryant, _of_bryant)
-FIXED_XYZ = Orientation(lambda rotation: about_fixed(rotation, "x"), _of_fixed)
+MOVING_XYZ = Orientation(frames.to_bryant, _from_bryant)
+FIXED_XYZ = Orientation(lambda rotation: about_fixed(rotation, "x"), _from_fixed)
 MOVING_ZYX = Orientation(
     _reversed(lambda rotation: about_fixed(rotation, "z")),
-    lambda angles: _of_fixed(angles[..., ::-1]),
+    lambda angles: _from_fixed(angles[..., ::-1]),
 )
-QUATERNION = Orientation(quaternions, _of_quaternions, False)
-ROTATION_VECTOR = Orientation(_vectors, _of_vectors, False)
+QUATERNION = Orientation(quaternions, _from_quaternions, False)
+ROTATION_VECTOR = Orientation(_vectors, _from_vectors, False)

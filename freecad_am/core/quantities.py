@@ -65,7 +65,7 @@ def number_text(value: float, form: str) -> str:
     return format(Decimal(text), "f")
 
 
-def without_exponents(text: str) -> str:
+def expand_exponents(text: str) -> str:
     """A text with numbers such as 1.2e+04 written out where they are of ordinary size."""
     return _EXPONENT.sub(_written_out, text)
 
@@ -83,7 +83,7 @@ def significant(value: float, digits: int, rounding: str = ROUND_HALF_EVEN) -> s
         return f"{value:.{digits}g}"
     exact = Decimal(value)
     step = Decimal(1).scaleb(exact.adjusted() - digits + 1)
-    return _without_zeros(format(exact.quantize(step, rounding=rounding), "f"))
+    return _strip_zeros(format(exact.quantize(step, rounding=rounding), "f"))
 
 
 def exact_or_rounded(value: float) -> str:
@@ -91,12 +91,12 @@ def exact_or_rounded(value: float) -> str:
     for digits in range(1, 10):
         short = f"{value:.{digits}g}"
         if math.isclose(float(short), value, rel_tol=1e-12):
-            return _without_zeros(number_text(float(short), f".{digits}g"))
+            return _strip_zeros(number_text(float(short), f".{digits}g"))
     before_point = len(str(int(min(abs(value), LARGEST_PLAIN)))) if abs(value) >= 1.0 else 0
     return significant(value, max(4, before_point + 3))
 
 
-def _without_zeros(text: str) -> str:
+def _strip_zeros(text: str) -> str:
     return text.rstrip("0").rstrip(".") if "." in text and "e" not in text else text
 
 

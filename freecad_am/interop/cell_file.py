@@ -60,7 +60,7 @@ def text(cell: CellParameters, folder: str) -> str:
         )
         name = json.dumps(body.name, ensure_ascii=False)
         lines.append(f"- {{name: {name}, {what}, pose: {_format(body.pose, f.POSE)}}}")
-    points = touched.touched(cell.touched)
+    points = touched.parse_touched(cell.touched)
     lines += ["touched:"] if points else []
     lines += [
         f"- {{part: {_format(one.part, f.LENGTH)}, robot: {_format(one.robot, f.LENGTH)}}}"

@@ -213,7 +213,7 @@ class DrivenBead:
     height: None = None
 
 
-def driven(cell: Cell, program: Program, text: ReadMoves) -> Motion:
+def drive(cell: Cell, program: Program, text: ReadMoves) -> Motion:
     """Return the rows of a motion along a text, in part coordinates; joints are NaN for unreachable
     positions.
 
@@ -221,7 +221,7 @@ def driven(cell: Cell, program: Program, text: ReadMoves) -> Motion:
     unknown. Raises InputError NO_CONFIGURATION if a text does not give the arm configuration at its
     start.
     """
-    path, serial = _driven(cell, program, text)
+    path, serial = _drive(cell, program, text)
     seconds = _durations(cell, text, path.position, serial)
     starts = _starts(text)
     # the first row of a bead repeats the present position
@@ -263,7 +263,7 @@ def beads(motion: Motion) -> list[DrivenBead]:
     ]
 
 
-def _driven(cell: Cell, program: Program, text: ReadMoves) -> tuple[Path, Array]:
+def _drive(cell: Cell, program: Program, text: ReadMoves) -> tuple[Path, Array]:
     """Return the tip path of the text, and its serial joints (n, axes)."""
     machine, continuous = cell.machine, text_path.shorter_way(cell, program, text)
     if text.position is None:

@@ -135,7 +135,7 @@ def _external(value: Any) -> str:
             "give a list such as - {machine: motoman-motopos-d500, pose: "
             "[1500, 0, 0, 0, 0, 0], carries: part}",
         )
-    return f"{external.MORE} ".join(
+    return f"{external.SEPARATOR} ".join(
         str(_one_external(entry, f"{external.WHERE}[{k}]")) for k, entry in enumerate(value)
     )
 
@@ -188,7 +188,7 @@ def _touched_text(value: Any) -> str:
                 *(_point(section.get(name), f"{key}.{name}") for name in ("part", "robot"))
             )
         )
-    return f"{touched.MORE} ".join(map(str, points))
+    return f"{touched.SEPARATOR} ".join(map(str, points))
 
 
 def _point(value: Any, key: str) -> touched.Point:
@@ -225,7 +225,7 @@ def _obstacles(value: Any) -> str:
             "give a list such as - {file: table.step, pose: [0, 0, -200, 0, 0, 0]}",
         )
     bodies = [_obstacle(entry, f"{obstacles.WHERE}[{k}]", k + 1) for k, entry in enumerate(value)]
-    return f"{obstacles.MORE} ".join(map(str, bodies))
+    return f"{obstacles.SEPARATOR} ".join(map(str, bodies))
 
 
 def _obstacle(value: Any, key: str, number: int) -> obstacles.Obstacle:

@@ -132,7 +132,7 @@ def test_a_value_set_after_threads_of_the_kernel_started(documents, monkeypatch)
         raise AssertionError("a process with threads was forked")
 
     monkeypatch.setattr(apart, "_has_kernel_threads", lambda: True)
-    monkeypatch.setattr(copies, "begun", fork)
+    monkeypatch.setattr(copies, "fork", fork)
     wide = volume(documents / "hall.FCStd", "Cut", ("Cylinder", "Radius", "3 mm"))
     assert wide == (pytest.approx(1000 - HOLE * 9 / 4), pytest.approx(50), [])
 

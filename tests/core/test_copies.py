@@ -19,7 +19,7 @@ pytestmark = pytest.mark.skipif(
 
 def status_of(work):
     """The exit status of a copy, negative for the signal that ended it."""
-    return os.waitstatus_to_exitcode(os.waitpid(copies.begun(work), 0)[1])
+    return os.waitstatus_to_exitcode(os.waitpid(copies.fork(work), 0)[1])
 
 
 def test_a_copy_does_its_work_in_another_process(tmp_path):
@@ -58,7 +58,7 @@ def test_a_copy_ends_with_the_process_that_has_made_it(tmp_path):
     pid = os.fork()
     if not pid:
         try:
-            copies.begun(sleep)
+            copies.fork(sleep)
             while not note.exists() or not note.read_text():
                 time.sleep(0.01)
         finally:

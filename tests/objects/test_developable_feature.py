@@ -101,7 +101,7 @@ def test_tilts_that_take_long_are_told_before_they_are_searched_for(doc, monkeyp
     )  # one point takes as long as that
 
     def told(issue):
-        assert issue.code == size.LARGE
+        assert issue.code == size.LARGE_CODE
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt), api.told_to(lambda *_: None, told):

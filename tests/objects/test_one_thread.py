@@ -171,7 +171,7 @@ def test_the_last_one_to_leave_gives_the_threads_back(monkeypatch):
     fake = one_thread._Number(lambda: number[0], lambda count: number.__setitem__(0, count))
     monkeypatch.setattr(one_thread, "_numbers", lambda: (fake,))
     one_thread.hold()
-    worker = threading.Thread(target=lambda: (one_thread.here(), one_thread.hold()))
+    worker = threading.Thread(target=lambda: (one_thread.limit_calling_thread(), one_thread.hold()))
     worker.start()
     worker.join()
     one_thread.release()

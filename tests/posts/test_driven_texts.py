@@ -26,7 +26,7 @@ def told(program):
 def test_the_plan_is_found_again_in_the_text(way):
     cell, planned, program, files = written(way)
     read = catalogue.load(way[0]).read(files)
-    motion = followed.driven(cell, told(program), read)
+    motion = followed.drive(cell, told(program), read)
     for column in ("deposit", "layer", "bead", "point"):
         np.testing.assert_array_equal(
             getattr(motion, column), getattr(planned, column), err_msg=column
@@ -50,7 +50,7 @@ def test_the_plan_is_found_again_in_the_text(way):
 
 def test_the_deposit_is_in_beads_as_long_as_planned():
     cell, planned, program, files = written(WAYS[0])
-    motion = followed.driven(cell, told(program), catalogue.load("fanuc").read(files))
+    motion = followed.drive(cell, told(program), catalogue.load("fanuc").read(files))
     beads = followed.beads(motion)
     assert sum(len(bead.points) for bead in beads) == motion.deposit.sum()
     starts = planned.position[planned.deposit & (planned.point == 0)]
@@ -61,10 +61,10 @@ def test_a_text_that_begins_with_a_position_needs_a_configuration():
     cell, _, program, files = written(next(way for way in WAYS if way[:2] == ("ur", "cartesian")))
     read = catalogue.load("ur").read(files)
     assert read.joints is None
-    beside = followed.driven(dataclasses.replace(cell, branch=None), told(program), read)
+    beside = followed.drive(dataclasses.replace(cell, branch=None), told(program), read)
     bare = dataclasses.replace(read, near=None)
     with pytest.raises(InputError, match=r"branch: \[front, up, flip\]"):
-        followed.driven(dataclasses.replace(cell, branch=None), told(program), bare)
-    motion = followed.driven(cell, told(program), bare)
+        followed.drive(dataclasses.replace(cell, branch=None), told(program), bare)
+    motion = followed.drive(cell, told(program), bare)
     np.testing.assert_allclose(motion.position, beside.position, atol=1e-9)
     assert motion.reachable.all() and beside.reachable.all()

@@ -311,7 +311,7 @@ def findings(way, files, expected):
     cell, _, _, _ = written(way)
     read = catalogue.load(way[0]).read(files)
     kept = build_header(cell, ProgramParameters(post=way[0]), catalogue.controller(way[0]), "check")
-    motion = followed.driven(cell, kept, read)
+    motion = followed.drive(cell, kept, read)
     return [
         one for one in selection_findings(motion, read, expected)
         if one.issue.code == "FRAME_NUMBER"

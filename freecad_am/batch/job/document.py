@@ -12,7 +12,7 @@ from ...core.issues import InputError
 from .job import Job
 
 MAX_DEFLATED_BYTES = 4_000_000  # bytes of results, beyond which they are not deflated once more
-_LEVEL = "CompressionLevel"
+_LEVEL_PREFERENCE = "CompressionLevel"
 
 
 def new_document(job: Job) -> Any:
@@ -51,12 +51,12 @@ def _disable_deflating(document: Any) -> Iterator[None]:
     import FreeCAD
 
     settings = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Document")
-    old_level = settings.GetInt(_LEVEL, -1)
-    settings.SetInt(_LEVEL, 0)
+    old_level = settings.GetInt(_LEVEL_PREFERENCE, -1)
+    settings.SetInt(_LEVEL_PREFERENCE, 0)
     try:
         yield
     finally:
         if old_level < 0:
-            settings.RemInt(_LEVEL)
+            settings.RemInt(_LEVEL_PREFERENCE)
         else:
-            settings.SetInt(_LEVEL, old_level)
+            settings.SetInt(_LEVEL_PREFERENCE, old_level)

@@ -44,7 +44,7 @@ def as_text(section: dict[str, Any]) -> dict[str, Any]:
         for name, class_section in classes.items()
     }
     for name, parameters in parameters_by_name.items():
-        bead_classes.made(name, parameters.own_values())
+        bead_classes.build_class(name, parameters.own_values())
     return {**section, "classes": bead_classes.text_of(parameters_by_name)}
 
 

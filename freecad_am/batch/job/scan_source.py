@@ -13,7 +13,7 @@ from ...core.parameters.inspection import AUTO, BEST, NONE, UNITS, InspectionPar
 from ...core.parameters.scan import PREFIX, ScanParameters
 from ...sections import fields as job_fields
 
-FITS = (AUTO, BEST, NONE)
+FIT_CHOICES = (AUTO, BEST, NONE)
 SOURCE_KEYS = ("scan", "scan_unit", "scan_fit", "scan_pairs")
 KEYS = (*SOURCE_KEYS, *(entry.name for entry in fields(ScanParameters)))
 
@@ -61,7 +61,7 @@ def scan_of(scan_keys: dict[str, Any], strategy: Any) -> ScanSource | None:
             "file {} does not exist; check the path, which is relative to the file that names it",
             file,
         )
-    for key, choices in (("scan_unit", (AUTO, *UNITS)), ("scan_fit", FITS)):
+    for key, choices in (("scan_unit", (AUTO, *UNITS)), ("scan_fit", FIT_CHOICES)):
         if scan_keys.get(key, AUTO) not in choices:
             raise f.unknown_choice(f"{PREFIX}.{key}", scan_keys[key], choices)
     parameters = job_fields.build(

@@ -15,7 +15,7 @@ from ...report.svg import Plot
 _BEST = 20  # poses in the table
 _MOST_MAPS = 60
 _COLOURS = ("#2b5fb3", "#2f9e8f", "#8bc34a", "#f3d13b")  # of margins from the least to the largest
-_BEYOND = "#b9bec8"
+_OUT_OF_RANGE_COLOUR = "#b9bec8"
 
 
 def render(name: str, placement: Placed) -> str:
@@ -105,7 +105,11 @@ def _map(placement: Placed, height: float, low: float, high: float) -> str:
         x_left, right = plot.to_x(np.array([place_x - 0.48 * across, place_x + 0.48 * across]))
         top, bottom = plot.to_y(np.array([place_y + 0.48 * up, place_y - 0.48 * up]))
         share = (pose_result.margin - low) / (high - low) if high > low else 1.0
-        fill = _COLOURS[min(int(4.0 * max(share, 0.0)), 3)] if pose_result.feasible else _BEYOND
+        fill = (
+            _COLOURS[min(int(4.0 * max(share, 0.0)), 3)]
+            if pose_result.feasible
+            else _OUT_OF_RANGE_COLOUR
+        )
         edge = ' stroke="#c0182b" stroke-width="3"' if number == placement.best else ""
         plot.elements.append(
             f'<rect x="{x_left:.1f}" y="{top:.1f}" width="{right - x_left:.1f}" height="{bottom - top:.1f}" '

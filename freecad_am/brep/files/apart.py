@@ -243,7 +243,7 @@ class _Reading:
             f"/proc/self/fd/{geometry}",
         )  # that this process and its copies have
         try:
-            self._pid = copies.begun(
+            self._pid = copies.fork(
                 lambda: _limited(seconds, memory, *self.files, reader, path, arguments)
             )
         except BaseException:

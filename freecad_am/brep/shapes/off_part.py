@@ -29,7 +29,7 @@ MAX_KERNEL_POINTS = 200  # places that triangles are not sure of and the kernel 
 FAILURES = 3  # of the kernel; it is not asked on then
 ALWAYS = 5  # and as many in any case
 MAX_EDGE_POINTS = 500  # places that the kernel is asked about whose edges are the part
-INSIDE = 1e-6  # mm
+INSIDE_DEPTH = 1e-6  # mm
 PIECE = 1000  # places done together; bounds the memory
 
 
@@ -278,6 +278,6 @@ def _by_kernel(shape: Any, position: Array, solid: bool) -> float:
     point = FreeCAD.Vector(*position.tolist())
     return (
         0.0
-        if solid and shape.isInside(point, INSIDE, True)
+        if solid and shape.isInside(point, INSIDE_DEPTH, True)
         else float(shape.distToShape(Part.Vertex(point))[0])
     )

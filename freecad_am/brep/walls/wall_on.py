@@ -219,7 +219,7 @@ def _refuse_loose(wall: MeshWall, start: _Start, label: str) -> None:
             )
 
 
-FLAT = "Part::GeomPlane"
+PLANE_TYPE = "Part::GeomPlane"
 MOST_NAMED = 8  # faces named in a message
 BELOW = 9  # samples up the tube that decide whether it stays in the substrate's box
 # a wall need not be a closed tube of one surface that starts in one loop
@@ -315,7 +315,7 @@ def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str,
         return [(name, faces[name]) for name in dict.fromkeys(names)]
     if not shape.Solids:
         return list(faces.items())
-    curved = [(name, face) for name, face in faces.items() if face.Surface.TypeId != FLAT]
+    curved = [(name, face) for name, face in faces.items() if face.Surface.TypeId != PLANE_TYPE]
     if not curved or not _one_piece([face for _, face in curved]):
         listed = (
             ", ".join(name for name, _ in curved[:MOST_NAMED])
@@ -333,7 +333,7 @@ def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str,
         (
             name
             for name, face in faces.items()
-            if face.Surface.TypeId == FLAT
+            if face.Surface.TypeId == PLANE_TYPE
             and any(_runs_on(face, curved_face) for _, curved_face in curved)
         ),
         "",

@@ -218,7 +218,7 @@ def centre_beads(
         remaining: list[Region] = []
         for region in gaps:
             points, closed = _spine(region, beads, 0.5 * ENDS * beads.gap)
-            points = moved(points if len(points) > 1 else _dab(region, beads), inner)
+            points = move_into_regions(points if len(points) > 1 else _dab(region, beads), inner)
             if not closed:
                 points = _lengthened(points, beads, inner)
             curves.append(PlaneCurve(points, closed, kind, ring))
@@ -443,7 +443,7 @@ def _lengthened(points: Array, beads: Beads, inner: Sequence[Region]) -> Array:
             for out in (points[0] - points[1], points[-1] - points[-2])
         ]
         ends = [
-            moved(end + share * direction, inner)
+            move_into_regions(end + share * direction, inner)
             for end, direction in zip((points[0], points[-1]), directions)
         ]
         longer = simplified(np.vstack([ends[0][::-1], points, ends[1]]), 0.2 * beads.chord_error)
@@ -453,7 +453,7 @@ def _lengthened(points: Array, beads: Beads, inner: Sequence[Region]) -> Array:
     return points
 
 
-def moved(points: Array, inner: Sequence[Region]) -> Array:
+def move_into_regions(points: Array, inner: Sequence[Region]) -> Array:
     """Points (n, 2), those outside of all regions moved to the nearest of them; as they are where there are none."""
     if not inner:
         return points

@@ -90,11 +90,11 @@ LOOP = (
     0.05,
     0.25,
 )  # of the spacing: half the width that a loop about a middle bead encloses, least and largest
-OPEN, SHARE = (
+LINK_LENGTH, SHARE = (
     0.8,
     0.2,
 )  # of the width at which the allowed gap stays open next to links; of the length of a contour
-INSIDE = 1e-4  # of a link, cut off at its ends in the check
+INSIDE_SHARE = 1e-4  # of a link, cut off at its ends in the check
 
 
 class Slant(NamedTuple):
@@ -163,7 +163,7 @@ def connect_contours(region: Region, inner: tuple[Region, ...], beads: Beads) ->
     rings = [Ring(curve.points) for curve in curves]
     rings[0].take(-0.1 * beads.spacing, 0.1 * beads.spacing)
     links: list[list[Link]] = [[] for _ in rings]
-    joined = _joined(rings, links, beads)
+    joined = _join(rings, links, beads)
     if len(joined) == 1:
         joined_curves = [replace(curves[0], kind="connected")]
     else:
@@ -193,7 +193,7 @@ def _loop(curve: PlaneCurve, half: float, beads: Beads) -> PlaneCurve:
     return start_curve(PlaneCurve(outlines[0].borders()[0], True, curve.kind, curve.ring), beads)
 
 
-def _joined(rings: list[Ring], links: list[list[Link]], beads: Beads) -> set[int]:
+def _join(rings: list[Ring], links: list[list[Link]], beads: Beads) -> set[int]:
     """Join rings to the first one, and to rings already joined, as long as positions remain; the numbers of the joined rings."""
     joined, entered = {0}, {0: 1}
     adjacent_pairs: dict[int, list[AdjacentRings]] = {}
@@ -247,7 +247,7 @@ def _place(
     spacing, gap = beads.spacing, slant.clearance * beads.spacing
     wide = (
         min(
-            OPEN * 2.0 * math.sqrt(spacing * beads.gap),
+            LINK_LENGTH * 2.0 * math.sqrt(spacing * beads.gap),
             math.sqrt(2.0) * spacing,
             SHARE * from_ring.length,
             SHARE * to_ring.length,
@@ -331,7 +331,7 @@ def _is_clear(
         *placed,
     ]
     for line in lines:
-        inner = line + INSIDE * np.array([[1.0], [-1.0]]) * (line[1] - line[0])
+        inner = line + INSIDE_SHARE * np.array([[1.0], [-1.0]]) * (line[1] - line[0])
         if any(crossed(inner, obstacle) for obstacle in rests) or crossed(
             inner, lines[0] if line is lines[1] else lines[1]
         ):

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from ..types import Array, Index
 
-REMAINS = "SCAN_REMAINS"  # that the last layer is still off the plan
+REMAINS_CODE = "SCAN_REMAINS"  # that the last layer is still off the plan
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..geometry.fitted import REMAINS, Fitted
+from ..geometry.fitted import REMAINS_CODE, Fitted
 from ..geometry.formatting import place
 from ..issues import NOTE, WARNING, InputError, Issue, Text
 from ..parameters.scan import ScanParameters
@@ -426,7 +426,7 @@ def _issues(record: Fitted, height: float) -> list[Issue]:
         issues.append(
             Issue(
                 WARNING,
-                REMAINS,
+                REMAINS_CODE,
                 Text(
                     "the part has too few layers to blend back to the plan: the last one is up "
                     "to {:.3f} mm off; raise substrate.scan_band to use fewer layers",

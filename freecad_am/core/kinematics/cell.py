@@ -22,7 +22,7 @@ from ..geometry.obstacles import Body
 from ..issues import InputError, Text, Word
 from ..parameters.cell import CellParameters, NozzleParameters
 from ..parameters.external import PART, externals
-from ..parameters.touched import WHERE, Touched, touched
+from ..parameters.touched import WHERE, Touched, parse_touched
 from ..types import Array
 from .arrangement import Arrangement, arrangement_of, planned_of
 from .external import ExternalAxes, coupled, upward
@@ -64,7 +64,7 @@ def offset_of_cell(parameters: CellParameters, arrangement: Arrangement) -> Work
     """Return the pose of the part of a cell from touched points; None without any. Raises
     InputError TOUCHED.
     """
-    points = touched(parameters.touched)
+    points = parse_touched(parameters.touched)
     if not points:
         return None
     carried = any(external_axis.carries == PART for external_axis in externals(parameters.external))

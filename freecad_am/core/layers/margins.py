@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import TypeVar
 
-from ..geometry.regions.region import Region, joined, mended, regions
+from ..geometry.regions.region import Region, join, mended, regions
 from ..geometry.regions.several import grow_regions
 from ..issues import Issue
 from ..parameters.filled import SolidParameters
@@ -75,5 +75,5 @@ def regions_of(
         borders += [border for region in all_regions for border in region.borders()]
     if margin > 0.0:
         all_regions = regions(borders)
-    all_regions = joined(all_regions, chord_error)
+    all_regions = join(all_regions, chord_error)
     return tuple(region.simple(BORDER * chord_error) for region in all_regions), issues

@@ -14,7 +14,7 @@ from . import field as f
 
 NONE = "none"
 WHERE = "process.classes"
-MORE = ";"  # separator of classes
+SEPARATOR = ";"  # separator of classes
 FIRST_LAYER, CONTOUR, FILL, CLOSING, LINK, WALL = CLASSES = (
     "first_layer",
     "contour",
@@ -27,7 +27,7 @@ LARGEST_SCHEDULE = 65535  # 16 bits
 LARGEST_WEAVE = 255  # files of weaving conditions of a Yaskawa
 _FORM = "write such as: contour: travel_speed 8, schedule 3; fill: lead 5"
 _INNER = {f.ANGLE: math.radians}
-_OUTER = {f.ANGLE: math.degrees}
+_TO_OUTER_UNITS = {f.ANGLE: math.degrees}
 START, END = "start", "end"
 
 
@@ -163,7 +163,7 @@ class BeadClass:
     def __str__(self) -> str:
         fields = {one.name: f.spec_of(one).kind for one in dataclasses.fields(self)}
         outer = {
-            name: _OUTER.get(fields[name], float)(value)
+            name: _TO_OUTER_UNITS.get(fields[name], float)(value)
             for name, value in self.own_values().items()
         }
         return ", ".join(f"{name} {value:.12g}" for name, value in outer.items())
@@ -177,7 +177,7 @@ def number_of(name: str) -> int:
     return CLASSES.index(name) if name in CLASSES else -1
 
 
-def made(name: str, values: dict[str, float | int | None], where: str = WHERE) -> BeadClass:
+def build_class(name: str, values: dict[str, float | int | None], where: str = WHERE) -> BeadClass:
     """Build the class of this name from values in internal units.
 
     Raises InputError BAD_VALUE with `where`, the class and the key.
@@ -196,7 +196,7 @@ def text_of(classes: dict[str, BeadClass]) -> str:
         for name in CLASSES
         if name in classes and classes[name].own_values()
     ]
-    return f"{MORE} ".join(parts) or NONE
+    return f"{SEPARATOR} ".join(parts) or NONE
 
 
 @lru_cache(maxsize=64)
@@ -204,7 +204,7 @@ def _parsed(text: str) -> tuple[tuple[str, BeadClass], ...]:
     if text.strip() in (NONE, ""):
         return ()
     found: dict[str, BeadClass] = {}
-    for part in filter(str.strip, text.split(MORE)):
+    for part in filter(str.strip, text.split(SEPARATOR)):
         name, colon, rest = (piece.strip() for piece in part.partition(":"))
         if not colon:
             raise InputError(
@@ -212,7 +212,7 @@ def _parsed(text: str) -> tuple[tuple[str, BeadClass], ...]:
             )
         if name in found:
             raise InputError("BAD_VALUE", WHERE, "{} is defined twice; merge the two entries", name)
-        found[name] = made(name, _values(name, rest))
+        found[name] = build_class(name, _values(name, rest))
     return tuple(found.items())
 
 

@@ -13,7 +13,7 @@ from .external import externals
 from .obstacles import NONE as NO_OBSTACLES
 from .obstacles import obstacles
 from .touched import NONE as NOT_TOUCHED
-from .touched import touched
+from .touched import parse_touched
 
 Pose = tuple[float, float, float, float, float, float]
 
@@ -160,7 +160,7 @@ class CellParameters:
     def __post_init__(self) -> None:
         externals(self.external)
         obstacles(self.obstacles)
-        touched(self.touched)
+        parse_touched(self.touched)
         self.upward()
         if isinstance(self.platform, (tuple, list)):
             if len(self.platform) != 6:

@@ -14,7 +14,7 @@ Pose = tuple[float, float, float, float, float, float]
 NONE = "none"
 PART, ROBOT = "part", "robot"
 WHERE = "cell.external"
-MORE = ";"  # separator of mechanisms
+SEPARATOR = ";"  # separator of mechanisms
 _TEXT = re.compile(r"(?P<machine>.+?)\s+at\s+(?P<pose>.+?)\s+carries\s+(?P<carries>\S+)")
 _FORM = "write such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part"
 
@@ -59,7 +59,7 @@ def externals(text: str) -> tuple[External, ...]:
     """Return the mechanisms of a text, in its order; empty for none. Raises InputError BAD_VALUE."""
     if text.strip() == NONE:
         return ()
-    return tuple(_external(part.strip()) for part in text.split(MORE) if part.strip())
+    return tuple(_external(part.strip()) for part in text.split(SEPARATOR) if part.strip())
 
 
 def _external(text: str) -> External:

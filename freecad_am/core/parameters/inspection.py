@@ -10,7 +10,7 @@ from . import field as f
 
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "inch": 25.4}
 BEST, SHIFT, AXIS, NONE = "best", "shift", "axis", "none"
-OUTER, INNER, BOTH = "outer", "inner", "both"
+OUTER_SIDE, INNER, BOTH = "outer", "inner", "both"
 AUTO = "auto"
 PREFIX = "inspection"
 
@@ -62,10 +62,10 @@ class InspectionParameters:
         advanced=True,
     )
     side: str = f.parameter(
-        OUTER,
+        OUTER_SIDE,
         f.CHOICE,
         "Measured side of a wall: the outer side, the inner side, or both.",
-        choices=(OUTER, INNER, BOTH),
+        choices=(OUTER_SIDE, INNER, BOTH),
     )
     thickness: float = f.parameter(
         0.0,

@@ -16,8 +16,8 @@ BRANCHES = tuple(
 )
 OF_CELL = "cell"
 HIGHEST = 6  # degree of a polynomial
-EVERY = "*"
-LEVEL, OPTIMISED = "level", "optimised"
+ALL_BEADS = "*"
+LEVEL_METHOD, OPTIMISED = "level", "optimised"
 METHODS = ("layer-by-layer", "point-by-point", "constant")
 OBJECTIVES = (
     "displacement",
@@ -148,12 +148,12 @@ class JointParameters:
         advanced=True,
     )
     external_axes: str = f.parameter(
-        LEVEL,
+        LEVEL_METHOD,
         f.CHOICE,
         "External axes. level: they turn only as far as the angle from the vertical requires; "
         "optimised: each follows one polynomial per bead, optimised together with the tool "
         "rotation for less motion and larger margins.",
-        choices=(LEVEL, OPTIMISED),
+        choices=(LEVEL_METHOD, OPTIMISED),
     )
 
     def __post_init__(self) -> None:
@@ -179,7 +179,7 @@ def given_polynomials(given: tuple[str, ...]) -> dict[tuple[int, int] | None, tu
         place, *numbers = entry.split(":") if isinstance(entry, str) else ("", "")
         try:
             layer, slash, bead = place.strip().partition("/")
-            key = None if place.strip() == EVERY else (int(layer), int(bead) if slash else 0)
+            key = None if place.strip() == ALL_BEADS else (int(layer), int(bead) if slash else 0)
             values = [float(number) for number in numbers]
         except ValueError:
             values = []
@@ -213,7 +213,7 @@ def given_polynomials(given: tuple[str, ...]) -> dict[tuple[int, int] | None, tu
 
 def given_text(place: tuple[int, int] | None, coefficients: tuple[float, ...]) -> str:
     """An entry of the parameter `given`, of coefficients as `given_polynomials` has them."""
-    name = EVERY if place is None else f"{place[0]}/{place[1]}"
+    name = ALL_BEADS if place is None else f"{place[0]}/{place[1]}"
     shown = [
         math.degrees(value) * (2.0 * math.pi) ** power for power, value in enumerate(coefficients)
     ]

@@ -15,8 +15,8 @@ Size = tuple[float, float, float]
 
 NONE = "none"
 WHERE = "cell.obstacles"
-MORE = ";"  # separator of obstacles
-LARGEST = 1e5  # mm, of a box
+SEPARATOR = ";"  # separator of obstacles
+MAX_BOX_SIZE = 1e5  # mm, of a box
 _BOX = re.compile(r"box\s+(?P<size>[-+\d.,eE\s]+)")
 _TEXT = re.compile(r"(?:(?P<name>[^=;]+?)\s+=\s+)?(?P<what>.+?)\s+at\s+(?P<pose>[^;]+)")
 _FORM = (
@@ -54,7 +54,7 @@ class Obstacle:
                 "{} must be either a file or a box; give exactly one",
                 self.name,
             )
-        if self.size is not None and not all(0.0 < edge <= LARGEST for edge in self.size):
+        if self.size is not None and not all(0.0 < edge <= MAX_BOX_SIZE for edge in self.size):
             edges = " ".join(f"{edge:g}" for edge in self.size)
             raise InputError(
                 "BAD_VALUE",
@@ -62,7 +62,7 @@ class Obstacle:
                 "{}: {} mm is not a box; give three positive lengths of at most {:g} mm",
                 self.name,
                 edges,
-                LARGEST,
+                MAX_BOX_SIZE,
             )
         if any(sign in self.name for sign in "=;") or not self.name.strip():
             raise InputError(
@@ -84,7 +84,9 @@ def obstacles(text: str) -> tuple[Obstacle, ...]:
     if text.strip() == NONE:
         return ()
     found = tuple(
-        _obstacle(part.strip(), k) for k, part in enumerate(text.split(MORE), 1) if part.strip()
+        _obstacle(part.strip(), k)
+        for k, part in enumerate(text.split(SEPARATOR), 1)
+        if part.strip()
     )
     names = [one.name for one in found]
     for name in names:

@@ -14,7 +14,7 @@ SHARE, STEPS = (
     0.1,
     20,
 )  # of the faster speed that a step changes at most, and how many steps there may be
-SHORTEST = 0.5  # mm of a step
+MIN_STEP = 0.5  # mm of a step
 
 
 def ramp(length: float, start: float, end: float) -> Array:
@@ -27,5 +27,5 @@ def ramp(length: float, start: float, end: float) -> Array:
     if length <= 0.0 or start == end or not start or not end:
         return np.zeros(0)
     change = abs(end - start) / max(start, end)
-    count = max(1, min(round_up(change / SHARE), STEPS, round_down(length / SHORTEST)))
+    count = max(1, min(round_up(change / SHARE), STEPS, round_down(length / MIN_STEP)))
     return np.asarray(start + (end - start) * (np.arange(count) + 0.5) / count)

@@ -10,8 +10,8 @@ from ..geometry.curves import gcode, gcode_roles
 from ..issues import InputError
 from . import field as f
 
-LEAST = 0.01  # mm, for parts up to SMALL and for unknown sizes
-SMALL = 250.0  # mm
+MIN_CHORD_ERROR = 0.01  # mm, for parts up to SMALL and for unknown sizes
+SMALL_PART_SIZE = 250.0  # mm
 GROWTH = 2e-4  # mm to a mm of size beyond SMALL
 SHARE = 0.01  # of the width of a bead
 BEAD_TO_LAYER = 2.5  # how much wider than high a bead usually is
@@ -27,10 +27,10 @@ def scaled(extent: float, bead: float) -> float:
     It is `LEAST` up to `SMALL`, grows with the part beyond, stays below `SHARE` of the bead, and
     has one digit.
     """
-    wanted = min(LEAST + GROWTH * (extent - SMALL), SHARE * bead)
-    if not LEAST < wanted < math.inf:
-        return LEAST
-    return max(float(f"{wanted:.0e}"), LEAST)
+    wanted = min(MIN_CHORD_ERROR + GROWTH * (extent - SMALL_PART_SIZE), SHARE * bead)
+    if not MIN_CHORD_ERROR < wanted < math.inf:
+        return MIN_CHORD_ERROR
+    return max(float(f"{wanted:.0e}"), MIN_CHORD_ERROR)
 
 
 ISO = "iso-parameter"
@@ -56,7 +56,7 @@ class LayerParameters:
         1.0, f.LENGTH, "Distance between neighbouring layers.", low=0.0, open_low=True
     )
     chord_error: float = f.parameter(
-        DefaultLength(LEAST),
+        DefaultLength(MIN_CHORD_ERROR),
         f.LENGTH,
         "Largest distance between a bead and the straight segments that approximate it. A new "
         "feature starts with 0.01 mm up to a size of 250 mm and with more for larger ones, at "

@@ -12,7 +12,7 @@ Point = tuple[float, float, float]
 
 NONE = "none"
 WHERE = "cell.touched"
-MORE = ";"  # separator of points
+SEPARATOR = ";"  # separator of points
 _FORM = "write such as: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5"
 
 
@@ -33,13 +33,13 @@ class Touched:
         )
 
 
-def touched(text: str) -> tuple[Touched, ...]:
+def parse_touched(text: str) -> tuple[Touched, ...]:
     """Return the touched points of a text, in its order; empty for none. Raises InputError
     BAD_VALUE.
     """
     if text.strip() == NONE:
         return ()
-    return tuple(_one(part.strip()) for part in text.split(MORE) if part.strip())
+    return tuple(_one(part.strip()) for part in text.split(SEPARATOR) if part.strip())
 
 
 def _one(text: str) -> Touched:

@@ -17,7 +17,7 @@ import numpy as np
 from ..issues import InputError, Text
 from ..kinematics.arrangement import arrangement_of
 from ..parameters.cell import CellParameters, Pose
-from ..parameters.external import MORE, PART, externals
+from ..parameters.external import PART, SEPARATOR, externals
 from ..parameters.place import (
     AUTO,
     CLEARANCE,
@@ -95,7 +95,7 @@ def replace_pose(settings: CellParameters, moves: str, pose: Sequence[float]) ->
         mechanisms.append(
             str(dataclasses.replace(mechanism, pose=new_pose) if turns else mechanism)
         )
-    return dataclasses.replace(settings, external=f"{MORE} ".join(mechanisms))
+    return dataclasses.replace(settings, external=f"{SEPARATOR} ".join(mechanisms))
 
 
 def outer(pose: Pose) -> list[float]:

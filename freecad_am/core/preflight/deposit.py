@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..geometry.fitted import REMAINS
+from ..geometry.fitted import REMAINS_CODE
 from ..issues import WARNING, Issue, Text
 from ..parameters.process import ProcessParameters
 from ..process.deposit import balance as deposit_balance
@@ -66,7 +66,7 @@ def lies_on_part(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
             "scan",
             count,
         )
-    off = worst > allowed or bool(select_issues(issues, (REMAINS,), WARNING))
+    off = worst > allowed or bool(select_issues(issues, (REMAINS_CODE,), WARNING))
     return Promise(what, how, not off, worst, "mm", allowed, issue_place(deviations))
 
 

@@ -41,7 +41,7 @@ def join_toolpaths(
     for number, (k, i) in enumerate(order):
         numbers[k][i] = number
     first_path = toolpaths[0]
-    sized = [_with_bead_sizes(toolpath, first_path) for toolpath in toolpaths]
+    sized = [_add_bead_sizes(toolpath, first_path) for toolpath in toolpaths]
     feeds = {toolpath.wire_feed for toolpath in toolpaths}
     return replace(
         first_path,
@@ -144,7 +144,7 @@ def _lowest(layers: Sequence[Layer], up: Array) -> list[float]:
     return lowest[::-1]
 
 
-def _with_bead_sizes(toolpath: Toolpath, first_path: Toolpath) -> Toolpath:
+def _add_bead_sizes(toolpath: Toolpath, first_path: Toolpath) -> Toolpath:
     """The toolpath with bead width and height in each bead, if they differ from the first feature."""
     if toolpath.bead_width is None or (
         (toolpath.bead_width, toolpath.layer_height)

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 # measured at a million, a point takes 0.3 kB with its toolpath, 0.6 kB with its joint path and what the document stores, 1.5
 # kB at the peak: these are more than 70 GB, and fifty times the largest jobs known
 MOST_POINTS = 50_000_000
-LARGE = "LARGE"
+LARGE_CODE = "LARGE"
 LARGE_SECONDS, LARGE_GIGABYTES = (
     30.0,
     1.0,
@@ -290,7 +290,7 @@ def size_issues(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
         *shapes,
         Issue(
             NOTE,
-            LARGE,
+            LARGE_CODE,
             Text(
                 "planning about {} points in {} layers takes about {:g} min of processor time "
                 "and {:g} GB of memory; raise strategy.layer_height or strategy.chord_error to "
@@ -311,7 +311,7 @@ def _shape_issues(size: Size, seconds: float) -> tuple[Issue, ...]:
         return (
             Issue(
                 NOTE,
-                LARGE,
+                LARGE_CODE,
                 Text(
                     "the search for curved layers on a grid of about {} nodes takes about {:g} "
                     "min of processor time; a larger strategy.layer_height, or layers: planes, "
@@ -325,7 +325,7 @@ def _shape_issues(size: Size, seconds: float) -> tuple[Issue, ...]:
         return (
             Issue(
                 NOTE,
-                LARGE,
+                LARGE_CODE,
                 Text(
                     "facets meet at sharp angles along about {} mm of edges; computing layers "
                     "around them takes about {:g} min of processor time; a larger "
@@ -348,7 +348,7 @@ def tilting_issues(points: int, times: int = 1) -> tuple[Issue, ...]:
         return (
             Issue(
                 NOTE,
-                LARGE,
+                LARGE_CODE,
                 Text(
                     "with tilts for clearance the tool turns faster than "
                     "build_direction.max_turn on beads of {} points; the search for slower tilts "
@@ -362,7 +362,7 @@ def tilting_issues(points: int, times: int = 1) -> tuple[Issue, ...]:
     return (
         Issue(
             NOTE,
-            LARGE,
+            LARGE_CODE,
             Text(
                 "at the requested tool axes the nozzle touches beads of {} points; the search "
                 "for clear tilts takes about {}, several times that where the tool would turn "
@@ -388,7 +388,7 @@ def remedy_issues(
     return (
         Issue(
             NOTE,
-            LARGE,
+            LARGE_CODE,
             Text(
                 "the job is infeasible as it is; the search for a feasible change takes up to "
                 "{:g} min of processor time",

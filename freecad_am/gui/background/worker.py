@@ -70,7 +70,7 @@ class Worker:
 
     def _run(self) -> None:
         try:
-            one_thread.here()
+            one_thread.limit_calling_thread()
             try:
                 with told_to(self._report):
                     self._value = self._work()

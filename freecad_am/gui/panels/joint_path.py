@@ -15,7 +15,7 @@ from ...core.kinematics import cell as cells
 from ...core.kinematics.machines import machine as machines
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.external import externals
-from ...core.parameters.joints import LEVEL
+from ...core.parameters.joints import LEVEL_METHOD
 from ...core.planning.joint_path import JointPath as JointsOfBeads
 from ...core.planning.plan import OF_ROBOTS, plan_joints
 from ...core.planning.rotation.headroom import Judgement, judge_paths
@@ -156,7 +156,7 @@ def _plan_sample(job: Job) -> tuple[Sampled, JointsOfBeads, Judgement, list[Issu
         job.parameters,
         compare=(),
         given=sample.select_given(job.parameters.given),
-        external_axes=LEVEL,
+        external_axes=LEVEL_METHOD,
     )
     planned = plan_joints(toolpath, cell, parameters, progress.report)
     judgement = judge_paths(planned.beads, cell.limits, cell.machine.max_speed)

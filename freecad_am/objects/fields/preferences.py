@@ -19,9 +19,9 @@ from ...core.parameters.process import ProcessParameters
 from ...core.quantities import (
     UNITS,
     exact_or_rounded,
+    expand_exponents,
     in_other_units,
     significant,
-    without_exponents,
 )
 from . import rows
 
@@ -279,7 +279,7 @@ def window_is_open() -> bool:
 def in_user_units(text: str) -> str:
     """A text of numbers in mm, mm/s and so on, with these in the user's units and without exponents; no names of users may
     be in it."""
-    return in_other_units(without_exponents(text), conversion)
+    return in_other_units(expand_exponents(text), conversion)
 
 
 def quantity_text(value: float, unit: str, digits: int = 4) -> str:

@@ -17,7 +17,13 @@ from ...brep.kernel import limits as kernel
 from ...brep.shapes import tessellate
 from ...core.geometry.obstacles import Body
 from ...core.issues import NOTE, AmError, InputError, Issue, Text
-from ...core.parameters.strategy import BEAD_TO_LAYER, LEAST, SMALL, DefaultLength, scaled
+from ...core.parameters.strategy import (
+    BEAD_TO_LAYER,
+    MIN_CHORD_ERROR,
+    SMALL_PART_SIZE,
+    DefaultLength,
+    scaled,
+)
 from ..stage_parts import Link
 from .meshes import is_mesh, mesh_of, refuse_mixed
 from .places import (
@@ -230,7 +236,7 @@ def fill_in(obj: Any, parameters: Sequence[Any], values: Mapping[str, Any]) -> N
     """Set the chord error of a new feature by its size, unless `parameters` or `values` give one."""
     if PROPERTY in obj.PropertiesList and not _is_given(parameters, values):
         chord_error = suited(obj)
-        if chord_error > LEAST:
+        if chord_error > MIN_CHORD_ERROR:
             setattr(obj, PROPERTY, f"{chord_error!r} mm")
 
 
@@ -255,8 +261,8 @@ def notes(obj: Any) -> tuple[Issue, ...]:
     """A note if the chord error of a feature follows from its size and is not the one of small
     parts.
     """
-    chord_error = float(getattr(obj, PROPERTY, LEAST))
-    if chord_error <= LEAST or chord_error != suited(obj):
+    chord_error = float(getattr(obj, PROPERTY, MIN_CHORD_ERROR))
+    if chord_error <= MIN_CHORD_ERROR or chord_error != suited(obj):
         return ()
     text = Text(
         "the chord error is {:g} mm, suitable for a part of {:.0f} mm and its beads; set "
@@ -315,6 +321,6 @@ def _box(shape: Any) -> Any:
     shape may have, so it only decides about small shapes.
     """
     box = shape.BoundBox
-    if _extent(box) > SMALL:
+    if _extent(box) > SMALL_PART_SIZE:
         return shape.copy(True, False).optimalBoundingBox()  # without its triangles
     return box

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 from freecad_am.core.filling.centre import Beads, bare_parts
 from freecad_am.core.filling.cover import measure_cover
 from freecad_am.core.filling.fill import fill, open_places
-from freecad_am.core.geometry.regions.region import joined, regions
+from freecad_am.core.geometry.regions.region import join, regions
 from freecad_am.core.geometry.regions.strip import Period, strips
 from freecad_am.core.parameters.filled import DevelopableParameters
 
@@ -219,21 +219,21 @@ def test_slits_are_closed_and_wedges_beside_them_told():
         return left + shapes.polygon((a, 0), (60, 0), (60, 20), (b, 20))
 
     for slit in (0.0, 1e-6, 0.02):
-        (whole,) = joined(regions(halves(slit)), 0.05)
+        (whole,) = join(regions(halves(slit)), 0.05)
         assert len(whole.borders()) == 1 and whole.area == pytest.approx(
             1600.0, abs=0.3 + 20.0 * slit
         )
     apart = regions(halves(0.5))
-    assert joined(apart, 0.05) == apart and len(apart) == 2
+    assert join(apart, 0.05) == apart and len(apart) == 2
     curves = [curve for region in apart for curve in fill(region, BEADS)]
     assert [place for region in apart for place in open_places(region, curves, BEADS)] == []
-    told = [gap for region in joined(apart, GAP) for gap in open_places(region, curves, BEADS)]
+    told = [gap for region in join(apart, GAP) for gap in open_places(region, curves, BEADS)]
     tree = shapes.tree([(curve.points, curve.closed) for curve in curves], 0.02)
     assert told  # one place along the slit
     for place, width in told:
         assert tree.query(place)[0] > 0.5 * S and width > GAP
     single = regions(REGIONS["L"])
-    assert joined(single, GAP) == single
+    assert join(single, GAP) == single
 
 
 def test_strips_of_beads_wider_than_their_spacing_stay_inside():

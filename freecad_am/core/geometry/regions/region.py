@@ -21,7 +21,7 @@ from ..curves.plane_curve import doubled_area, nearest_on_rings, winding
 from ..curves.polyline import turn_segments
 
 MERGED = 1e-12  # of the extent; points nearer together are one
-STRAIGHT = 1e-9  # of the extent; a border within that of a straight line is one, and what is thinner is none
+STRAIGHTNESS_TOLERANCE = 1e-9  # of the extent; a border within that of a straight line is one, and what is thinner is none
 SLIVER = 1e-12  # of the squared extent; smaller pieces are dropped where no other area is stated
 AT_ONCE, BEND = 200, 1.5  # points of a line, and rad that it turns, grown at once
 # the library's number for corners that stay corners, and up to how many times the distance these may stand out
@@ -166,7 +166,7 @@ class Region:
         smaller pieces are left out."""
         left = self.shape.difference(_union(others))
         if wide > 0.0:
-            left = _apart(left, STRAIGHT * self.extent)
+            left = _cut_hairs(left, STRAIGHTNESS_TOLERANCE * self.extent)
         least = max(SLIVER * self.extent**2, EIGHT * (0.5 * wide) ** 2, least_area)
         return _parts(left, least, self.sheet)
 
@@ -211,7 +211,7 @@ class Region:
         if all(len(ring) != 4 for ring in found[0].borders()):
             return found[0]
         # the library keeps four points of a ring at least
-        rings = [_without_fourth(ring, tolerance) for ring in found[0].borders()]
+        rings = [_drop_fourth(ring, tolerance) for ring in found[0].borders()]
         return Region(geometry.Polygon(rings[0], rings[1:]), self.sheet)
 
     def inside(self) -> Array:
@@ -278,7 +278,7 @@ def along(
     curves: Sequence[tuple[Array, bool]], half: float | Array, chord_error: float
 ) -> tuple[Region, ...]:
     """What lies within `half` mm, or (k,) mm of each, of k curves (points (n, 2), whether closed)."""
-    bands = _without_pinholes(_bands(curves, half, chord_error), chord_error**2)
+    bands = _fill_pinholes(_bands(curves, half, chord_error), chord_error**2)
     return _parts(bands, 0.0)
 
 
@@ -324,7 +324,7 @@ def _bands(curves: Sequence[tuple[Array, bool]], half: float | Array, chord_erro
     return shapely().ops.unary_union(bands)
 
 
-def _without_pinholes(shape: Any, area: float) -> Any:
+def _fill_pinholes(shape: Any, area: float) -> Any:
     """Return a shape without the holes below an area (mm^2), thousands of which the chords of arcs leave between bands."""
     polygons = []
     for polygon in _polygons(shape):
@@ -340,7 +340,7 @@ def _union(regions: Sequence[Region]) -> Any:
     return shapely().ops.unary_union([region.shape for region in regions])
 
 
-def joined(parts: Sequence[Region], width: float) -> tuple[Region, ...]:
+def join(parts: Sequence[Region], width: float) -> tuple[Region, ...]:
     """Regions of one plane without the slits in and between them that are thinner than `width` mm; the same regions where
     there are none, or only short ones."""
     shape = shapely().ops.unary_union(
@@ -421,7 +421,7 @@ def _wound(loops: list[Array]) -> tuple[Any, float]:
     return kept, float((np.abs(count - inside) * area).sum())
 
 
-def _without_fourth(ring: Array, tolerance: float) -> Array:
+def _drop_fourth(ring: Array, tolerance: float) -> Array:
     """A ring (n, 2) of four points without one that is within a tolerance (mm) of the line between its neighbours."""
     if len(ring) != 4:
         return ring
@@ -472,7 +472,9 @@ def _ring(points: Array, sense: float) -> Array:
     """Return a closed ring (n + 1, 2) as a border (n, 2) that begins at its leftmost point."""
     x, y = points[:, 0] - points[0, 0], points[:, 1] - points[0, 1]
     points = points[:-1] if (x[:-1] @ y[1:] - x[1:] @ y[:-1]) * sense >= 0.0 else points[-2::-1]
-    leftmost = np.flatnonzero(points[:, 0] <= points[:, 0].min() + STRAIGHT * _extent(points))
+    leftmost = np.flatnonzero(
+        points[:, 0] <= points[:, 0].min() + STRAIGHTNESS_TOLERANCE * _extent(points)
+    )
     first = int(leftmost[np.argmin(points[leftmost, 1])])
     return np.concatenate([points[first:], points[:first]])
 
@@ -493,7 +495,7 @@ def _parts(
     )
 
 
-def _apart(shape: Any, hair: float) -> Any:
+def _cut_hairs(shape: Any, hair: float) -> Any:
     """A shape whose polygons are cut where they hang together by no more than a hair (mm), as rounding errors make them."""
     corners = {"join_style": _MITRE, "mitre_limit": SHARPEST}
     pieces = []
@@ -507,8 +509,8 @@ def _plain(polygon: Any) -> Any:
     """A polygon without the points and spikes that are there by rounding errors alone. Versions of the library leave others,
     and what is found in the middle of a region would be different with each."""
     rings = [ring[:-1] for ring in _closed_rings(polygon)]
-    tolerance = STRAIGHT * _extent(rings[0])
-    plain = [_without_straight(ring, tolerance) for ring in rings]
+    tolerance = STRAIGHTNESS_TOLERANCE * _extent(rings[0])
+    plain = [_drop_straight(ring, tolerance) for ring in rings]
     if all(len(ring) == len(before) for ring, before in zip(plain, rings)):
         return polygon
     if len(plain[0]) < 3:
@@ -517,7 +519,7 @@ def _plain(polygon: Any) -> Any:
     return made if made.is_valid else polygon
 
 
-def _without_straight(ring: Array, tolerance: float) -> Array:
+def _drop_straight(ring: Array, tolerance: float) -> Array:
     """A ring (n, 2) without points that lie on the straight line between their neighbours, or at the end of a spike."""
     while len(ring) > 2:
         into = ring - np.concatenate([ring[-1:], ring[:-1]])

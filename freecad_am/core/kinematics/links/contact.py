@@ -336,7 +336,7 @@ class ArmContact:
         finite = np.flatnonzero(np.isfinite(values).all(axis=1))
         for rows in np.split(finite, np.arange(PIECE, len(finite), PIECE)):
             if len(rows):
-                link[rows], what[rows] = self._touched(values[rows], when[rows])
+                link[rows], what[rows] = self._find_contacts(values[rows], when[rows])
         return Touches(link, what)
 
     def link_frames(self, joints: Array) -> tuple[Array, dict[str, Array]]:
@@ -364,7 +364,7 @@ class ArmContact:
             [links, part_frame[:, None], nozzle[:, None], nozzle[:, None], adjacent], axis=1
         ), seen_from
 
-    def _touched(self, joints: Array, moment: Index) -> tuple[Index, Index]:
+    def _find_contacts(self, joints: Array, moment: Index) -> tuple[Index, Index]:
         links, seen_from = self.link_frames(joints)
         link, what = (
             np.full(len(joints), NONE, dtype=np.int64),

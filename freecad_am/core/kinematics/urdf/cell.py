@@ -18,7 +18,7 @@ import numpy as np
 from ...geometry import frames
 from ...geometry.located import is_there
 from ...issues import InputError, Text
-from ...parameters.external import MORE, PART, ROBOT, WHERE, External, Pose
+from ...parameters.external import PART, ROBOT, SEPARATOR, WHERE, External, Pose
 from ...types import Array
 from .elements import CODE
 from .machine import WHOLE_CELL
@@ -228,7 +228,7 @@ def texts_of(cell_reference: Reference) -> tuple[str, str]:
             cell_reference.file,
         )
     urdf_cell = UrdfCell(cell_reference.file)
-    external = f"{MORE} ".join(map(str, urdf_cell.external()))
+    external = f"{SEPARATOR} ".join(map(str, urdf_cell.external()))
     return str(urdf_cell.machine()), external or "none"
 
 

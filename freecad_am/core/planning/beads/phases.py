@@ -16,14 +16,14 @@ from ...geometry.columns import dots, lengths
 from ...issues import ERROR, Issue, Text
 from ...kinematics.cell import Cell
 from ...motion import AT_END, AT_START, MIDDLE
-from ...parameters.ramp import SHORTEST, ramp
+from ...parameters.ramp import MIN_STEP, ramp
 from ...toolpath import Bead
 from ...types import Array, Index
 from ..joint_path import BeadPath
 
 STEPS = 4  # iterations; each leaves a small share of the previous error
 END_MM = 1e-3  # mm; a point so near to where a phase ends is where it ends
-STEP_MM = 0.2 * SHORTEST  # a point so near to where a step of a ramp ends is where it ends
+STEP_MM = 0.2 * MIN_STEP  # a point so near to where a step of a ramp ends is where it ends
 CODE = "PHASE_LENGTH"
 _UNIT = ("build", "tool", "tangents")
 Condition = Callable[[Array, Array], Array]

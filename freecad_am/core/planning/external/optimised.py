@@ -20,7 +20,7 @@ import numpy as np
 from ...issues import ERROR, NOTE, InputError, Issue, Text, has_errors
 from ...kinematics.cell import Cell
 from ...kinematics.external import tilt_from
-from ...parameters.joints import LEVEL, JointParameters
+from ...parameters.joints import LEVEL_METHOD, JointParameters
 from ...types import Array
 from ..joint_path import BeadPath
 from ..points import Points, gather, thinned
@@ -303,7 +303,7 @@ def asked(parameters: JointParameters, cell: Cell) -> tuple[bool, list[Issue]]:
 
     Raises InputError NOT_FOR_SETUP for methods without polynomials per bead.
     """
-    if parameters.external_axes == LEVEL:
+    if parameters.external_axes == LEVEL_METHOD:
         return False, []
     if cell.external is None:
         return False, [
@@ -325,7 +325,7 @@ def asked(parameters: JointParameters, cell: Cell) -> tuple[bool, list[Issue]]:
             parameters.external_axes,
             parameters.method,
             METHOD,
-            LEVEL,
+            LEVEL_METHOD,
         )
     return True, []
 

@@ -20,7 +20,7 @@ from ...kinematics.arrangement import arrangement_of
 from ...kinematics.machines import machine as machines
 from ...kinematics.machines.machine import Machine
 from ...parameters.cell import CellParameters
-from ...parameters.external import MORE, PART, ROBOT, WHERE, External, Pose, externals
+from ...parameters.external import PART, ROBOT, SEPARATOR, WHERE, External, Pose, externals
 from ...parameters.process import ProcessParameters
 from ...toolpath import Toolpath
 from ...types import Array
@@ -153,7 +153,7 @@ def _before(robot: Machine, towards: Array, height: float) -> list[Array]:
 
 
 def _text(named: Sequence[External]) -> str:
-    return f"{MORE} ".join(map(str, named))
+    return f"{SEPARATOR} ".join(map(str, named))
 
 
 def _key_text(mechanism: External) -> str:

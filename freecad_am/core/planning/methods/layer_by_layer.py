@@ -46,7 +46,7 @@ def plan(
         else ([], {})
     )
     of_bead = dict(zip(free, paths)) | given.paths(task, beads, bead_ids, fixed)
-    together, issues = unwrap.put_in(
+    together, issues = unwrap.insert_replacements(
         task,
         [of_bead[k] for k in range(len(beads))],
         {free[k]: replacements for k, replacements in helped.items()},

@@ -26,7 +26,7 @@ def courses(found: Turns) -> list[Array]:
     """Two courses (n, 2) through the turns of the directions along a bead; an axis that is free stays where it was."""
     turned = np.stack([found.first_turn, found.second_turn], axis=-1)
     for axis, free in enumerate((found.first_free, found.second_free)):
-        turned[:, :, axis] = kept(turned[:, :, axis], free)
+        turned[:, :, axis] = hold_free_angles(turned[:, :, axis], free)
     return continuous(turned)
 
 
@@ -57,7 +57,7 @@ def continuous(turned: Array) -> list[Array]:
     return [np.unwrap(turned[(start + swaps) % 2, rows], axis=0) for start in range(2)]
 
 
-def kept(angles: Array, free: Mask) -> Array:
+def hold_free_angles(angles: Array, free: Mask) -> Array:
     """Return the angles (2, n) with free ones equal to the previous fixed one, at the beginning to
     the next one.
     """

@@ -248,7 +248,7 @@ def for_beads(
     return result
 
 
-def put_in(
+def insert_replacements(
     task: Task, paths: Sequence[BeadPath], helped: Mapping[int, list[BeadPath]]
 ) -> tuple[list[BeadPath], list[Issue]]:
     """Return the paths with the replacements inserted and beads renumbered, and notes on the

@@ -17,7 +17,7 @@ from ...filling.fill import Gaps, fill, open_places
 from ...filling.free_width import fit_beads, narrow_beads, share_widths
 from ...filling.sparse import Infill
 from ...geometry.curves.plane_curve import nearest_among
-from ...geometry.regions.region import Region, joined
+from ...geometry.regions.region import Region, join
 from ...geometry.regions.strip import Period, Strip
 from ...issues import NOTE, WARNING, InfeasibleError, InputError, Issue, Text, Word
 from ...layers.margins import ARCS
@@ -157,7 +157,7 @@ class Pictures:
         regions = tuple(region for region in layer.regions if isinstance(region, Region))
         all_round = len(regions) < len(layer.regions)
         if not all_round and strategy.fill_density == 1.0:
-            regions = joined(regions, beads.gap)
+            regions = join(regions, beads.gap)
             if regions != layer.regions:  # open places on both sides of a slit are one gap
                 gaps = [gap for region in regions for gap in open_places(region, curves, beads)]
         if gaps:

@@ -24,7 +24,7 @@ from .filling import FULL_RANGE
 from .lean import Turned
 
 SLIGHTLY = 0.01  # of the travel speed; smaller differences are not reported
-WIDE = "as wide as the room that they have, {:.3g} to {:.3g} mm"
+WIDTH_TEXT = "as wide as the room that they have, {:.3g} to {:.3g} mm"
 HIGH = "as high as their layer is there, {:.3g} to {:.3g} mm"
 
 
@@ -104,7 +104,9 @@ def _speeds(
     wide = [bead.width for bead in beads if bead.width is not None]
     high = [bead.height for bead in beads if bead.height is not None]
     sizes = [
-        Text(text, *_ends(columns)) for text, columns in ((WIDE, wide), (HIGH, high)) if columns
+        Text(text, *_ends(columns))
+        for text, columns in ((WIDTH_TEXT, wide), (HIGH, high))
+        if columns
     ]
     _, layer, number = max(varied, key=lambda deviation: deviation[0])
     text = Text(
