@@ -3143,7 +3143,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>G92 lacks the word {0}; add X, Y, Z or E with a number</source>
+        <source>G92 does not take {0} here; give X, Y, Z or E with a number</source>
         <translation>G92 n&apos;a pas de mot {0} ; donnez X, Y, Z ou E avec un nombre</translation>
     </message>
     <message>
@@ -8153,7 +8153,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>choose a robot with six revolute axes; further axes belong in `cell.external`</source>
+        <source>choose a robot with six revolute axes; if a gripper follows them, name the last link of the arm as `tip`; further axes belong in `cell.external`</source>
         <translation>choisissez un robot qui en a six rotatifs ; ceux d&apos;à côté sont dans `cell.external`</translation>
     </message>
     <message>
@@ -9410,6 +9410,11 @@
         <location filename="../../freecad_am/posts/catalogue.py"/>
         <source>it is a reserved word</source>
         <translation>c&apos;est un mot réservé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>it is a sliced file: it contains G-code ({0}) and no triangles; export the project with its meshes, or unpack the G-code and plan it as curves</source>
+        <translation>c&apos;est un fichier tranché : il contient du G-code ({0}) et aucun triangle ; exportez le projet avec ses maillages, ou extrayez le G-code et planifiez-le comme courbes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall_on.py"/>
@@ -14717,6 +14722,11 @@
         <translation>{0} n&apos;existe pas dans {1} ; choisissez-le dans la vue 3D, ou sur l&apos;objet d&apos;origine</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} does not take the word {1}; remove it, or use one of {2}</source>
+        <translation>{0} n&apos;a pas de mot {1} ; donnez {2} ou corrigez la ligne</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/checks/on_substrate.py"/>
         <source>{0} does not touch its substrate {1}: the smallest gap is {2} mm, at ({3}, {4}, {5}); move it onto the substrate, or remove the substrate</source>
         <translation>{0} ne touche pas son substrat {1} : il en est à {2} mm en ({3}, {4}, {5}), au plus près ; posez-le sur le substrat ou retirez le substrat</translation>
@@ -15830,11 +15840,6 @@
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>{0} jobs are called by no other job, expected one</source>
         <translation>{0} jobs ne sont appelés par aucun autre, un seul est attendu</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} lacks the word {1}; add {2}, or correct the line</source>
-        <translation>{0} n&apos;a pas de mot {1} ; donnez {2} ou corrigez la ligne</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/plan.py"/>

@@ -372,6 +372,21 @@ def test_roles_of_prusaslicer(tmp_path, role, wanted, word, moved_too):
     assert len(notes) == (word is not None) and (word is None or word in notes[0])
 
 
+def test_prefixes_that_prusaslicer_does_not_declare(tmp_path):
+    """PrusaSlicer 2.9.2 writes its embossed texts so, in a file of roles without namespaces."""
+    config = prusa((0, 11, {}), (12, 23, {"volume_type": "NegativeVolume"}))
+    config = config.replace("</volume>", '<slic3rpe:text text="V"/></volume>')
+    text = model(mesh(1, BOTH, BOTH_FACES), placed("item", 1))
+    volume, _ = volume_and_notes(written(tmp_path, text, more={PRUSA: config}))
+    assert volume == pytest.approx(13500.0)
+
+
+def test_sliced_files_name_their_program(tmp_path):
+    path = written(tmp_path, model("", ""), more={"Metadata/plate_1.gcode": "G1 X1"})
+    with pytest.raises(InputError, match=r"G-code \(Metadata/plate_1\.gcode\)"):
+        three_mf.content(path)
+
+
 def test_modifiers_of_older_slicers(tmp_path):
     old = prusa((0, 11, {}), (12, 23, {"modifier": "1"}))
     text = model(mesh(1, BOTH, BOTH_FACES), placed("item", 1))

@@ -111,6 +111,7 @@ if sys.platform != "win32":
 T = TypeVar("T")
 
 SECONDS, SECONDS_A_MB = 4.0, 10.0  # processor time, s, per file and per MB
+SECONDS_TO_CUT = 20.0  # s more for a 3MF file, whose negative volumes are subtracted on reading
 MEMORY, MEMORY_A_MB = 600.0, 100.0  # MB, likewise, in addition to the memory of the current process
 MAX_FILE_MB = 2000  # MB of a file
 WALL_CLOCK_FACTOR = 10.0  # wall-clock limit as a multiple of the processor time, as other processes share the processor
@@ -139,7 +140,10 @@ def read_apart(
         raise InputError("BAD_FILE", where, message)
     if _is_apart or not (FreeCAD.GuiUp or sys.platform.startswith("linux")):
         return reader(path, *arguments)
-    limits = _limits(size, patience)
+    seconds, memory = _limits(size, patience)
+    if where.lower().endswith(".3mf"):
+        seconds += SECONDS_TO_CUT
+    limits = seconds, memory
     if not (FreeCAD.GuiUp or _has_kernel_threads()):
         with _Reading(reader, path, arguments, *limits) as copy:
             exit_code, used = copy.wait()

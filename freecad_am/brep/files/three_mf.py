@@ -204,13 +204,25 @@ class _Package:
         self._read_profiles()
         points, corners = self._merge_pieces()
         if not len(corners):
-            raise InputError(
+            raise self._empty_file()
+        return Content(points, corners, tuple(self._notes()))
+
+    def _empty_file(self) -> InputError:
+        sliced = [name for name in self.archive.namelist() if name.lower().endswith(".gcode")]
+        if sliced and not self.objects:
+            return InputError(
                 "EMPTY_FILE",
                 self.where,
-                "it contains no triangles{}; export the part again",
-                self._names_left_out(),
+                "it is a sliced file: it contains G-code ({}) and no triangles; export the project "
+                "with its meshes, or unpack the G-code and plan it as curves",
+                ", ".join(sliced[:MAX_NAMED]),
             )
-        return Content(points, corners, tuple(self._notes()))
+        return InputError(
+            "EMPTY_FILE",
+            self.where,
+            "it contains no triangles{}; export the part again",
+            self._names_left_out(),
+        )
 
     def _merge_pieces(self) -> tuple[Array, Index]:
         """The parts, with the negative volumes of the same item subtracted."""
@@ -345,7 +357,7 @@ class _Package:
         for name in filter(roles.is_config, self.archive.namelist()):
             reader = roles.ConfigReader()
             try:
-                self._parse(name, reader.start, None, reader.end)
+                self._parse(name, reader.start, None, reader.end, separator=None)
             except ValueError as error:
                 raise _bad(
                     self.where, Text("{} in it has a value that is not a number ({})", name, error)
@@ -485,7 +497,13 @@ class _Package:
         prefix: object = None,
         end: object = None,
         text: object = None,
+        separator: str | None = " ",
     ) -> None:
+        """Call the handlers with the elements of a file of the zip.
+
+        separator: between namespace and name of an element; None reads prefixes as part of names,
+        as PrusaSlicer declares none for the texts in its file of roles.
+        """
         try:
             info = self.archive.getinfo(name)
         except KeyError:
@@ -494,7 +512,7 @@ class _Package:
             raise _encrypted(self.where)
         if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
             raise _bad(self.where, "it is compressed in a way that 3MF does not allow")
-        parser = expat.ParserCreate(namespace_separator=" ")
+        parser = expat.ParserCreate(namespace_separator=separator)
         parser.buffer_text = True
         parser.StartElementHandler = start  # type: ignore[assignment]
         parser.EndElementHandler = end  # type: ignore[assignment]

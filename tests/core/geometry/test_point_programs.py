@@ -137,7 +137,7 @@ def test_inches_are_read_until_millimetres_follow():
             "line 2",
             "K does not belong to an arc in G17; use I and J",
         ),
-        ("G1 X1 Y1 Z1\nG1 X2 Y2 K1 E1\n", "line 2", "G1 lacks the word K"),
+        ("G1 X1 Y1 Z1\nG1 X2 Y2 K1 E1\n", "line 2", "G1 does not take the word K"),
         ("G1 X1 Y1 Z1 E0\nG1 X2 E1 G20\n", "line 2", "follows a move"),
         ("G1 X1 E1\n", "line 1", "before its position is defined"),
         ("G0 X0 Y0 Z0\nG2 X5 Y5 E1\n", "line 2", "give the centre of the arc or its radius"),

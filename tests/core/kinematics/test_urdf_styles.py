@@ -11,6 +11,7 @@ import pytest
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.kinematics.urdf import machine as urdf_machine
+from freecad_am.core.kinematics.urdf import read as urdf_read
 from freecad_am.core.kinematics.urdf import text as urdf_text
 from freecad_am.core.kinematics.urdf.read import Urdf
 from freecad_am.core.kinematics.urdf.reference import Reference
@@ -312,3 +313,11 @@ def test_limits_that_are_left_out_or_soft_are_noted(tmp_path):
     described, _ = urdf_machine.describe(Reference(str(path), None, None))
     notes = " / ".join(described.notes)
     assert described.upper[0] == 0.0 and "no upper; 0 is used" in notes and "soft limits" in notes
+
+
+@pytest.mark.parametrize(
+    ("word", "degrees"),
+    [("1.29", np.degrees(1.29)), ("1.57", 90.0), ("-2.97", -170.0), ("1.2915", 74.0)],
+)
+def test_limits_are_whole_degrees_where_their_digits_say_so(word, degrees):
+    assert np.degrees(urdf_read.unrounded_limit(word)) == pytest.approx(degrees, abs=1e-9)

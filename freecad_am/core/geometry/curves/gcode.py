@@ -639,7 +639,7 @@ class _Reader:
             elif letter not in allowed:
                 raise self._error(
                     Text(
-                        "{} lacks the word {}; add {}, or correct the line",
+                        "{} does not take the word {}; remove it, or use one of {}",
                         self.motion,
                         letter,
                         " ".join(sorted(allowed)),
@@ -681,7 +681,7 @@ class _Reader:
         for letter, value in command.words:
             if letter not in "XYZEABC" or value is None:
                 raise self._error(
-                    Text("G92 lacks the word {}; add X, Y, Z or E with a number", letter)
+                    Text("G92 does not take {} here; give X, Y, Z or E with a number", letter)
                 )
             if letter in "ABC":
                 self._check_rotary(letter, value - self.state.coordinates[letter])

@@ -76,7 +76,8 @@ def recognise(chain: Chain) -> OpwArm:
             )
         raise refused(
             Text("it has {} axes, {} prismatic", chain.axes, slides),
-            "choose a robot with six revolute axes; further axes belong in `cell.external`",
+            "choose a robot with six revolute axes; if a gripper follows them, name the last link "
+            "of the arm as `tip`; further axes belong in `cell.external`",
         )
     at_rest = chain.frames(np.zeros(6))
     centre = _wrist_centre(at_rest)

@@ -474,6 +474,15 @@ def _axis(joint: Element) -> Array:
     return np.asarray(axis / length)
 
 
+def unrounded_limit(word: str) -> float:
+    """Return the limit of a joint that a number represents, rad: a whole degree or the number itself.
+
+    With two decimals only multiples of five degrees count: a whole degree is near every number.
+    """
+    has_few_decimals = len(word.partition(".")[2]) < 3
+    return urdf_xml.nearest(word, 5.0 * DEGREE if has_few_decimals else DEGREE)
+
+
 def _limits(joint: Element) -> tuple[float, float, float]:
     """Lowest and highest value and speed; limits that are rounded whole degrees are whole degrees."""
     kind = joint.text("type")
@@ -494,7 +503,7 @@ def _limits(joint: Element) -> tuple[float, float, float]:
         values.append(
             unit * value
             if unit != 1.0
-            else urdf_xml.nearest(limit.attributes.get(name, "0").strip(), DEGREE)
+            else unrounded_limit(limit.attributes.get(name, "0").strip())
         )
     lower, upper, speed = values
     if speed < 0.0:
