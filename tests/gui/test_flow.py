@@ -166,7 +166,10 @@ def test_solids_on_a_hub_are_told_from_what_stands_on_what(person, coarse):
     person.gui.Selection.addSelection(doc.Name, blade.Name, "")
     person.gui.Selection.addSelection(doc.Name, hub.Name, "Face1")
     told = new_job(person, False, Machine="table-xyzac")
-    assert told["Kind"] == "Solids on a hub" and "Blade stands on" in told["reason"]
+    assert (
+        told["Kind"] == "Solids on a hub"
+        and "Blade is on a cylinder or cone of Hub" in told["reason"]
+    )
     assert doc.Feature.Substrate == hub and list(doc.Feature.BaseFaces[1]) == ["Face1"]
     assert doc.Cell.Setup == "rotary-table"
     program = api.stages_of(doc, "program")

@@ -22,7 +22,7 @@ from freecad_am.core.parameters.joints import (
     given_polynomials,
     given_text,
 )
-from freecad_am.core.planning import plan
+from freecad_am.core.planning import criteria, plan
 from freecad_am.core.planning.points import TURN, gather
 from freecad_am.core.planning.redundancy import curve as spin_curve
 from freecad_am.core.planning.redundancy import map
@@ -365,7 +365,7 @@ def test_a_curve_follows_what_the_planner_planned(funnel):
     )
     assert np.allclose(followed.displacement, [one.objective for one in path.beads], rtol=1e-9)
     sums = spin_curve.sums(followed)
-    figures = plan.comparison.path_figures(
+    figures = criteria.path_figures(
         dataclasses.replace(
             path,
             beads=tuple(

@@ -178,7 +178,7 @@ def test_beads_of_revolution_need_not_join(cell):
 def test_gradients_along_what_may_change(cell):
     task = Task(cell, FLIP, JointParameters(degree=5), True)
     points = gather([bead_of(1, True), bead_of(2, False)], cell)
-    directions = refine.basis.changes(task, points, 5)
+    directions = refine.refine_state.changes(task, points, 5)
     assert np.abs(directions[0, :, 1]).max() == 0.0 and np.linalg.matrix_rank(directions[1]) == 6
     assert np.linalg.matrix_rank(directions[0]) == 5
     low, high = points.ends
