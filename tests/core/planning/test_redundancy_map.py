@@ -25,7 +25,6 @@ from freecad_am.core.parameters.joints import (
 from freecad_am.core.planning import criteria, plan
 from freecad_am.core.planning.points import TURN, gather
 from freecad_am.core.planning.redundancy import curve as spin_curve
-from freecad_am.core.planning.redundancy import map
 from freecad_am.core.planning.redundancy import map as spin_map
 from freecad_am.core.planning.task import Task
 from freecad_am.kdl.chain import KdlArm
@@ -500,11 +499,13 @@ def test_two_external_axes_against_each_other_are_as_one_at_a_time(on_positioner
     """Each row is the map of the other axis across, with this one there, at the same rotation; joints are PyKDL's."""
     task, beads = on_positioner
     cell, at, rotation = task.cell, (1, 7), 0.4
-    values = tuple(map.span(task, beads[1], 7, axis, count) for axis, count in ((2, 9), (1, 5)))
-    pairs = map.across_two_axes(beads, cell, at, (2, 1), values)
+    values = tuple(
+        spin_map.span(task, beads[1], 7, axis, count) for axis, count in ((2, 9), (1, 5))
+    )
+    pairs = spin_map.across_two_axes(beads, cell, at, (2, 1), values)
     assert len(pairs) == 45 and (pairs.bead == 1).all() and (pairs.point == 7).all()
     found = spin_map.redundancy_map(task, pairs, spin_map.ROTATION, values=np.array([rotation]))
-    shown = map.in_rows(spin_map.picture(task, found, 0), 5)
+    shown = spin_map.in_rows(spin_map.picture(task, found, 0), 5)
     assert (
         shown.margin.shape
         == shown.condition.shape
@@ -516,7 +517,7 @@ def test_two_external_axes_against_each_other_are_as_one_at_a_time(on_positioner
     for row, upwards in enumerate(values[1]):
         external = beads[1].external.copy()
         external[7, 1] = upwards
-        line = map.across(
+        line = spin_map.across(
             [beads[0], dataclasses.replace(beads[1], external=external)], cell, at, 2, values[0]
         )
         alone = spin_map.redundancy_map(task, line, spin_map.ROTATION, values=np.array([rotation]))
@@ -546,13 +547,13 @@ def test_cells_beside_a_positioner_are_where_pykdl_finds_them(on_positioner, acr
         expected = np.array([beads[k].external[n] for k, n in zip(at.bead, at.point)])
         assert np.ptp(expected[:, 2]) > 1.0
     else:
-        values = map.span(task, beads[1], 7, across, 21)
+        values = spin_map.span(task, beads[1], 7, across, 21)
         lower, upper = cell.limits.lower[own + across], cell.limits.upper[own + across]
         assert values[0] >= lower - 1e-12 and values[-1] <= upper + 1e-12
         assert np.ptp(values) == pytest.approx(
             min(upper - lower, np.inf if across == 0 else TURN), rel=0.5
         )
-        at = map.across(beads, cell, (1, 7), across, values)
+        at = spin_map.across(beads, cell, (1, 7), across, values)
         expected = np.tile(beads[1].external[7], (21, 1))
         expected[:, across] = values
         assert (at.bead == 1).all() and (at.point == 7).all()
