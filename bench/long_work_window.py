@@ -146,7 +146,7 @@ def of_panels() -> list[dict[str, object]]:
         },
         {
             "job": "joint path",
-            "preview": previewed(lambda: show(JointPathPanel()), "rapid moves too"),
+            "preview": previewed(lambda: show(JointPathPanel()), "rapids"),
         },
     ]
     App.closeDocument(job.document.Name)

@@ -17,8 +17,8 @@ import sys
 import tempfile
 from typing import Any
 
-from . import run as planning
-from . import versions
+from freecad_am.batch import run as planning
+from freecad_am.batch import versions
 
 
 def main() -> None:
@@ -57,7 +57,7 @@ def _set_up(settings: dict[str, Any]) -> None:
 
 def _planned(request: dict[str, Any]) -> dict[str, Any]:
     """The result of an order."""
-    from .rows import table
+    from freecad_am.batch.rows import table
 
     receiver, process = table.start_row(table.Order(**request))
 

@@ -127,7 +127,7 @@ def test_chosen_faces_of_a_solid_are_covered_by_themselves(workshop):
     done = workshop.run("plan", workshop.write_job(job).name, "-o", "out", "--no-page")
     assert (
         done.status == 0
-        and "kind: cladding: faces of" in done.err
+        and "kind: cladding: the selected faces of part" in done.err
         and "SINGLE_LAYER" not in done.err
     )
     with open(

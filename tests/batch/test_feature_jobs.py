@@ -183,7 +183,7 @@ def test_a_feature_that_floats_or_overlaps_is_refused(workshop):
         done.status == 2
         and report is None
         and "error[OVERLAP] post:" in done.err
-        and "within plate" in done.err
+        and "overlap plate" in done.err
     )
     assert f"{math.pi * 12**2 * 5 / 1000:.4g} cm3" in done.err
     upside = START.replace("plate", "post") + POST.replace(

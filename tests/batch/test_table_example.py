@@ -224,7 +224,7 @@ def test_four_axes_are_told_with_what_they_miss(planned):
         lambda text: text + "joints:\n  lock: first\n  lock_at: -40 deg\n  max_residual: 50 deg\n"
     )
     note = next(issue for issue in report["issues"] if issue["code"] == "FOUR_AXES")
-    assert note["level"] == "note" and "axis a stands at -40 deg" in note["message"]
+    assert note["level"] == "note" and "axis a is locked at -40 deg" in note["message"]
     assert set(column(rows, "a_deg")[:, 0].round(6)) == {-40.0}
     tool = column([row for row in rows if row["kind"] == "deposit"], "tx", "ty", "tz")
     np.testing.assert_allclose(tool[:, 2], math.cos(math.radians(40.0)), atol=1e-9)

@@ -318,7 +318,7 @@ def test_a_panel_whose_object_is_gone_says_so(person, hemisphere):
     person.type(panel, "LayerHeight", "5 mm")
     hemisphere.Document.removeObject(feature.Name)
     person.press("Ok")
-    assert "is gone" in person.panel_error(panel)
+    assert "was deleted" in person.panel_error(panel)
     person.press("Cancel")
     person.panel_closed()
 

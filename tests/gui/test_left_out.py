@@ -34,7 +34,7 @@ def test_one_face_clicked_is_the_whole_part_for_a_new_job_and_several_are_faces(
     assert person.field(panel, "Kind").currentText() == "Solids in plane layers"
     person.as_revolution(panel)
     person.until(lambda: field["left_out"].text(), "what would be left out", 30)
-    assert field["Source"].text() == "Rod" and "The whole of Rod is taken" in field["reason"].text()
+    assert field["Source"].text() == "Rod" and "The whole of Rod is used" in field["reason"].text()
     assert "of the 113 cm3 of Rod are not deposited" in field["left_out"].text()
     select(rod.Document.Name, rod.Name, "Face2")
     person.until(lambda: field["Source"].text() == "Rod Face1 Face2", "faces to be taken", 10)

@@ -268,7 +268,7 @@ def test_what_cannot_be_is_told_and_not_kept(person, page):
         lambda: "the folder /nowhere/at all does not exist" in person.console(), "the warning"
     )
     assert "Travel speed: -3 mm/s is out of range" in person.console()
-    assert "Machine: 'kuka-kr99' is not known; did you mean kuka-kr16-2" in person.console()
+    assert "Machine: unknown name 'kuka-kr99'; did you mean kuka-kr16-2" in person.console()
 
 
 def test_without_a_window_preferences_count_for_nothing(person, clean, root, tmp_path):

@@ -14,7 +14,6 @@ from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
 from ...core.types import Array, Index
 from ..kernel.process import in_kernel_process
-from ..walls.surface_patch import Places, patch_of
 
 DEFLECTION = 0.1  # mm, largest distance of the triangles from a curved face
 WELDED = 1e-5  # mm; vertices of the tessellations of two faces
@@ -135,6 +134,9 @@ def _fine(shape: Any, chord: float) -> Tessellation:
     about = max((_about(face, chord) for face in shape.Faces), default=0.0)
     if about < SLOW_TRIANGLES:
         return tessellated(shape, chord)
+    # not above: it imports splines, which parts of revolution do without
+    from ..walls.surface_patch import Places, patch_of
+
     try:
         patches = [patch_of(face, "") for face in shape.Faces]
     except InputError:  # only the kernel knows this kind of face
