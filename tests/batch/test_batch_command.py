@@ -150,7 +150,7 @@ def test_sets_properties_of_a_document(workshop):
         ("strategy.layer_height\n", "no rows"),
         ("strategy.hight\n1\n", "layer_height"),
         ("tragedy.layer_height\n1\n", "tragedy"),
-        ("name,name\na,b\n", "twice"),
+        ("name,name\na,b\n", "duplicated"),
         ("name,\na,b\n", "empty"),
         ("strategy.layer_height\n1,5 mm\n", "2 cells for 1"),
         ("strategy.layer_height;name\n1 mm;a\n", "commas"),

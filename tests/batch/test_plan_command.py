@@ -421,7 +421,7 @@ def test_a_large_job_is_told_before_its_work(workshop):
     )
     line = process.stderr.readline()
     assert re.fullmatch(
-        r"note\[LARGE\] job: about 6\d0,000 points in 6\d0 layers are planned, .+\n", line
+        r"note\[LARGE\] job: planning about 6\d0,000 points in 6\d0 layers takes .+\n", line
     ), line
     assert process.poll() is None
     process.send_signal(signal.SIGINT)
