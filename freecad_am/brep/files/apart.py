@@ -140,10 +140,7 @@ def read_apart(
         raise InputError("BAD_FILE", where, message)
     if _is_apart or not (FreeCAD.GuiUp or sys.platform.startswith("linux")):
         return reader(path, *arguments)
-    seconds, memory = _limits(size, patience)
-    if where.lower().endswith(".3mf"):
-        seconds += SECONDS_TO_CUT
-    limits = seconds, memory
+    limits = _limits(where, size, patience)
     if not (FreeCAD.GuiUp or _has_kernel_threads()):
         with _Reading(reader, path, arguments, *limits) as copy:
             exit_code, used = copy.wait()
@@ -162,9 +159,12 @@ def read_apart(
     return reader(path, *arguments) if isinstance(result, str) and result == AGAIN else result
 
 
-def _limits(size: float, patience: float) -> tuple[float, float]:
+def _limits(name: str, size: float, patience: float) -> tuple[float, float]:
     """Limits of processor time, s, and memory, MB, for reading a file of `size` MB."""
-    return patience * (SECONDS + SECONDS_A_MB * size), patience**0.5 * (MEMORY + MEMORY_A_MB * size)
+    seconds = patience * (SECONDS + SECONDS_A_MB * size)
+    if name.lower().endswith(".3mf"):
+        seconds += SECONDS_TO_CUT
+    return seconds, patience**0.5 * (MEMORY + MEMORY_A_MB * size)
 
 
 def _has_kernel_threads() -> bool:

@@ -14,7 +14,7 @@ from ..types import NDArray
 
 HEADER = "layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm"
 WIRE = "wire_feed_mm_s"
-_LENGTH, _DIRECTION, _ANGLE = "%.6f", "%.9f", "%.7f"
+_LENGTH, _DIRECTION, _ANGLE = 6, 9, 7  # decimals
 _ROWS_AT_ONCE = 4000
 CLASS = "class"
 _CLASS_NAMES = np.array([*CLASSES, ""])  # the last one for -1, an unknown class
@@ -53,11 +53,11 @@ def _rows(motion: Motion, units: tuple[str, ...], wire: bool, rows: slice) -> st
     """Rows as text, with the wire's own speed or without."""
     slides = np.array([unit == "mm" for unit in units])
     angles = np.where(slides, motion.joints[rows], np.degrees(motion.joints[rows]))
-    columns = [
-        (motion.layer[rows], "%d"),
-        (motion.bead[rows], "%d"),
-        (motion.point[rows], "%d"),
-        (np.where(motion.deposit[rows], "deposit", "rapid"), "%s"),
+    columns: list[tuple[NDArray[Any], int | None]] = [
+        (motion.layer[rows], None),
+        (motion.bead[rows], None),
+        (motion.point[rows], None),
+        (np.where(motion.deposit[rows], "deposit", "rapid"), None),
         *((column, _LENGTH) for column in motion.position[rows].T),
         *((column, _DIRECTION) for column in motion.build[rows].T),
         *((column, _DIRECTION) for column in motion.tool[rows].T),
@@ -65,16 +65,17 @@ def _rows(motion: Motion, units: tuple[str, ...], wire: bool, rows: slice) -> st
         (motion.width[rows], _LENGTH),
         *((column, _ANGLE) for column in angles.T),
         *([(motion.wire[rows], _LENGTH)] if wire else []),
-        (_CLASS_NAMES[motion.bead_class[rows]], "%s"),
+        (_CLASS_NAMES[motion.bead_class[rows]], None),
     ]
-    template = ",".join(form for _, form in columns) + "\n"
+    forms = ["%s" if decimals is None else f"%.{decimals}f" for _, decimals in columns]
+    template = ",".join(forms) + "\n"
     texts = [template % row for row in zip(*(_values(*column) for column in columns), strict=True)]
     return "".join(texts).replace("nan", "")  # cells of unknown values are empty
 
 
-def _values(column: NDArray[Any], form: str) -> list[Any]:
-    """Values to print, rounded as they are printed so that none is -0.000000; NaN where unknown."""
-    if form not in ("%d", "%s"):
-        column = np.round(np.where(np.isfinite(column), column, np.nan), int(form[2:-1])) + 0.0
+def _values(column: NDArray[Any], decimals: int | None) -> list[Any]:
+    """Values to print; numbers with decimals are rounded, so that none is -0.000000, or NaN."""
+    if decimals is not None:
+        column = np.round(np.where(np.isfinite(column), column, np.nan), decimals) + 0.0
     values: list[Any] = column.tolist()
     return values

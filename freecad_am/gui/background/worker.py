@@ -24,7 +24,9 @@ from weakref import WeakMethod
 from PySide import QtCore
 
 from ...core import one_thread
+from ...core.issues import AmError
 from ...objects.work.progress import Cancelled, told_to
+from ..texts.in_language import tr, translated, translated_error
 
 AGAIN = 200  # ms between two checks of running threads
 YOUNG = (
@@ -220,3 +222,64 @@ class Background:
         self.timer.stop()
         with while_there():
             show(worker)
+
+
+TELL_EVERY = 100  # ms
+
+
+class Work:
+    """One kind of work at a time, with its progress told as text.
+
+    `on_done` receives its result, None after a cancel or an error; `tell` the text, and whether it
+    is an error. doing: what the text says before the share, such as "Computing".
+    """
+
+    def __init__(
+        self,
+        form: Any,
+        on_done: Callable[[Any], None],
+        tell: Callable[[str, bool], None],
+        doing: str,
+    ) -> None:
+        self.done, self.tell, self.doing = on_done, tell, doing
+        self.background = Background(form)
+        self.timer = QtCore.QTimer(form)
+        self.timer.setInterval(TELL_EVERY)
+        self.timer.timeout.connect(self._show_progress)
+
+    @property
+    def runs(self) -> bool:
+        """Whether it goes on."""
+        return self.background.worker is not None
+
+    def start(self, work: Callable[[], Any]) -> None:
+        """Begin it."""
+        self.background.start(work, self._show)
+        self.timer.start()
+        self._show_progress()
+
+    def cancel(self) -> None:
+        """End it, if it goes on."""
+        self.timer.stop()
+        self.background.cancel()
+
+    def _show(self, worker: Worker) -> None:
+        self.timer.stop()
+        result = None
+        try:
+            result = worker.result()
+        except AmError as error:
+            self.tell(translated_error(error), True)
+        except Cancelled:
+            self.tell(tr("Cancelled."), False)
+        self.done(result)
+
+    def _show_progress(self) -> None:
+        worker = self.background.worker
+        if worker is not None:
+            share = (
+                ""
+                if worker.fraction is None
+                else f"{100.0 * worker.fraction:.0f} %  {translated(worker.text)}"
+            )
+            self.tell(f"{self.doing} {share}", False)

@@ -5,7 +5,6 @@ best by a click."""
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable
 from typing import Any
 
 import FreeCAD as App
@@ -24,12 +23,12 @@ from ...objects.fields.rows import flat, rows
 from ...objects.work import progress
 from ...objects.work.progress import Cancelled
 from .. import recorded
-from ..background.worker import Background, Worker
+from ..background.worker import Work
 from ..colours import INVALID, PLAIN, set_role
 from ..docks import dock_area
 from ..docks.dock_area import Lookout
 from ..preferences import watch
-from ..texts.in_language import tr, translated, translated_error
+from ..texts.in_language import tr, translated_error
 from ..widgets import fields
 from ..widgets.fold import Fold
 from . import figures
@@ -151,60 +150,6 @@ def _table() -> Any:
     return table
 
 
-TELL_EVERY = 100  # ms
-
-
-class Work:
-    """One kind of work at a time. `done` receives its result, None after a cancel or an error;
-    `tell` the progress text, and whether it is an error."""
-
-    def __init__(
-        self, form: Any, on_done: Callable[[Any], None], tell: Callable[[str, bool], None]
-    ) -> None:
-        self.done, self.tell = on_done, tell
-        self.background = Background(form)
-        self.timer = QtCore.QTimer(form)
-        self.timer.setInterval(TELL_EVERY)
-        self.timer.timeout.connect(self._show_progress)
-
-    @property
-    def runs(self) -> bool:
-        """Whether it goes on."""
-        return self.background.worker is not None
-
-    def start(self, work: Callable[[], Any]) -> None:
-        """Begin it."""
-        self.background.start(work, self._show)
-        self.timer.start()
-        self._show_progress()
-
-    def cancel(self) -> None:
-        """End it, if it goes on."""
-        self.timer.stop()
-        self.background.cancel()
-
-    def _show(self, worker: Worker) -> None:
-        self.timer.stop()
-        result = None
-        try:
-            result = worker.result()
-        except AmError as error:
-            self.tell(translated_error(error), True)
-        except Cancelled:
-            self.tell(tr("Cancelled."), False)
-        self.done(result)
-
-    def _show_progress(self) -> None:
-        worker = self.background.worker
-        if worker is not None:
-            share = (
-                ""
-                if worker.fraction is None
-                else f"{100.0 * worker.fraction:.0f} %  {translated(worker.text)}"
-            )
-            self.tell(f"{tr('Computing')} {share}", False)
-
-
 NAME = "RoboticAM_Placement"
 MIN_WIDTH = 380  # pixels, at least
 REACH_STEP = 150.0  # mm
@@ -227,11 +172,14 @@ class PlacementDock:
         self.scroll.setFrameShape(QtGui.QFrame.NoFrame)
         self.scroll.setMinimumWidth(MIN_WIDTH)
         self._build({})
-        self.work = Work(
-            self.scroll, self._take_poses, lambda text, wrong: self.form.tell(text, wrong)
-        )
-        self.reaching = Work(
-            self.scroll, self._take_reach, lambda text, wrong: self.form.tell(text, wrong)
+        self.work, self.reaching = (
+            Work(
+                self.scroll,
+                take,
+                lambda text, wrong: self.form.tell(text, wrong),
+                tr("Computing"),
+            )
+            for take in (self._take_poses, self._take_reach)
         )
         self.dock.hold(self._title(), self.scroll)
         self.dock.closed = self.close

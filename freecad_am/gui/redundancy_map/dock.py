@@ -17,7 +17,7 @@ from ...core.planning.redundancy.curve import Compared
 from ...core.types import Array
 from ...objects.work.progress import Cancelled
 from .. import recorded
-from ..background.worker import Later
+from ..background.worker import Later, Work
 from ..docks import dock_area
 from ..docks.dock_area import Lookout
 from ..path import dock as path_dock
@@ -28,7 +28,7 @@ from ..simulation import dock as simulation_dock
 from ..texts.in_language import tr, translated, translated_error
 from ..widgets.steady import Scrolled
 from .cells import Cells
-from .comparison import Comparison
+from .comparison import comparison_work
 from .consequences import Consequences, Figures, Form, readout
 from .controls import AXES, CURVES, Controls
 from .draft import Draft, Source, source_of, status_of
@@ -92,8 +92,11 @@ class RedundancyMapDock:
         self._build()
         self.cells = Cells(self.holder, self.canvas, self._fill_controls, self._show_curves)
         self.consequences = Consequences(self.holder, self.form, lambda: status_of(self.obj))
-        self.comparison = Comparison(
-            self.holder, self._show_compared, lambda text: self.form.tell(text)
+        self.comparison = Work(
+            self.holder,
+            self._show_compared,
+            lambda text, _: self.form.tell(text),
+            tr("Planning"),
         )
         self.renewing = Later(self.holder, self.renew)
         self.canvas.hovered, self.canvas.clicked = self._hovered, self._clicked
@@ -284,11 +287,12 @@ class RedundancyMapDock:
             self.comparison.cancel()
             self._changed()
         else:
-            self.comparison.start(self.source, self.source.task(self.draft.branch))
+            task = self.source.task(self.draft.branch)
+            self.comparison.start(comparison_work(self.source, task))
         self._name_compare()
 
-    def _show_compared(self, compared: tuple[Compared, ...]) -> None:
-        """Another comparison has ended; empty: without a result."""
+    def _show_compared(self, compared: tuple[Compared, ...] | None) -> None:
+        """Another comparison has ended; None: without a result."""
         self._name_compare()
         if compared:
             self.compared = compared

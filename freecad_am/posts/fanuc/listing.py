@@ -54,13 +54,13 @@ _LONGEST_WAIT = 300.0
 
 _JOINT_RECORD = (
     "P[%d]{\r\n   GP1:\r\n\t<frame>\t\r\n"
-    "\tJ1=%10.3f deg,\tJ2=%10.3f deg,\tJ3=%10.3f deg,\r\n"
-    "\tJ4=%10.3f deg,\tJ5=%10.3f deg,\tJ6=%10.3f deg\r\n};\r\n"
+    "\tJ1=%s deg,\tJ2=%s deg,\tJ3=%s deg,\r\n"
+    "\tJ4=%s deg,\tJ5=%s deg,\tJ6=%s deg\r\n};\r\n"
 )
 _POSE_RECORD = (
     "P[%d]{\r\n   GP1:\r\n\t<frame>\t\tCONFIG : '%s',\r\n"
-    "\tX =%10.3f  mm,\tY =%10.3f  mm,\tZ =%10.3f  mm,\r\n"
-    "\tW =%10.3f deg,\tP =%10.3f deg,\tR =%10.3f deg\r\n};\r\n"
+    "\tX =%s  mm,\tY =%s  mm,\tZ =%s  mm,\r\n"
+    "\tW =%s deg,\tP =%s deg,\tR =%s deg\r\n};\r\n"
 )
 
 
@@ -124,9 +124,9 @@ def joint_records(
     """Records P[1], P[2] and on, with joint values (n, 6), of the track (n, 0 or 1) and of another
     group (n, k), degrees and mm already rounded to 3 decimals.
     """
-    values = ",".join(f"\tJ{axis}=%10.3f deg" for axis in range(1, external.shape[1] + 1))
+    values = ",".join(f"\tJ{axis}=%s deg" for axis in range(1, external.shape[1] + 1))
     second_group = f"   GP{group}:\r\n\t<frame>\t\r\n{values}\r\n}};" if values else "};"
-    extended = "deg,\r\n\tE1=%10.3f  mm\r\n};" if track.shape[1] else "deg\r\n};"
+    extended = "deg,\r\n\tE1=%s  mm\r\n};" if track.shape[1] else "deg\r\n};"
     record = _JOINT_RECORD.replace("deg\r\n};", extended).replace("};", second_group)
     return _records(record, user_frame, tool_frame, [], np.hstack([degrees, track, external]))
 
@@ -145,7 +145,6 @@ def _records(
 ) -> str:
     """Positions 1.. by their template: its fields are the number, columns (n,) of words, and values (n, k)."""
     record = template.replace("<frame>", f"UF : {user_frame}, UT : {tool_frame},")
-    record = record.replace("%10.3f", "%s")
     texts = [[right_aligned(value, 3, 10) for value in row] for row in values.tolist()]
     return "".join(
         record % (number, *row_words, *row)
