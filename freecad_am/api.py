@@ -26,6 +26,7 @@ import os
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from .core.families.registry import DEFAULT_KIND
 from .core.issues import InputError, Issue
 from .core.kinematics.arrangement import OF_ROBOTS
 from .core.kinematics.proposed_cell import cell_of
@@ -257,7 +258,7 @@ def make_all(
     source: Any,
     faces: Sequence[str] = (),
     *,
-    kind: str = "revolution",
+    kind: str = DEFAULT_KIND,
     layers: str = "",
     substrate: Any = None,
     further: Sequence[Any] = (),
@@ -426,7 +427,7 @@ def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
             values[key] = given_keys[key]
     return make_feature_of(
         doc,
-        given_keys.get("kind", "revolution"),
+        given_keys.get("kind", DEFAULT_KIND),
         given_keys["source"],
         given_keys.get("faces", ()),
         links=links,

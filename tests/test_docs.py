@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from freecad_am.batch.job import job
+from freecad_am.core.families.registry import FAMILIES
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
@@ -17,7 +18,6 @@ from freecad_am.core.parameters.place import PlaceParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.parameters.scan import ScanParameters
-from freecad_am.core.strategies.families import FAMILIES
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"

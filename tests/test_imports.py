@@ -24,8 +24,9 @@ OURS = {
     "core/copies": set(),
     "core/parameters": {"core/issues", "core/geometry"},
     "core/geometry": {"core/issues"},
+    "core/families": {"core/parameters"},
     "core/filling": {"core/issues", "core/geometry"},
-    "core/toolpath": {"core/issues", "core/geometry"},
+    "core/toolpath": {"core/families", "core/issues", "core/geometry"},
     "core/slicing": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
     "core/layers": {
         "core/issues",
@@ -44,6 +45,7 @@ OURS = {
     "core/inspection": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
     "core/collision": {"core/geometry"},
     "core/strategies": {
+        "core/families",
         "core/issues",
         "core/parameters",
         "core/geometry",
@@ -54,7 +56,13 @@ OURS = {
         "core/layers",
         "core/process",
     },
-    "core/kinematics": {"core/issues", "core/parameters", "core/geometry", "core/collision"},
+    "core/kinematics": {
+        "core/families",
+        "core/issues",
+        "core/parameters",
+        "core/geometry",
+        "core/collision",
+    },
     "core/planning": {
         "core/issues",
         "core/parameters",

@@ -16,6 +16,8 @@ from typing import Any
 
 import numpy as np
 
+from .families.family import Family
+from .families.registry import DEFAULT_KIND, KINDS
 from .geometry.columns import lengths
 from .geometry.curves.outline import Outline, estimate_outline, outline
 from .geometry.fitted import Fitted, PredictedShape
@@ -23,11 +25,6 @@ from .geometry.obstacles import Body
 from .issues import Issue
 from .types import Array, Index
 
-FILLED = (
-    "developable",
-    "solid",
-    "cladding",
-)  # families whose beads fill solids, or layers on faces
 PREDICTED = ("width", "height")  # columns of a bead that a bead model gives
 
 
@@ -343,7 +340,7 @@ class Toolpath:
     chord_error: float
     issues: tuple[Issue, ...] = ()
     overlap: float = 0.0
-    family: str = field(default="revolution")
+    family: str = field(default=DEFAULT_KIND)
     surroundings: tuple[Body, ...] = ()
     law: SpeedLaw | None = None
     bead_width: float | None = None
@@ -401,11 +398,9 @@ class Toolpath:
         return np.array([heights[layer.feature if self.features else 0] for layer in self.layers])
 
     @property
-    def filled(self) -> bool:
-        """Return whether beads fill solids, most of them inside; otherwise they are walls of one
-        bead.
-        """
-        return self.family in FILLED
+    def traits(self) -> Family:
+        """Return what holds for toolpaths of this family."""
+        return KINDS[self.family]
 
     @property
     def bead_count(self) -> int:

@@ -9,6 +9,7 @@ from typing import Any
 
 import FreeCAD as App
 
+from ..core.families.registry import find_family
 from ..core.issues import ERROR, InfeasibleError, InputError
 from ..core.kinematics import cell as cells
 from ..core.kinematics.arrangement import arrangement_of
@@ -168,7 +169,8 @@ def refuse_otherwise(kind: str, layers: str) -> None:
     """Raise InputError if a feature of this kind has no choice of layers, or not these layers (''
     for none).
     """
-    if layers and kind != "solid":
+    family = find_family(kind)
+    if layers and (family is None or not family.chooses_layers):
         raise InputError(
             "BAD_VALUE", "layers_otherwise", "it is for kind: solid, not for {}; remove it", kind
         )

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..core.families.registry import family_of
 from ..core.issues import Issue, has_errors
 from ..core.kinematics.cell import Cell
 from ..core.kinematics.inverse import opw
@@ -30,7 +31,6 @@ from ..core.process.deposit.balance import Balance
 from ..core.process.model import notes
 from ..core.simulation import class_figures, totals
 from ..core.simulation.timeline import timeline
-from ..core.strategies.families import family_of
 from ..core.toolpath import Toolpath
 from ..core.types import Array
 

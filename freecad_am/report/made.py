@@ -8,6 +8,7 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Any
 
+from ..core.families.registry import family_of
 from ..core.geometry.on_hub import SolidsOnHub
 from ..core.kinematics.cell import Cell
 from ..core.motion import Motion
@@ -15,7 +16,6 @@ from ..core.process.deposit import balance as deposit_balance
 from ..core.process.deposit import spacing
 from ..core.simulation import timeline
 from ..core.simulation.achievable_feed import spread_to_deposit_rows
-from ..core.strategies.families import family_of
 from ..core.toolpath import Toolpath
 from ..core.types import Array
 from . import figures
@@ -55,7 +55,7 @@ class Made:
             )
             source = Source(self.toolpath, self.motion, process, self.cell, condition, threshold)
         platform = self.job.cell.platform_diameter if self.job.cell else None
-        alone = len(self.job.features) == 1 and family_of(self.job.features[0].strategy).filled
+        alone = len(self.job.features) == 1 and family_of(self.job.features[0].strategy).is_filled
         shape = self.job.features[0].shape() if alone else None
         solids = shape if isinstance(shape, SolidsOnHub) else None
         return page.render(page.Content(self.content, source, self.features, platform, solids))
@@ -113,7 +113,7 @@ def compared_walls(job: Job, toolpath: Toolpath, distances: Sequence[Array]) -> 
             gaps,
             getattr(feature.strategy, "band", None),
         )
-        if family_of(feature.strategy).kind == "surface":
+        if family_of(feature.strategy).compares_spacings:
             from . import spacing_comparison  # slow to import, and only walls need it
 
             compared = spacing_comparison.compare(feature.shape(), feature.strategy)

@@ -45,7 +45,7 @@ def picture(toolpath: Toolpath, platform_diameter: float | None = None) -> str:
     step = max(1, toolpath.point_count // _MOST_POINTS)
     last_layer = max(1, len(toolpath.layers) - 1)
     stride = max(1, toolpath.point_count // _TICKS)
-    facing = _facing(beads, toolpath.family)
+    facing = _facing(beads, toolpath.traits.is_open_wall)
     # painter's algorithm: the far half of each layer is behind the near halves of all layers
     far_halves, near_halves = (
         [
@@ -66,12 +66,12 @@ def picture(toolpath: Toolpath, platform_diameter: float | None = None) -> str:
     )
 
 
-def _facing(beads: list[tuple[int, Array, Array]], family: str) -> list[Array]:
+def _facing(beads: list[tuple[int, Array, Array]], is_open_wall: bool) -> list[Array]:
     """Per bead, (n,): positive where the wall faces the eye. For parts of revolution this is a side
     of the axis; for walls it is the outside of the bead, away from the middle of its layer."""
     level = math.cos(_ELEVATION)
     eye = np.array([math.cos(_AZIMUTH) * level, math.sin(_AZIMUTH) * level, math.sin(_ELEVATION)])
-    if family != "surface":
+    if not is_open_wall:
         return [points[:, :2] @ eye[:2] for _, points, _ in beads]
     facing = []
     middles = {

@@ -8,6 +8,7 @@ import math
 
 import yaml
 
+from freecad_am.core.families import registry as families
 from freecad_am.core.parameters import bead_classes
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
@@ -17,7 +18,6 @@ from freecad_am.core.parameters.place import PlaceParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.parameters.scan import ScanParameters
-from freecad_am.core.strategies import families
 
 SECTIONS = {
     "build_direction": BuildDirectionParameters,

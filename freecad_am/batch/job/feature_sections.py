@@ -7,6 +7,8 @@ import dataclasses
 import os
 from typing import Any
 
+from ...core.families.family import NEEDED, NONE, Family
+from ...core.families.registry import AUTO, DEFAULT_KIND, KINDS, family_of, find_family
 from ...core.geometry.curves.bead_curves import POINT_FILES
 from ...core.issues import InputError
 from ...core.parameters import bead_classes
@@ -15,7 +17,6 @@ from ...core.parameters.build_direction import BuildDirectionParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.strategy import LayerParameters
 from ...core.process.model import wire
-from ...core.strategies.families import AUTO, KINDS, NEEDED, NONE, family_of
 from ...sections import fields, quantity
 from . import material
 from .part_source import PartSource, part_of
@@ -65,11 +66,11 @@ def _flat(class_section: Any, name: str) -> Any:
     return flat
 
 
-def kept_clear(kind: str) -> tuple[str, ...]:
+def kept_clear(family: Family) -> tuple[str, ...]:
     """The keys of `strategy` that are not parameters of the family: its kind, and selections on the
     part.
     """
-    return ("kind", "guide", "start_faces") if kind == "solid" else ("kind",)
+    return ("kind", *family.selections)
 
 
 def process_of(section: Any, strategy: LayerParameters | None = None) -> ProcessParameters:
@@ -78,7 +79,7 @@ def process_of(section: Any, strategy: LayerParameters | None = None) -> Process
     yet. InputError, also from its bead table.
     """
     process_section = as_text(material.filled_in(fields.mapping(section, "process")))
-    if strategy is not None and "bead_width" in process_section and family_of(strategy).filled:
+    if strategy is not None and "bead_width" in process_section and family_of(strategy).is_filled:
         process_section = {"fill_width": "bead_width", **process_section}
     process = fields.build(ProcessParameters, process_section, "process")
     if process.bead_model != "none":
@@ -90,20 +91,22 @@ def refuse_direction(strategy: Any, build_direction: BuildDirectionParameters) -
     """InputError for a build direction that the family of layers does not know."""
     family = family_of(strategy)
     if build_direction.mode not in family.modes:
-        raise InputError("NOT_FOR_FAMILY", "build_direction.mode", family.why, build_direction.mode)
+        raise InputError(
+            "NOT_FOR_FAMILY", "build_direction.mode", family.mode_refusal, build_direction.mode
+        )
 
 
 def substrate_of(section: Any, strategy: Any, source: PartSource) -> PartSource | None:
     """The source of a feature's substrate; None for the platform."""
     family = family_of(strategy)
-    if source.start_edges and not family.edges:
+    if source.start_edges and not family.takes_start_edges:
         raise InputError(
             "NOT_FOR_FAMILY",
             "part.start_edges",
             "only strategy.kind surface starts from edges; remove them",
         )
     table = source.file.lower().endswith(tuple(POINT_FILES))
-    if family.kind != "curves" and (source.edges or table):
+    if not family.takes_curves and (source.edges or table):
         where, what = ("part.edges", "edges") if source.edges else ("part.file", "tables of points")
         raise InputError(
             "NOT_FOR_FAMILY", where, "only strategy.kind curves deposits {} as beads; use it", what
@@ -114,7 +117,7 @@ def substrate_of(section: Any, strategy: Any, source: PartSource) -> PartSource 
             "part.edges" if source.edges else "part.faces",
             "a table of points has no edges or faces; remove them",
         )
-    if source.faces and not family.faces:
+    if source.faces and not family.takes_faces:
         raise InputError(
             "NOT_FOR_FAMILY", "part.faces", "solids are deposited whole; remove the faces"
         )
@@ -156,22 +159,17 @@ def _alike(source: PartSource, other_source: PartSource) -> bool:
 
 def strategy_of(section: Any) -> LayerParameters:
     """Layers of the kind that a section names."""
-    kind = fields.mapping(section, "strategy").get("kind", "revolution")
-    if not isinstance(kind, str) or kind not in KINDS:
+    kind = fields.mapping(section, "strategy").get("kind", DEFAULT_KIND)
+    family = find_family(kind, section.get("layers"))
+    if family is None:
         raise f.unknown_choice("strategy.kind", kind, (*KINDS, AUTO.kind))
-    if kind == "solid" and section.get("layers") == "developable":  # which has a name of its own
-        kind, section = (
-            "developable",
-            {key: value for key, value in section.items() if key != "layers"},
-        )
-    if kind == "developable":
-        section = _base_as_text(section)
-    if kind in ("solid", "curves"):
-        section = direction_as_text(section)
-    if kind == "curves":
-        section = _roles_as_text(section)
-    factory: type[LayerParameters] = KINDS[kind].parameters
-    return fields.build(factory, section, "strategy", also=kept_clear(kind))
+    if family.kind != kind:  # the name of its layers, which has said all
+        section = {key: value for key, value in section.items() if key != "layers"}
+    names = {field.name for field in dataclasses.fields(family.parameters)}
+    for name, write in _LISTS.items():
+        if name in names:
+            section = write(section)
+    return fields.build(family.parameters, section, "strategy", also=kept_clear(family))
 
 
 def direction_as_text(section: dict[str, Any]) -> dict[str, Any]:
@@ -210,3 +208,7 @@ def _base_as_text(section: dict[str, Any]) -> dict[str, Any]:
         for number in row
     ]
     return {**section, "base": {**base, "axis": " ".join(f"{number:.15g}" for number in numbers)}}
+
+
+# keys that are lists in a job and texts in parameters
+_LISTS = {"base": _base_as_text, "direction": direction_as_text, "roles": _roles_as_text}

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from ...core.families.family import NONE, Family
+from ...core.families.registry import AUTO, DEFAULT_KIND, KINDS, family_of, find_family
 from ...core.issues import InputError
 from ...core.parameters import field as f
 from ...core.parameters.build_direction import BuildDirectionParameters
@@ -17,7 +19,6 @@ from ...core.parameters.process import ProcessParameters
 from ...core.parameters.strategy import LayerParameters
 from ...core.process.model import wire
 from ...core.process.model.wire import model_wire_feed
-from ...core.strategies.families import AUTO, KINDS, NONE, Family, family_of
 from ...sections import fields, quantity, tree
 from .feature_sections import (
     direction_as_text,
@@ -93,17 +94,14 @@ _KEYS = {
     "Feature.StartEdges": "part.start_edges",
     "Feature.StartFaces": "strategy.start_faces",
 }
-WALLS, UPRIGHT = (
-    ("revolution", "surface"),
-    "fixed",
-)  # families whose directions follow the wall; the mode of one direction
+UPRIGHT = "fixed"  # the mode of one direction
 KEYS = ("name", "part", "substrate", "fixtures", "strategy", "build_direction", "process")
 
 
 @dataclass(frozen=True)
 class JobFeature:
     """A deposit and its parameters. `substrate` is set if the family of the strategy uses it
-    (`core.strategies.families`), or if an earlier deposit may serve. `guide`: of layers along one;
+    (`core.families`), or if an earlier deposit may serve. `guide`: of layers along one;
     None for their centre line. `start_faces`: faces of the part on which curved layers start.
     `scan`: of the substrate, to which layers are fitted.
     """
@@ -206,7 +204,7 @@ def _left_open(values: dict[str, Any], section: dict[str, Any], name: str) -> Jo
 def leans(feature: JobFeature, strategy: LayerParameters) -> bool:
     """Whether build directions of a feature, with the strategy chosen for it, follow its wall, and could be one: as they are
     asked to be, or, where its family is left open, for want of a word about it."""
-    if family_of(strategy).kind not in WALLS:
+    if not family_of(strategy).follows_wall:
         return False
     if feature.sections is None:
         return feature.build_direction.mode != UPRIGHT
@@ -229,7 +227,7 @@ def chosen(feature: JobFeature, kind: str, layers: str, mend: float, mode: str =
         values["build_direction"] = {**(values.get("build_direction") or {}), "mode": mode}
     if family.substrate == NONE:
         values.pop("substrate", None)
-    if kind != "solid" and isinstance(values["part"], dict):
+    if not family.fuses_solids and isinstance(values["part"], dict):
         values["part"] = {key: value for key, value in values["part"].items() if key != "fuse"}
     return one_feature(values, feature.name)
 
@@ -319,17 +317,15 @@ def _merge_defaults(feature_section: dict[str, Any], top: dict[str, Any]) -> dic
         },
     }
     strategy = mixed.get("strategy")
-    kind = strategy.get("kind", "revolution") if isinstance(strategy, dict) else None
-    if not isinstance(kind, str) or kind not in KINDS:
+    if not isinstance(strategy, dict):
         return mixed
-    assert isinstance(strategy, dict)
-    if kind == "solid" and strategy.get("layers") == "developable":
-        kind = "developable"
-    family = KINDS[kind]
+    family = find_family(strategy.get("kind", DEFAULT_KIND), strategy.get("layers"))
+    if family is None:
+        return mixed
     own_strategy = (
         feature_section.get("strategy") if isinstance(feature_section.get("strategy"), dict) else {}
     )
-    allowed_keys = (*kept_clear(kind), *_keys(family))
+    allowed_keys = (*kept_clear(family), *_keys(family))
     mixed["strategy"] = {
         key: value for key, value in strategy.items() if key in allowed_keys or key in own_strategy
     }
@@ -345,7 +341,7 @@ def _merge_defaults(feature_section: dict[str, Any], top: dict[str, Any]) -> dic
     process = mixed.get("process")
     if (
         isinstance(process, dict)
-        and not family.filled
+        and not family.is_filled
         and "bead_model" not in (feature_section.get("process") or {})
     ):
         mixed["process"] = {key: value for key, value in process.items() if key != "bead_model"}
@@ -363,7 +359,8 @@ def _add_fuse(section: Any, part_section: dict[str, Any]) -> Any:
     """The section of the strategy with what the part says about solids that touch."""
     if "fuse" not in part_section:
         return section
-    if fields.mapping(section, "strategy").get("kind") != "solid":
+    family = find_family(fields.mapping(section, "strategy").get("kind"))
+    if family is None or not family.fuses_solids:
         raise InputError(
             "NOT_FOR_FAMILY", "part.fuse", "only strategy.kind solid fuses solids; remove it"
         )

@@ -6,9 +6,11 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
+from ...core.families.registry import family_of
 from ...core.geometry.located import is_there
 from ...core.issues import InputError
 from ...core.parameters import field as f
+from ...core.parameters.filled import PLANES
 from ...core.parameters.inspection import AUTO, BEST, NONE, UNITS, InspectionParameters
 from ...core.parameters.scan import PREFIX, ScanParameters
 from ...sections import fields as job_fields
@@ -81,14 +83,13 @@ def scan_of(scan_keys: dict[str, Any], strategy: Any) -> ScanSource | None:
             "{}: only a scan in the coordinates of the part shows how far it has grown; remove it",
             fit,
         )
-    layers = getattr(strategy, "layers", "planes")
-    kind = type(strategy).__name__.removesuffix("Parameters").lower()
-    if kind not in ("solid", "surface") or layers != "planes":
+    family, layers = family_of(strategy), getattr(strategy, "layers", PLANES)
+    if not family.fits_scans(layers):
         raise InputError(
             "NOT_YET",
             f"{PREFIX}.scan",
             "{} cannot be fitted to a scan yet; only solids in planar layers and walls on a "
             "substrate can: remove it",
-            kind if kind != "solid" else f"layers: {layers}",
+            family.describe_layers(layers),
         )
     return ScanSource(file, scan_keys.get("scan_unit", AUTO), fit, pairs, parameters)

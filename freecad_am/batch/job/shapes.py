@@ -15,10 +15,11 @@ import FreeCAD as App
 from freecad_am import api
 
 from ...brep.shapes.chosen import owners_of, solids_of, touching
+from ...core.families.family import NONE
+from ...core.families.registry import family_of
 from ...core.geometry.mesh.file_unit import MESHES
 from ...core.issues import NOTE, InputError, Issue, Text
 from ...core.parameters.inspection import NONE as AS_MEASURED
-from ...core.strategies.families import NONE, family_of
 from ...objects.shapes import linked_files
 from ...objects.shapes.bodies import snapshot_of
 from ...objects.shapes.part_file import add_part, changed_part
@@ -228,7 +229,9 @@ class Shapes:
             None  # the inspection of the substrate by its scan, once the feature is made
         )
         try:
-            self.part = bring(document, self.of.part, meshes=family_of(self.of.strategy).meshes)
+            self.part = bring(
+                document, self.of.part, meshes=family_of(self.of.strategy).takes_meshes
+            )
             self.substrate = (
                 None
                 if self.of.substrate is None

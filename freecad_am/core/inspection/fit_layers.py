@@ -17,6 +17,7 @@ from scipy.spatial import cKDTree
 from ..geometry.fitted import REMAINS_CODE, Fitted
 from ..geometry.formatting import place
 from ..issues import NOTE, WARNING, InputError, Issue, Text
+from ..parameters.filled import PLANES
 from ..parameters.scan import ScanParameters
 from ..toolpath import Bead, Layer, Toolpath
 from ..types import Array, Index, Mask
@@ -144,7 +145,6 @@ def _tangents(bead: Bead, shift: Array) -> Array | None:
     return np.asarray(turned / np.linalg.norm(turned, axis=2, keepdims=True))
 
 
-FAMILIES = ("solid", "surface")  # solids in plane layers, and walls
 RUN = 20  # steps over which a slope is measured
 LOOKED = 20_000  # places of the first layer that are kept for pictures
 
@@ -166,7 +166,7 @@ class _Course:
 
 def refuse_family(toolpath: Toolpath, where: str) -> None:
     """InputError NOT_YET for families whose layers are not fitted to scans."""
-    if toolpath.family not in FAMILIES:
+    if not toolpath.traits.fits_scans(PLANES):
         raise InputError(
             "NOT_YET",
             where,
@@ -269,7 +269,7 @@ def max_moves(record: Fitted, layers: Index) -> Array:
 
 def ways_of(toolpath: Toolpath) -> Ways:
     """Directions (n, 3) in which layers grow at points of a bead."""
-    if toolpath.family == "solid":
+    if toolpath.traits.has_plane_layers:
         up = toolpath.frame[:3, 2]
         return lambda bead: np.tile(up, (len(bead), 1))
     return lambda bead: bead.build
@@ -320,13 +320,13 @@ class _Above:
         self, toolpath: Toolpath, planned: Sequence[Scanned], directions_of: Ways, scan: Scan
     ) -> None:
         self.first = planned
-        self.solid, self.scan = toolpath.family == "solid", scan
+        self.has_plane_layers, self.scan = toolpath.traits.has_plane_layers, scan
         points, off = zip(*(scanned_bead.samples() for scanned_bead in planned), strict=True)
         self.off, self.tree = np.concatenate(off), cKDTree(np.concatenate(points))
         self.plane = planned[0].bead.points[0]
 
     def __call__(self, points: Array, directions: Array) -> Array:
-        if not self.solid:
+        if not self.has_plane_layers:
             return np.asarray(self.off[self.tree.query(points)[1]])
         feet = points - ((points - self.plane) * directions).sum(axis=1)[:, None] * directions
         heights = self.scan.heights(feet, directions)

@@ -109,7 +109,7 @@ def _outward(loop: Array, normals: Array) -> float:
 
 def _toolpath_surface(toolpath: Toolpath, name: str) -> Planned:
     """The wall formed by adjacent beads, in the plane of each bead and its build direction."""
-    if toolpath.filled:
+    if toolpath.traits.is_filled:
         raise InputError(
             "NOT_FOR_FAMILY",
             name,
@@ -119,7 +119,7 @@ def _toolpath_surface(toolpath: Toolpath, name: str) -> Planned:
     normals: list[Array] = []
     for _, _, bead in toolpath:
         points, normal = _sampled(bead)
-        if toolpath.family == "revolution":
+        if toolpath.traits.has_axis:
             sense = _turning(points, toolpath.frame)
         elif samples and not (bead.closed and _is_radial(points, normal)):
             nearest = cKDTree(samples[-1]).query(points)[1]

@@ -16,6 +16,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..families.family import ON_FEATURE
+from ..families.registry import DEFAULT_KIND, KINDS
 from ..geometry import frames
 from ..geometry.columns import columns
 from ..geometry.obstacles import Body
@@ -396,18 +398,14 @@ def mounted(parameters: CellParameters, feature_frame: Array, family: str) -> Ar
     """Return the frame (4, 4) on the platform, in part coordinates: the feature's own frame (4,
     4), or the part file's frame.
     """
-    mount = (
-        parameters.mount
-        if parameters.mount != "auto"
-        else ("feature" if family == "revolution" else "part")
-    )
-    return np.array(feature_frame) if mount == "feature" else np.eye(4)
+    mount = parameters.mount if parameters.mount != "auto" else KINDS[family].mount
+    return np.array(feature_frame) if mount == ON_FEATURE else np.eye(4)
 
 
 def resolve(
     parameters: CellParameters,
     feature_frame: Array,
-    family: str = "revolution",
+    family: str = DEFAULT_KIND,
     folders: Sequence[str] = (),
 ) -> Cell:
     """The cell of a job: machine file read, frames put together.

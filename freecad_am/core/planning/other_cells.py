@@ -188,7 +188,7 @@ def branches(job: Tried) -> Iterator[Tried]:
         job.folders,
     )
     beads = levelled(cell, toolpath)[0] if cell.external else [bead for _, _, bead in toolpath]
-    for branch in best_branches(beads, cell, job.joints, toolpath.family != "revolution"):
+    for branch in best_branches(beads, cell, job.joints, not toolpath.traits.has_axis):
         words = opw.branch_name(branch)
         if words != job.settings.branch:
             yield change_cell(job, f"`cell.branch: [{', '.join(words)}]`", branch=words)

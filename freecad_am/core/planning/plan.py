@@ -68,7 +68,6 @@ OF_ROBOTS = (
 BRANCHES = 8
 # for branch auto: beads sampled in each branch, and branches planned until one is feasible
 SCREENED, MAX_BRANCHES_PLANNED = 12, 3
-REVOLUTION = "revolution"
 
 
 def _silent(fraction: float, text: str) -> None:
@@ -92,7 +91,7 @@ def plan_joints(
     lock, (parameters, not_used) = lock_of(cell, parameters, toolpath), _used(cell, parameters)
     features = toolpath.parts
     joined, arm_clearance = (
-        all(feature.family != REVOLUTION for feature, _ in features),
+        not any(feature.traits.has_axis for feature, _ in features),
         build_arm_clearance(toolpath, cell, cylinders),
     )
     requested_branch = _branch_wanted(cell, parameters)
@@ -417,7 +416,7 @@ def _slowed(
         feature_paths = [paths[k] for k in rows]
         if not feature_paths:
             continue
-        if feature.filled:
+        if feature.traits.is_filled:
             feature_paths, issues_found = corners_slowed(
                 cell, feature_paths, feature.layer_height, feature.law
             )

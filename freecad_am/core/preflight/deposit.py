@@ -29,7 +29,7 @@ def layers(
     """
     what = "Layers are one layer height apart"
     how = "distance in space of each point to the layer below, against what the strategy allows"
-    if toolpath.filled and not spacing.is_plane(toolpath):
+    if toolpath.traits.is_filled and not spacing.is_plane(toolpath):
         known_distances = on_part.over_layers(toolpath)
         how = "height of each point over the nearest place of the layer below, along the build direction there"
     distances = [

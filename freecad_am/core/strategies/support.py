@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..families.family import Family
 from ..geometry.curves.guide import Guide
 from ..geometry.mesh.collapsed import doubled_areas
 from ..geometry.mesh.solid import Search, SolidMesh
@@ -26,12 +27,6 @@ CONTACT_HEIGHTS = 0.5  # layer heights; a point no farther from a body is on it,
 FLUSH = 1e-6  # mm
 OVER_PLATFORM, ABOVE_PLATFORM = "OVER_PLATFORM", "ABOVE_PLATFORM"
 ABOVE_SUBSTRATE = "ABOVE_SUBSTRATE"
-CURVES = "curves"
-BY_ITSELF = (
-    "surface",
-    CURVES,
-    "cladding",
-)  # families whose first layer starts on its base by construction
 
 
 def check_support(
@@ -45,7 +40,7 @@ def check_support(
     """
     ground = _Ground(toolpath, planes, bodies, bases)
     open_, issues = support.find_unsupported(
-        toolpath, ground, toolpath.family in BY_ITSELF, _lowest(toolpath, toolpath.family, 0)
+        toolpath, ground, toolpath.traits.starts_on_base, _lowest(toolpath, toolpath.traits, 0)
     )
     return replace(
         toolpath, unsupported=math.fsum(open_.values()), issues=(*toolpath.issues, *issues)
@@ -69,17 +64,19 @@ def feature_support(
     return support.find_unsupported(
         scaled,
         ground,
-        feature.family in BY_ITSELF,
-        _lowest(scaled, feature.family, int(numbers[0])),
+        feature.traits.starts_on_base,
+        _lowest(scaled, feature.traits, int(numbers[0])),
         numbers,
     )
 
 
-def _lowest(toolpath: Toolpath, family: str, first_layer: int) -> Mask:
+def _lowest(toolpath: Toolpath, family: Family, first_layer: int) -> Mask:
     """Mask (l,) of the layers deposited on ground, at most a layer height above it: the first one, layers that begin another solid,
     and all layers of curves, whose curves may be deposited one after the other.
     """
-    mask = np.array([layer.first or family == CURVES for layer in toolpath.layers], dtype=bool)
+    mask = np.array(
+        [layer.first or family.starts_anywhere for layer in toolpath.layers], dtype=bool
+    )
     mask[first_layer] = True
     return mask
 
@@ -141,7 +138,7 @@ def _beyond_edge(toolpath: Toolpath, first_pieces: Pieces, frame: Array, diamete
     """
     local = (first_pieces.middle - frame[:3, 3]) @ frame[:3, :3]
     on_plane = (
-        np.abs(local[:, 2]) if toolpath.family != "solid" else local[:, 2]
+        local[:, 2] if toolpath.traits.has_plane_layers else np.abs(local[:, 2])
     ) <= CONTACT_HEIGHTS * toolpath.layer_height
     return np.where(on_plane, np.hypot(local[:, 0], local[:, 1]) - 0.5 * diameter, -np.inf)
 

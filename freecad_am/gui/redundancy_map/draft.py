@@ -25,7 +25,6 @@ from ...core.parameters.joints import BRANCHES as BRANCH_WORDS
 from ...core.parameters.joints import OF_CELL, JointParameters, given_text
 from ...core.parameters.process import ProcessParameters
 from ...core.planning.joint_path import BeadPath, JointPath
-from ...core.planning.plan import REVOLUTION
 from ...core.planning.points import Points
 from ...core.planning.redundancy import curve as rotation_curve
 from ...core.planning.redundancy import map
@@ -85,7 +84,7 @@ class Source:
 
     def task(self, branch: int) -> Task:
         """What the planner has to do on a branch."""
-        return Task(self.cell, branch, self.parameters, self.toolpath.family != REVOLUTION)
+        return Task(self.cell, branch, self.parameters, not self.toolpath.traits.has_axis)
 
 
 def source_of(obj: Any) -> Source:

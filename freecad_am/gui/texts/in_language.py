@@ -11,6 +11,7 @@ from pathlib import Path
 import FreeCAD as App
 import FreeCADGui as Gui
 
+from ...core.families.registry import FAMILIES
 from ...core.issues import AmError, Text
 from ...core.kinematics.links.contact import (
     BASE,
@@ -28,7 +29,6 @@ from ...core.parameters.joints import JointParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.program import ProgramParameters
 from ...core.quantities import is_example, put_values
-from ...core.strategies.families import FAMILIES
 from ...objects.fields.preferences import in_user_units
 from ...objects.fields.rows import group_of, rows
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from ...brep.shapes.off_part import off_edges, off_faces, off_facets, off_mesh, off_solids
+from ...core.families.registry import family_of
 from ...core.process.deposit import on_part
-from ...core.strategies.families import family_of
 from ...core.toolpath import Toolpath as CoreToolpath
 from ..planned.toolpaths import Given
 from ..shapes.bodies import Taken
@@ -41,7 +41,7 @@ def check_on_part(toolpath: CoreToolpath, inputs: Given, sources: Sequence[Taken
     middle = getattr(inputs.strategy, "wall", "") == "middle"  # between two faces, on neither
     if middle and not sources[0].shape.Solids:
         return toolpath
-    if middle or family_of(inputs.strategy).filled:
+    if middle or family_of(inputs.strategy).is_filled:
         off = np.min([_off_solid(source, positions.points, limit) for source in sources], axis=0)
     elif sources[0].shape is None:
         body = sources[0].body()

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...brep.shapes.tessellate import triangles_of
+from ...core.families.registry import family_of
 from ...core.geometry.fitted import PredictedShape
 from ...core.inspection import figures
 from ...core.inspection.inspect import PREDICTED, Inspected
@@ -30,7 +31,6 @@ from ...core.process.shape.compare import (
     uncovered_faces,
 )
 from ...core.process.shape.laying import PredictedDeposit, feature_parts, predicted_deposit
-from ...core.strategies.families import family_of
 from ...core.toolpath import Toolpath as CoreToolpath
 from ..planned.toolpaths import Given
 from ..shapes.bodies import Taken
@@ -164,7 +164,7 @@ def inspected(
 
 def remedy(targets: Sequence[Target]) -> str:
     """What to do where a deposit is too small, with {} for by how much."""
-    filled = family_of(targets[0].inputs.strategy).filled
+    filled = family_of(targets[0].inputs.strategy).is_filled
     return (
         _OF_WALLS if not filled else _OF_CLADDING if targets[0].kind == "cladding" else _OF_SOLIDS
     )

@@ -6,8 +6,8 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
+from ...core.families.registry import KINDS
 from ...core.issues import InputError, Text
-from ...core.strategies.families import KINDS
 
 # class paths are a file format
 _PROXIES = {

@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 
 from ...brep.shapes.chosen import common_volume, volume
+from ...core.families.registry import family_of
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
 from ...core.kinematics.cell import mounted
 from ...core.parameters.cell import CellParameters
 from ...core.process.deposit import balance as deposit_balance
 from ...core.strategies import sequence, support
-from ...core.strategies.families import NONE, family_of
 from ...core.toolpath import Toolpath as CoreToolpath
 from ..checks.on_its_part import check_on_part
 from ..shapes.bodies import Taken, bodies, snapshot_of
@@ -161,9 +161,9 @@ def _judge_feature(
     feature_part, numbers = toolpath.parts[number]
     planes: tuple[Any, ...] = ()
     bases = bases_of(entry.inputs)
-    if feature_part.family == "revolution" and (plates or _lowest(toolpath, feature_part)):
+    if feature_part.traits.has_axis and (plates or _lowest(toolpath, feature_part)):
         planes = (stands if plates else feature_part.frame,)
-    if feature_part.family == "solid" and not _lowest(toolpath, feature_part):
+    if feature_part.traits.has_plane_layers and not _lowest(toolpath, feature_part):
         bases = []
     ground = (*entry.inputs.wall.surroundings, *plates)
     lengths, support_issues = support.feature_support(toolpath, number, planes, ground, bases)
@@ -198,10 +198,7 @@ def _lowest(toolpath: CoreToolpath, feature_part: CoreToolpath) -> bool:
 def _refuse_overlaps(members: Sequence[Member], names: Sequence[tuple[str, ...]]) -> None:
     """InputError OVERLAP for parts that are within one another; what grows on another begins at its surface."""
     for k, entry in enumerate(members):
-        cut = (
-            family_of(entry.inputs.strategy).substrate != NONE
-            and family_of(entry.inputs.strategy).kind != "solid"
-        )
+        cut = family_of(entry.inputs.strategy).cuts_into_substrate
         for j, other_entry in enumerate(members[:k]):
             if not (entry.is_complete and other_entry.is_complete) or (
                 cut and set(names[j]) & set(entry.on)

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from ...core.families.registry import family_of
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError, Issue
 from ...core.kinematics.cell import mounted
@@ -29,7 +30,6 @@ from ...core.process.model.wire import set_wire_feed
 from ...core.process.order import enforce_layer_time
 from ...core.strategies import support
 from ...core.strategies.clearance import look as clearance_look
-from ...core.strategies.families import family_of
 from ...core.strategies.revolution import clearance
 from ...core.toolpath import Toolpath as CoreToolpath
 from ...core.types import Array
@@ -88,7 +88,7 @@ def planned(
     toolpath = add_wire_speed(toolpath, inputs)
     progress.report(CHECKED, "looking for beads over nothing")
     plates = platforms(inputs.cell, toolpath)
-    if toolpath.family == "revolution":
+    if toolpath.traits.has_axis:
         stands = (
             mounted(inputs.cell, toolpath.frame, toolpath.family)
             if inputs.cell is not None and plates
@@ -153,14 +153,14 @@ def layers_of(inputs: Given) -> CoreToolpath:
     classes.refuse_speeds(process)
     family = family_of(inputs.strategy)
     layers, model = _PLANNERS[family.kind].layers(inputs), inputs.model
-    if model is not None and not family.filled:
+    if model is not None and not family.is_filled:
         layers = notes.hold_widths(layers, process, model)
     toolpath = classes.set_bead_ends(layers, process)
-    if not family.filled:
+    if not family.is_filled:
         toolpath = enforce_layer_time(
             toolpath, getattr(inputs.strategy, "min_layer_time", 0.0), process.rapid_speed
         )
-    twice = toolpath.twice if family.filled else deposited_twice(toolpath)
+    twice = toolpath.twice if family.is_filled else deposited_twice(toolpath)
     return dataclasses.replace(
         toolpath,
         max_from_vertical=inputs.build.max_from_vertical,

@@ -99,7 +99,7 @@ def allowed_distance(toolpath: Toolpath, margin: float = 0.0) -> float:
     On walls: the chord error and rounding. Solids on hubs are filled, and beads in narrower regions or in a margin exceed the part
     by at most half their width.
     """
-    if not toolpath.filled:
+    if not toolpath.traits.is_filled:
         return toolpath.chord_error + ROUNDED
     return 0.5 * (toolpath.bead_width or 0.0) + abs(margin) + toolpath.chord_error
 

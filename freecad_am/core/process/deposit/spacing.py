@@ -108,7 +108,7 @@ def is_spiral(toolpath: Toolpath) -> bool:
         len(toolpath.layers) == 1
         and len(beads) == 1
         and not beads[0].closed
-        and toolpath.family == "revolution"
+        and toolpath.traits.has_axis
     )
 
 
@@ -120,7 +120,7 @@ def is_plane(toolpath: Toolpath) -> bool:
 def _planes(toolpath: Toolpath) -> Array | None:
     """(layers,) mm along the Z of the frame, where layers are filled planes square to it; else None."""
     toolpath = toolpath.deposited
-    if toolpath.family != "solid":
+    if not toolpath.traits.has_plane_layers:
         return None
     up = toolpath.frame[:3, 2]
     ends = np.array(
