@@ -19,9 +19,10 @@ from ..core.process.model import wire
 from ..core.strategies.sequence import BY_FEATURE, BY_HEIGHT
 from ..core.toolpath import Toolpath as CoreToolpath
 from .checks.on_its_part import check_on_part
+from .families.given import Given
 from .fields import rows
 from .planned.in_sequence import member, planned_in_sequence
-from .planned.toolpaths import Given, planned, seen_of
+from .planned.toolpaths import planned, seen_of
 from .planned.upright import in_planes, try_remedy
 from .results import keys
 from .shapes.bodies import snapshot_of

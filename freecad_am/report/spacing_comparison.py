@@ -26,7 +26,8 @@ from ..core.strategies.walls.comparison import METHODS, NORMAL, Compared, Refuse
 from ..core.toolpath import Toolpath
 from ..core.types import Array
 from ..objects import user_machines
-from ..objects.planned.toolpaths import Given, planned
+from ..objects.families.given import Given
+from ..objects.planned.toolpaths import planned
 from . import figures as of_report
 from .figures import Job
 

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from ...brep.shapes.tessellate import triangles_of
-from ...core.families.registry import family_of
 from ...core.geometry.fitted import PredictedShape
 from ...core.inspection import figures
 from ...core.inspection.inspect import PREDICTED, Inspected
@@ -32,15 +31,14 @@ from ...core.process.shape.compare import (
 )
 from ...core.process.shape.laying import PredictedDeposit, feature_parts, predicted_deposit
 from ...core.toolpath import Toolpath as CoreToolpath
-from ..planned.toolpaths import Given
+from ..families.given import Given
+from ..families.planner import FeaturePlanner
+from ..families.registry import planner_for
 from ..shapes.bodies import Taken
 from ..work import progress
 
 DEFLECTION = 0.05  # mm, of the triangles of faces
 NOTHING = "NO_PREDICTION"
-_OF_SOLIDS = "Give strategy.margin {} mm more than it has, or wider beads"
-_OF_WALLS = "Use beads {} mm wider on either side, by process.bead_width, or a smaller allowance"
-_OF_CLADDING = "Add one layer, or use a smaller allowance"
 
 Report = Callable[[float, str], None]
 
@@ -56,9 +54,9 @@ class Target:
     faces: tuple[str, ...] = ()
 
     @property
-    def kind(self) -> str:
-        """The kind of its family."""
-        return family_of(self.inputs.strategy).kind
+    def planner(self) -> FeaturePlanner:
+        """The planner of its family."""
+        return planner_for(self.inputs.strategy)
 
 
 def add_shape_issues(
@@ -105,7 +103,7 @@ def predicted(
     parts = feature_parts(toolpath, processes)
     if any(feature_part.toolpath.bead_width is None for feature_part in parts):
         raise InputError(NOTHING, "toolpath", "the effective bead width is unknown; plan it again")
-    target_faces = [_faces(target) for target in targets if target.kind != "curves"]
+    target_faces = [_faces(target) for target in targets if target.planner.has_faces]
     if not target_faces:
         raise InputError(
             NOTHING,
@@ -164,18 +162,15 @@ def inspected(
 
 def remedy(targets: Sequence[Target]) -> str:
     """What to do where a deposit is too small, with {} for by how much."""
-    filled = family_of(targets[0].inputs.strategy).is_filled
-    return (
-        _OF_WALLS if not filled else _OF_CLADDING if targets[0].kind == "cladding" else _OF_SOLIDS
-    )
+    return targets[0].planner.allowance_remedy
 
 
 def _faces(target: Target) -> Faces:
     """The faces of a feature that its deposit is to cover. InputError NO_FACES."""
-    if target.kind in ("solid", "developable"):
-        bodies = [body for group in target.inputs.wall.groups for body in group.bodies]
+    bodies = target.planner.bodies_to_cover(target.inputs.wall)
+    if bodies is not None:
         return thin_faces(join_faces([faces(body.vertices, body.triangles) for body in bodies]))
-    names = target.inputs.wall.faces if target.kind == "cladding" else target.faces
+    names = target.planner.faces_to_cover(target.inputs.wall, target.faces)
     return thin_faces(
         join_faces(
             [

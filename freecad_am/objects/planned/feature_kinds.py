@@ -8,16 +8,7 @@ from typing import Any
 
 from ...core.families.registry import KINDS
 from ...core.issues import InputError, Text
-
-# class paths are a file format
-_PROXIES = {
-    "revolution": ("feature", "RevolutionFeature"),
-    "surface": ("surface_feature", "SurfaceFeature"),
-    "developable": ("developable_feature", "DevelopableFeature"),
-    "curves": ("curves_feature", "CurvesFeature"),
-    "solid": ("solid_feature", "SolidFeature"),
-    "cladding": ("cladding_feature", "CladdingFeature"),
-}
+from ..families.registry import planner_of
 
 
 def proxy_of(kind: str) -> type[Any]:
@@ -30,6 +21,6 @@ def proxy_of(kind: str) -> type[Any]:
             kind,
             Text.joined(", ", KINDS),
         )
-    module, name = _PROXIES[kind]
+    module, name = planner_of(KINDS[kind]).proxy
     proxy_class: type[Any] = getattr(importlib.import_module(f"freecad_am.objects.{module}"), name)
     return proxy_class

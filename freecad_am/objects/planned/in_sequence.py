@@ -23,14 +23,12 @@ from ...core.process.deposit import balance as deposit_balance
 from ...core.strategies import sequence, support
 from ...core.toolpath import Toolpath as CoreToolpath
 from ..checks.on_its_part import check_on_part
+from ..families.given import Given
+from ..families.planner import CHECKED, CLEARING, STRATEGY
 from ..shapes.bodies import Taken, bodies, snapshot_of
 from ..shapes.platforms import platforms
 from ..work import progress
 from .toolpaths import (
-    CHECKED,
-    CLEARING,
-    STRATEGY,
-    Given,
     above_platform,
     add_wire_speed,
     bases_of,

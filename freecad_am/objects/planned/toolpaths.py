@@ -1,69 +1,30 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How a feature of each family becomes a toolpath: layers and beads, the nozzle kept clear, what carries them.
-
-A family is imported when one of its features is planned: importing every family takes longer than
-planning a small part.
-"""
+"""How a feature becomes a toolpath: layers and beads, the nozzle kept clear, what carries them."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
-
-import numpy as np
 
 from ...core.families.registry import family_of
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError, Issue
 from ...core.kinematics.cell import mounted
-from ...core.parameters.build_direction import BuildDirectionParameters
-from ...core.parameters.cell import CellParameters, NozzleParameters
-from ...core.parameters.process import ProcessParameters
+from ...core.parameters.cell import CellParameters
 from ...core.process import classes
 from ...core.process.deposit.pieces import deposited_twice
-from ...core.process.model import notes, wire
-from ...core.process.model.bead_model import BeadModel
+from ...core.process.model import notes
 from ...core.process.model.material import check_speeds
 from ...core.process.model.wire import set_wire_feed
 from ...core.process.order import enforce_layer_time
 from ...core.strategies import support
-from ...core.strategies.clearance import look as clearance_look
-from ...core.strategies.revolution import clearance
 from ...core.toolpath import Toolpath as CoreToolpath
-from ...core.types import Array
+from ..families.given import Given, platform_frame
+from ..families.planner import CHECKED, CLEARING, STRATEGY
+from ..families.registry import planner_for, planner_of
 from ..shapes.platforms import platforms
 from ..work import progress
-
-STRATEGY = 0.7  # share of the time for layers and beads, the rest keeps the nozzle clear
-CHECKED = 0.92  # the remaining share is for the final checks
-CLEARING = "keeping the nozzle clear"
-
-
-@dataclass(frozen=True, eq=False)
-class Given:
-    """The planning inputs of a feature: its wall or solids, which the feature object has found, and
-    parameters. cell: as `seen_of` leaves it. stands: (4, 4) in part coordinates, the frame on the
-    platform if an earlier feature sets it; else None.
-    """
-
-    wall: Any
-    strategy: Any
-    build: BuildDirectionParameters
-    process: ProcessParameters
-    cell: CellParameters | None
-    stands: Array | None = None
-
-    @property
-    def nozzle(self) -> NozzleParameters:
-        """The nozzle of the cell, or the usual one."""
-        return NozzleParameters() if self.cell is None else self.cell.nozzle
-
-    @property
-    def model(self) -> BeadModel | None:
-        """The bead model of the process."""
-        return wire.process_model(self.process)
 
 
 def seen_of(cell: CellParameters) -> CellParameters:
@@ -112,7 +73,7 @@ def over_edge(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:
     )  # of several the first one's frame counts for all
     edge_issues = support.over_edge(
         toolpath,
-        _stands(toolpath, inputs, inputs.cell),
+        platform_frame(toolpath, inputs, inputs.cell),
         inputs.cell.platform_diameter,
         toolpath.surroundings,
         feature,
@@ -128,12 +89,8 @@ def above_platform(toolpath: CoreToolpath, inputs: Given) -> list[Issue]:
         or not support.is_on_planes(bases_of(inputs))
     ):
         return []
-    return support.above(toolpath, _stands(toolpath, inputs, inputs.cell), toolpath.surroundings)
-
-
-def _stands(toolpath: CoreToolpath, inputs: Given, cell: CellParameters) -> Array:
-    return (
-        mounted(cell, toolpath.frame, toolpath.family) if inputs.stands is None else inputs.stands
+    return support.above(
+        toolpath, platform_frame(toolpath, inputs, inputs.cell), toolpath.surroundings
     )
 
 
@@ -152,7 +109,7 @@ def layers_of(inputs: Given) -> CoreToolpath:
         )
     classes.refuse_speeds(process)
     family = family_of(inputs.strategy)
-    layers, model = _PLANNERS[family.kind].layers(inputs), inputs.model
+    layers, model = planner_of(family).plan_layers(inputs), inputs.model
     if model is not None and not family.is_filled:
         layers = notes.hold_widths(layers, process, model)
     toolpath = classes.set_bead_ends(layers, process)
@@ -175,7 +132,7 @@ def kept_clear(
     """The toolpath with tools tilted clear of bodies (including the platform) and deposit. feature:
     the number of the feature of `inputs` among several, which is kept clear.
     """
-    return _PLANNERS[family_of(inputs.strategy).kind].cleared(toolpath, inputs, bodies, feature)
+    return planner_for(inputs.strategy).keep_clear(toolpath, inputs, bodies, feature)
 
 
 def add_wire_speed(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:
@@ -188,218 +145,3 @@ def add_wire_speed(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:
 def bases_of(inputs: Given) -> list[Any]:
     """The bases of solids; empty for walls and faces."""
     return [group.base for group in getattr(inputs.wall, "groups", ())]
-
-
-def _share(fraction: float, text: str) -> None:
-    progress.report(STRATEGY * fraction, text)
-
-
-def _plan_revolution(inputs: Given) -> CoreToolpath:
-    from ...core.strategies.revolution import plan as revolution
-
-    stands = inputs.stands
-    if stands is None and inputs.cell is not None and inputs.cell.mount == "part":
-        stands = np.eye(4)
-    toolpath = revolution.plan(
-        inputs.wall,
-        inputs.strategy,
-        inputs.build,
-        inputs.process,
-        inputs.nozzle,
-        0.0 if inputs.cell is None else inputs.cell.platform_diameter,
-        stands,
-        _share,
-    )
-    return dataclasses.replace(toolpath, surroundings=inputs.wall.surroundings)
-
-
-def _plan_wall(inputs: Given) -> CoreToolpath:
-    from ...core.geometry.walls.patch_wall import PatchWall
-
-    if isinstance(inputs.wall, PatchWall):
-        from ...core.strategies.walls import fronts as family
-    else:
-        from ...core.strategies.walls import plan as family
-    on_another = getattr(inputs.wall, "ground", None) is None or inputs.stands is not None
-    remedy = clearance.MOVE if on_another else clearance.MOUNT
-    if (
-        isinstance(inputs.wall, PatchWall)
-        and inputs.cell is not None
-        and (inputs.stands is not None or inputs.cell.mount != "feature")
-    ):
-        # the first layer is where the wall begins: before the others are looked for, which may take minutes
-        begins = np.vstack([start_curve.curve().points for start_curve in inputs.wall.first])
-        stands = np.eye(4) if inputs.stands is None else inputs.stands
-        clearance.refuse_below(
-            inputs.wall.label, begins, stands, inputs.cell.platform_diameter, remedy
-        )
-    toolpath = family.plan(inputs.wall, inputs.strategy, inputs.build, inputs.process, _share)
-    if inputs.cell is not None:
-        points = np.vstack([bead.points for _, _, bead in toolpath])
-        stands = (
-            mounted(inputs.cell, toolpath.frame, toolpath.family)
-            if inputs.stands is None
-            else inputs.stands
-        )
-        clearance.refuse_below(
-            inputs.wall.label, points, stands, inputs.cell.platform_diameter, remedy
-        )
-    return dataclasses.replace(toolpath, surroundings=inputs.wall.surroundings)
-
-
-def _plan_solids(inputs: Given) -> CoreToolpath:
-    from ...core.strategies.solids import plan as solids_plan
-
-    if inputs.stands is not None and inputs.cell is not None:
-        clearance.refuse_solids_below(inputs.wall, inputs.stands, inputs.cell.platform_diameter)
-    elif (
-        inputs.cell is not None and inputs.cell.mount != "feature"
-    ):  # the feature's own frame is at its lowest end
-        clearance.refuse_solids_below(inputs.wall, np.eye(4), inputs.cell.platform_diameter)
-    return solids_plan.plan(
-        inputs.wall, inputs.strategy, inputs.build, inputs.process, inputs.model, _share
-    )
-
-
-def _plan_curves(inputs: Given) -> CoreToolpath:
-    from ...core.strategies import curves
-
-    toolpath = curves.plan(inputs.wall, inputs.strategy, inputs.build, inputs.process, _share)
-    if inputs.cell is not None:
-        points = np.vstack([bead.points for _, _, bead in toolpath])
-        stands = (
-            mounted(inputs.cell, toolpath.frame, toolpath.family)
-            if inputs.stands is None
-            else inputs.stands
-        )
-        clearance.refuse_below(inputs.wall.label, points, stands, inputs.cell.platform_diameter)
-    return toolpath
-
-
-def _plan_cladding(inputs: Given) -> CoreToolpath:
-    from ...core.strategies import cladding
-
-    toolpath = cladding.plan(
-        inputs.wall, inputs.strategy, inputs.build, inputs.process, inputs.model, _share
-    )
-    if inputs.cell is not None:
-        points = np.vstack([bead.points for _, _, bead in toolpath])
-        stands = (
-            mounted(inputs.cell, toolpath.frame, toolpath.family)
-            if inputs.stands is None
-            else inputs.stands
-        )
-        clearance.refuse_below(inputs.wall.label, points, stands, inputs.cell.platform_diameter)
-    return toolpath
-
-
-def _cladding_cleared(
-    toolpath: CoreToolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
-) -> CoreToolpath:
-    """The machine turns the part so that its faces look up: no vertical bounds the tool axes."""
-    free = dataclasses.replace(inputs.build, max_tilt=np.pi)
-    return _tilted_clear(toolpath, inputs, bodies, feature, free)
-
-
-def _tilted_clear(
-    toolpath: CoreToolpath,
-    inputs: Given,
-    bodies: Sequence[Body],
-    feature: int | None,
-    build: BuildDirectionParameters | None = None,
-    plane: Array | None = None,
-) -> CoreToolpath:
-    """As `tilt_back.keep_clear`; reports its progress, and once that it takes long. build: in place
-    of the feature's.
-    """
-    from ...core.strategies import size
-    from ...core.strategies.clearance import tilt_back
-    from ...core.strategies.progress import Watch
-
-    issues: list[Issue] = []
-
-    def report_points(points: int, times: int) -> None:
-        for issue in () if issues else size.tilting_issues(points, times):
-            issues.append(issue)
-            progress.report_issue(issue)
-
-    def share(fraction: float) -> None:
-        progress.report(STRATEGY + fraction * (CHECKED - STRATEGY), CLEARING)
-
-    return tilt_back.keep_clear(
-        toolpath,
-        bodies,
-        inputs.nozzle,
-        build or inputs.build,
-        plane,
-        feature,
-        Watch(report_points, share),
-    )
-
-
-def _curves_cleared(
-    toolpath: CoreToolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
-) -> CoreToolpath:
-    return _tilted_clear(toolpath, inputs, bodies, feature)
-
-
-def _revolution_cleared(
-    toolpath: CoreToolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
-) -> CoreToolpath:
-    """Check clearance to the surroundings; the rest was settled with the layers, except deposit of
-    other features.
-    """
-    if feature is None:
-        touch_issues = clearance_look.nozzle_issues(
-            toolpath, inputs.wall.surroundings, inputs.nozzle
-        )
-        return dataclasses.replace(toolpath, issues=(*toolpath.issues, *touch_issues))
-    feature_part = toolpath.parts[feature][0]
-    count = feature_part.point_count
-    alone = clearance_look.check_nozzle(feature_part, bodies, inputs.nozzle, count)
-    among = clearance_look.check_nozzle(toolpath, bodies, inputs.nozzle, count, feature)
-    if among.touched <= alone.touched:
-        return toolpath
-    return _tilted_clear(toolpath, inputs, bodies, feature)
-
-
-def _wall_cleared(
-    toolpath: CoreToolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
-) -> CoreToolpath:
-    from ...core.strategies.walls.beads import symmetry_plane
-
-    return _tilted_clear(
-        toolpath, inputs, bodies, feature, plane=symmetry_plane(inputs.wall, inputs.build)
-    )
-
-
-def _solids_cleared(
-    toolpath: CoreToolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
-) -> CoreToolpath:
-    """On a hub the machine turns them, so that no vertical bounds the tool axes."""
-    from ...core.strategies.solids import plan as solids_plan
-
-    if not inputs.wall.has_plane_layers():
-        return _tilted_clear(
-            toolpath, inputs, bodies, feature, solids_plan.lift_axis_limits(inputs.build)
-        )
-    if feature is None and solids_plan.clear_by_itself(toolpath, inputs.wall):
-        return toolpath
-    return _tilted_clear(toolpath, inputs, bodies, feature)
-
-
-@dataclass(frozen=True)
-class _Planner:
-    layers: Callable[[Given], CoreToolpath]
-    cleared: Callable[[CoreToolpath, Given, Sequence[Body], int | None], CoreToolpath]
-
-
-_SOLIDS = _Planner(_plan_solids, _solids_cleared)
-_PLANNERS = {
-    "revolution": _Planner(_plan_revolution, _revolution_cleared),
-    "surface": _Planner(_plan_wall, _wall_cleared),
-    "developable": _SOLIDS,
-    "solid": _SOLIDS,
-    "curves": _Planner(_plan_curves, _curves_cleared),
-    "cladding": _Planner(_plan_cladding, _cladding_cleared),
-}

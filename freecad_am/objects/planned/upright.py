@@ -13,8 +13,9 @@ from ...core.issues import ERROR, NOTE, AmError, Issue, Text, has_errors
 from ...core.parameters.filled import GEODESIC, OFFSET, PLANES
 from ...core.strategies.clearance.look import CLEARANCE
 from ...core.toolpath import Toolpath
+from ..families.given import Given
 from ..work import progress
-from .toolpaths import Given, planned
+from .toolpaths import planned
 
 if TYPE_CHECKING:
     from ...core.planning.other_cells import Fixed

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Layers on faces."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ...core.geometry.obstacles import Body
+from ...core.process.deposit import on_part
+from ...core.toolpath import Toolpath
+from ..shapes.bodies import Taken
+from .given import Given
+from .planner import (
+    FeaturePlanner,
+    PartDistances,
+    distances_from_faces,
+    refuse_below,
+    share_strategy,
+    tilt_clear,
+)
+
+
+class CladdingPlanner(FeaturePlanner):
+    """Plans layers that cover faces."""
+
+    proxy = ("cladding_feature", "CladdingFeature")
+    allowance_remedy = "Add one layer, or use a smaller allowance"
+
+    def plan_layers(self, inputs: Given) -> Toolpath:
+        from ...core.strategies import cladding
+
+        toolpath = cladding.plan(
+            inputs.wall, inputs.strategy, inputs.build, inputs.process, inputs.model, share_strategy
+        )
+        refuse_below(toolpath, inputs)
+        return toolpath
+
+    def keep_clear(
+        self, toolpath: Toolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
+    ) -> Toolpath:
+        """The machine turns the part so that its faces look up: no vertical bounds the tool axes."""
+        free = dataclasses.replace(inputs.build, max_tilt=np.pi)
+        return tilt_clear(toolpath, inputs, bodies, feature, free)
+
+    def part_distances(
+        self, toolpath: Toolpath, inputs: Given, sources: Sequence[Taken], places: on_part.Places
+    ) -> PartDistances | None:
+        """Return how far layers are off their heights above the faces."""
+        up = (places.layer % inputs.strategy.layers) * inputs.strategy.layer_height
+        limit = toolpath.chord_error + on_part.ROUNDED
+        feet = places.points - up[:, None] * places.build
+        return PartDistances(
+            places, distances_from_faces(inputs.wall, sources[0], feet, limit), limit
+        )
+
+    def faces_to_cover(self, wall: Any, selected: tuple[str, ...]) -> tuple[str, ...]:
+        return tuple(wall.faces)

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Edges and tables of points as beads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from ...brep.shapes.off_part import off_edges
+from ...core.process.deposit import on_part
+from ...core.toolpath import Toolpath
+from ..shapes.bodies import Taken
+from .given import Given
+from .planner import FeaturePlanner, PartDistances, refuse_below, share_strategy
+
+
+class CurvesPlanner(FeaturePlanner):
+    """Plans beads along curves."""
+
+    proxy = ("curves_feature", "CurvesFeature")
+    has_faces = False
+
+    def plan_layers(self, inputs: Given) -> Toolpath:
+        from ...core.strategies import curves
+
+        toolpath = curves.plan(
+            inputs.wall, inputs.strategy, inputs.build, inputs.process, share_strategy
+        )
+        refuse_below(toolpath, inputs)
+        return toolpath
+
+    def is_on_part(self, wall: Any) -> bool:
+        """Return whether there are edges; a table of points is itself the part."""
+        return wall.edges is not None
+
+    def part_distances(
+        self, toolpath: Toolpath, inputs: Given, sources: Sequence[Taken], places: on_part.Places
+    ) -> PartDistances | None:
+        """Return how far layers are off their heights above the edges."""
+        up = (
+            places.layer
+            // (len(toolpath.layers) // inputs.strategy.repeat)
+            * inputs.strategy.layer_height
+        )
+        feet = places.points - up[:, None] * places.build
+        off = off_edges(sources[0].shape, inputs.wall.edges, feet)
+        return PartDistances(places, off, toolpath.chord_error + on_part.ROUNDED)

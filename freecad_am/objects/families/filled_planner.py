@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What solids in all layers have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ...core.geometry.obstacles import Body
+from ...core.process.deposit import on_part
+from ...core.strategies.revolution import clearance
+from ...core.toolpath import Toolpath
+from ..shapes.bodies import Taken
+from .given import Given
+from .planner import FeaturePlanner, PartDistances, share_strategy, tilt_clear
+from .solid_distances import distances_from_solids
+
+
+class FilledPlanner(FeaturePlanner):
+    """Plans solids that are filled."""
+
+    allowance_remedy = "Give strategy.margin {} mm more than it has, or wider beads"
+
+    def plan_layers(self, inputs: Given) -> Toolpath:
+        from ...core.strategies.solids import plan
+
+        if inputs.stands is not None and inputs.cell is not None:
+            clearance.refuse_solids_below(inputs.wall, inputs.stands, inputs.cell.platform_diameter)
+        elif (
+            inputs.cell is not None and inputs.cell.mount != "feature"
+        ):  # the feature's own frame is at its lowest end
+            clearance.refuse_solids_below(inputs.wall, np.eye(4), inputs.cell.platform_diameter)
+        return plan.plan(
+            inputs.wall, inputs.strategy, inputs.build, inputs.process, inputs.model, share_strategy
+        )
+
+    def keep_clear(
+        self, toolpath: Toolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
+    ) -> Toolpath:
+        """On a hub the machine turns them, so that no vertical bounds the tool axes."""
+        from ...core.strategies.solids import plan
+
+        if not inputs.wall.has_plane_layers():
+            return tilt_clear(
+                toolpath, inputs, bodies, feature, plan.lift_axis_limits(inputs.build)
+            )
+        if feature is None and plan.clear_by_itself(toolpath, inputs.wall):
+            return toolpath
+        return tilt_clear(toolpath, inputs, bodies, feature)
+
+    def part_distances(
+        self, toolpath: Toolpath, inputs: Given, sources: Sequence[Taken], places: on_part.Places
+    ) -> PartDistances | None:
+        limit = on_part.allowed_distance(toolpath, inputs.strategy.margin)
+        return PartDistances(places, distances_from_solids(sources, places.points, limit), limit)
+
+    def bodies_to_cover(self, wall: Any) -> list[Body] | None:
+        return [body for group in wall.groups for body in group.bodies]

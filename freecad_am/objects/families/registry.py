@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The planner of each family, imported when one of its features is made or planned.
+
+`core.families.registry` lists the families; the module here has the kind as its name.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib
+
+from ...core.families.family import Family
+from ...core.families.registry import family_of
+from ...core.parameters.strategy import LayerParameters
+from .planner import FeaturePlanner
+
+
+@functools.cache
+def planner_of(family: Family) -> FeaturePlanner:
+    """Return the planner of a family."""
+    module = importlib.import_module(f"{__package__}.{family.kind}")
+    name = f"{type(family).__name__}Planner"
+    planner: FeaturePlanner = getattr(module, name)()
+    return planner
+
+
+def planner_for(strategy: LayerParameters) -> FeaturePlanner:
+    """Return the planner of a feature with this strategy."""
+    return planner_of(family_of(strategy))
