@@ -144,7 +144,9 @@ def make_cell(
     and positioner.
     """
     if values.get("external") == urdf_machine.WHOLE_CELL:
-        values["machine"], values["external"] = urdf_cell.texts_of_machine(values.get("machine"))
+        values["machine"], values["external"] = urdf_cell.cell_values_of_machine(
+            values.get("machine")
+        )
     with one_step(doc, f"Make {checked_text(label, 'label')}"):
         cell = make_stage(doc, Cell, "Cell", label, {}, [parameters], values)
         if parameters is None:

@@ -64,6 +64,7 @@ WORDS = {
     f.NUMBER: "number",
     f.COUNT: "whole number",
     f.TEXT: "text",
+    f.RECORDS: "records",
     f.POSE: "pose",
     f.ANGLE_RANGE: "two angles",
     f.RATIO_RANGE: "two percentages",

@@ -12,7 +12,6 @@ from typing import Any
 from ..core.kinematics.arrangement import arrangement_of
 from ..core.kinematics.machines import calibration
 from ..core.kinematics.urdf import reference as urdf_reference
-from ..core.parameters import external, obstacles, touched
 from ..core.parameters import field as f
 from ..core.parameters.cell import CellParameters
 
@@ -35,7 +34,7 @@ def text(cell: CellParameters, folder: str) -> str:
         entries = [
             f"{field.name}: "
             + (
-                _file(cell.nozzle.shape, folder)
+                _file(str(cell.nozzle.shape), folder)
                 if field.name == "shape"
                 else _format(getattr(cell.nozzle, field.name), f.spec_of(field).kind)
             )
@@ -43,28 +42,25 @@ def text(cell: CellParameters, folder: str) -> str:
             if getattr(cell.nozzle, field.name) != getattr(usual.nozzle, field.name)
         ]
         lines.append(f"nozzle: {{{', '.join(entries)}}}")
-    mechanisms = external.externals(cell.external)
-    if mechanisms:
+    if cell.external:
         lines.append("external:")
         lines += [
-            f"- {{machine: {_machine(one.machine, folder)}, pose: {_format(one.pose, f.POSE)}, carries: {one.carries}}}"
-            for one in mechanisms
+            f"- {{machine: {_machine(mechanism.machine, folder)}, pose: {_format(mechanism.pose, f.POSE)}, carries: {mechanism.carries}}}"
+            for mechanism in cell.external
         ]
-    around = obstacles.obstacles(cell.obstacles)
-    lines += ["obstacles:"] if around else []
-    for body in around:
+    lines += ["obstacles:"] if cell.obstacles else []
+    for body in cell.obstacles:
         what = (
             f"file: {_file(body.file, folder)}"
-            if body.size is None
-            else f"box: {_format(body.size, f.LENGTH)}"
+            if body.box is None
+            else f"box: {_format(body.box, f.LENGTH)}"
         )
         name = json.dumps(body.name, ensure_ascii=False)
         lines.append(f"- {{name: {name}, {what}, pose: {_format(body.pose, f.POSE)}}}")
-    points = touched.parse_touched(cell.touched)
-    lines += ["touched:"] if points else []
+    lines += ["touched:"] if cell.touched else []
     lines += [
-        f"- {{part: {_format(one.part, f.LENGTH)}, robot: {_format(one.robot, f.LENGTH)}}}"
-        for one in points
+        f"- {{part: {_format(point.part, f.LENGTH)}, robot: {_format(point.robot, f.LENGTH)}}}"
+        for point in cell.touched
     ]
     if cell.world_up != usual.world_up:
         lines.append(f"world_up: {_format(cell.upward(), f.NUMBER)}")

@@ -11,7 +11,6 @@ from ..core.geometry.file_content import digest
 from ..core.kinematics import cell as cells
 from ..core.kinematics.urdf.elements import MAX_FILE_MB
 from ..core.parameters.cell import CellParameters
-from ..core.parameters.external import externals
 from . import user_machines
 from .shapes import cell_obstacles
 from .stage import Stage
@@ -37,13 +36,11 @@ class Cell(Stage):
         return work
 
     def further_inputs(self, obj: Any) -> list[str]:
-        named = [
-            obj.Machine,
-            *(axis.machine for axis in externals(self.parameters(obj, CellParameters).external)),
-        ]
+        parameters = self.parameters(obj, CellParameters)
+        named = [obj.Machine, *(mechanism.machine for mechanism in parameters.external)]
         files = [
             digest(path, MAX_FILE_MB, "BAD_MACHINE", f"{obj.Label}.Machine")
             for name in named
             for path in user_machines.files_of(name)
         ]
-        return [*files, *cell_obstacles.hashes_of(obj.Obstacles, obj.NozzleShape)]
+        return [*files, *cell_obstacles.hashes_of(parameters)]

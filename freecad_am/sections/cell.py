@@ -13,9 +13,21 @@ from ..core.kinematics.machines import calibration
 from ..core.kinematics.urdf import cell as urdf_cell
 from ..core.kinematics.urdf import machine as urdf_machine
 from ..core.kinematics.urdf import reference as urdf_reference
-from ..core.parameters import external, obstacles, touched
 from ..core.parameters import field as f
-from ..core.parameters.cell import NO_SHAPE, CellParameters
+from ..core.parameters.cell import CellParameters
+from ..core.parameters.cell_records import (
+    EXTERNAL_KEY,
+    OBSTACLES_KEY,
+    PART,
+    SHAPE_KEY,
+    TOUCHED_KEY,
+    ExternalMechanism,
+    NozzleShape,
+    Obstacle,
+    TouchedPoint,
+    usual_name,
+)
+from ..core.parameters.records import NONE, Point, Pose
 from . import fields, paths, quantity, tree
 
 PAPERS = "paper"  # limits
@@ -49,7 +61,9 @@ def _parse_section(section: Any) -> CellParameters:
         section["machine"] = _machine(section["machine"])
     external_axes = section.pop("external", None)
     if external_axes == urdf_machine.WHOLE_CELL:
-        section["machine"], section["external"] = urdf_cell.texts_of_machine(section.get("machine"))
+        section["machine"], section["external"] = urdf_cell.cell_values_of_machine(
+            section.get("machine")
+        )
     elif external_axes not in (None, []):
         section["external"] = _external(external_axes)
     around = section.pop("obstacles", None)
@@ -58,11 +72,11 @@ def _parse_section(section: Any) -> CellParameters:
     if isinstance(section.get("nozzle"), dict) and section["nozzle"].get("shape") not in (
         None,
         {},
-        NO_SHAPE,
+        NONE,
     ):
         section["nozzle"] = {**section["nozzle"], "shape": _shape(section["nozzle"]["shape"])}
     if section.get("touched") not in (None, []):
-        section["touched"] = _touched_text(section["touched"])
+        section["touched"] = _touched(section["touched"])
     if isinstance(section.get("world_up"), list):
         numbers = [
             quantity.read(number, f.NUMBER, "cell.world_up") for number in section["world_up"]
@@ -126,21 +140,19 @@ def _machine(value: Any, key: str = "cell.machine") -> Any:
     return value
 
 
-def _external(value: Any) -> str:
-    """What `cell.external` says as the text that a cell keeps."""
+def _external(value: Any) -> tuple[ExternalMechanism, ...]:
+    """The mechanisms of `cell.external`."""
     if not isinstance(value, list):
         raise InputError(
             "BAD_VALUE",
-            external.WHERE,
+            EXTERNAL_KEY,
             "give a list such as - {machine: motoman-motopos-d500, pose: "
             "[1500, 0, 0, 0, 0, 0], carries: part}",
         )
-    return f"{external.SEPARATOR} ".join(
-        str(_one_external(entry, f"{external.WHERE}[{k}]")) for k, entry in enumerate(value)
-    )
+    return tuple(_one_external(entry, f"{EXTERNAL_KEY}[{k}]") for k, entry in enumerate(value))
 
 
-def _one_external(value: Any, key: str) -> external.External:
+def _one_external(value: Any, key: str) -> ExternalMechanism:
     section = fields.mapping(value, key)
     fields.known_keys(section, ("machine", "pose", "carries"), key)
     pose = _pose(section.get("pose"), f"{key}.pose")
@@ -148,12 +160,12 @@ def _one_external(value: Any, key: str) -> external.External:
     if not isinstance(machine_text, dict):
         machine_text = fields.text(machine_text, f"{key}.machine").strip()
     machine = _machine(machine_text, f"{key}.machine")
-    return external.External(machine, pose, section.get("carries") or external.PART)
+    return ExternalMechanism(machine, pose, section.get("carries") or PART)
 
 
-def _shape(value: Any) -> str:
-    """What `cell.nozzle.shape` says: the path of its file."""
-    key = "cell.nozzle.shape"
+def _shape(value: Any) -> NozzleShape:
+    """The file of `cell.nozzle.shape`."""
+    key = SHAPE_KEY
     if isinstance(value, dict):
         fields.known_keys(value, ("file",), key)
         value, key = value.get("file"), f"{key}.file"
@@ -165,33 +177,33 @@ def _shape(value: Any) -> str:
             "file {} does not exist; check the path, which is relative to the file that names it",
             file,
         )
-    return file
+    return NozzleShape(file.strip())
 
 
-def _touched_text(value: Any) -> str:
-    """What `cell.touched` says as the text that a cell keeps."""
+def _touched(value: Any) -> str | tuple[TouchedPoint, ...]:
+    """The points of `cell.touched`, or its text."""
     if isinstance(value, str):
         return value
     if not isinstance(value, list):
         raise InputError(
             "BAD_VALUE",
-            touched.WHERE,
+            TOUCHED_KEY,
             "give a list such as - {part: [0, 0, 0], robot: [900.4, 2.1, -99.7]}",
         )
     points = []
     for number, entry in enumerate(value):
-        key = f"{touched.WHERE}[{number}]"
+        key = f"{TOUCHED_KEY}[{number}]"
         section = fields.mapping(entry, key)
         fields.known_keys(section, ("part", "robot"), key)
         points.append(
-            touched.Touched(
+            TouchedPoint(
                 *(_point(section.get(name), f"{key}.{name}") for name in ("part", "robot"))
             )
         )
-    return f"{touched.SEPARATOR} ".join(map(str, points))
+    return tuple(points)
 
 
-def _point(value: Any, key: str) -> touched.Point:
+def _point(value: Any, key: str) -> Point:
     """Three lengths of a job file."""
     if not isinstance(value, list) or len(value) != 3:
         raise InputError(
@@ -201,7 +213,7 @@ def _point(value: Any, key: str) -> touched.Point:
     return x, y, z
 
 
-def _pose(value: Any, key: str) -> external.Pose:
+def _pose(value: Any, key: str) -> Pose:
     """Six quantities of a job file, or what a pendant shows."""
     if (controller_pose := fields.as_shown(value, key)) is not None:
         return controller_pose
@@ -216,19 +228,18 @@ def _pose(value: Any, key: str) -> external.Pose:
     return x, y, z, a, b, c
 
 
-def _obstacles(value: Any) -> str:
-    """What `cell.obstacles` says as the text that a cell keeps."""
+def _obstacles(value: Any) -> tuple[Obstacle, ...]:
+    """The obstacles of `cell.obstacles`."""
     if not isinstance(value, list):
         raise InputError(
             "BAD_VALUE",
-            obstacles.WHERE,
+            OBSTACLES_KEY,
             "give a list such as - {file: table.step, pose: [0, 0, -200, 0, 0, 0]}",
         )
-    bodies = [_obstacle(entry, f"{obstacles.WHERE}[{k}]", k + 1) for k, entry in enumerate(value)]
-    return f"{obstacles.SEPARATOR} ".join(map(str, bodies))
+    return tuple(_obstacle(entry, f"{OBSTACLES_KEY}[{k}]", k + 1) for k, entry in enumerate(value))
 
 
-def _obstacle(value: Any, key: str, number: int) -> obstacles.Obstacle:
+def _obstacle(value: Any, key: str, number: int) -> Obstacle:
     section = fields.mapping(value, key)
     fields.known_keys(section, ("name", "file", "box", "pose"), key)
     file, size = "", None
@@ -254,10 +265,6 @@ def _obstacle(value: Any, key: str, number: int) -> obstacles.Obstacle:
         width, depth, height = (quantity.read(edge, f.LENGTH, f"{key}.box") for edge in edges)
         size = (width, depth, height)
     name = section.get("name")
-    called = (
-        obstacles.usual_name(file, number)
-        if name is None
-        else fields.text(name, f"{key}.name").strip()
-    )
+    called = usual_name(file, number) if name is None else fields.text(name, f"{key}.name").strip()
     pose = _pose(section["pose"], f"{key}.pose") if section.get("pose") is not None else (0.0,) * 6
-    return obstacles.Obstacle(called, pose, file, size)
+    return Obstacle(called, pose, file, size)

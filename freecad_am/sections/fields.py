@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 
 from ..core.issues import InputError, Text, Word
 from ..core.parameters import field as f
+from ..core.parameters.records import Records
 from ..objects.fields import pendants
 from . import quantity
 
@@ -89,6 +90,8 @@ def _value(spec: f.Spec, field: dataclasses.Field[Any], value: Any, key: str) ->
         return factory() if value is None else build(factory, value, key)
     if spec.optional and value in (None, {}):
         return None
+    if isinstance(spec.records, Records):
+        return spec.records.read(value)
     if isinstance(value, str) and value in spec.words:
         return math.inf if value == "inf" else value
     if _is_pose(spec, field) and (pose := as_shown(value, key)) is not None:
@@ -134,7 +137,7 @@ def _plain(spec: f.Spec, value: Any, key: str) -> Any:
         raise InputError(
             "BAD_VALUE", key, "{} is not a whole number; give one such as 3", _quote(value)
         )
-    if spec.kind == f.TEXT:
+    if spec.kind in (f.TEXT, f.RECORDS):
         return text(value, key)
     return value
 
@@ -178,6 +181,8 @@ def _list(spec: f.Spec, field: dataclasses.Field[Any], value: list[Any], key: st
         return tuple(_finite(number, f.END_OF[spec.kind], key) for number in value)
     if spec.kind == f.TEXT and "tuple" in str(field.type):
         return tuple(text(word, key) for word in value)
+    if spec.records is not None:
+        return spec.records.read([text(word, key) for word in value])
     raise InputError("BAD_VALUE", key, "{} is a list; give one value", quantity.quote(value))
 
 

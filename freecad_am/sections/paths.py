@@ -13,7 +13,7 @@ from typing import Any
 from ..core.geometry.located import expanded, is_there, locate
 from ..core.kinematics.machines import calibration
 from ..core.kinematics.urdf import reference as urdf_reference
-from ..core.parameters.cell import NO_SHAPE
+from ..core.parameters.records import NONE
 from ..core.process.model import wire
 
 ANY_INDEX = "[]"
@@ -65,7 +65,7 @@ def resolve_cell(section: Any, folder: str) -> Any:
         )
     section = _changed(section, ("obstacles", ANY_INDEX, "file"), resolve)
     section = _changed(
-        section, ("nozzle", "shape"), lambda shape: shape if shape == NO_SHAPE else resolve(shape)
+        section, ("nozzle", "shape"), lambda shape: shape if shape == NONE else resolve(shape)
     )
     return _changed(section, ("nozzle", "shape", "file"), resolve)
 

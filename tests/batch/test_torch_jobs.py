@@ -114,5 +114,5 @@ def test_a_document_notices_and_a_saved_cell_keeps_it(shop, doc):
     written = (shop.folder / "hall.yaml").read_text(encoding="utf-8")
     assert path == str(shop.folder / "hall.yaml") and 'shape: "torch.step"' in written
     read = job_cell.read("hall.yaml", str(shop.folder))
-    assert read.nozzle.shape == str(shop.folder / "torch.step")
+    assert read.nozzle.shape.file == str(shop.folder / "torch.step")
     assert cell_file.text(read, str(shop.folder)) == written

@@ -12,10 +12,10 @@ from freecad_am import api
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.proposed_cell import cell_of
-from freecad_am.core.kinematics.urdf.cell import texts_of
+from freecad_am.core.kinematics.urdf.cell import cell_values
 from freecad_am.core.kinematics.urdf.reference import Reference
 from freecad_am.core.parameters.cell import CellParameters
-from freecad_am.core.parameters.external import externals
+from freecad_am.core.parameters.cell_records import EXTERNAL
 from freecad_am.core.simulation.table_links import at_rest
 from freecad_am.gui.cell import proposing as cell_panel
 from freecad_am.gui.nodes.cell import resting_point
@@ -272,7 +272,7 @@ def test_the_job_at_hand_is_done_in_the_cell_that_is_proposed_for_a_robot(person
     assert (
         document.UndoCount == steps + 1 and "is now" not in person.console()[before:]
     )  # all was seen
-    (positioner,) = externals(cell.External)
+    (positioner,) = EXTERNAL.read(cell.External)
     assert positioner.carries == "part"
     path = api.make_joint_path(document, leaning, cell)
     assert path.Status == "up to date", api.issues(path)
@@ -319,7 +319,7 @@ def test_what_the_job_at_hand_would_need_is_entered_whole_or_told(
     assert (last.setup, last.deposition_point, last.external) == (
         "tool-on-robot",
         wanted.deposition_point,
-        "none",
+        (),
     )
     if branch:
         assert external.text() == "none" and person.field(panel, "Branch").currentText() == branch
@@ -498,7 +498,8 @@ def test_urdf_as_external_axes_takes_the_whole_cell_of_a_file(person, hand, plan
     field = person.field(panel, "External")
     person.until(field.isEnabled, "external axes to be asked for", 5)
     field.setText("urdf")
-    wanted = texts_of(Reference(str(path)))
+    machine, mechanisms = cell_values(Reference(str(path)))
+    wanted = machine, EXTERNAL.text(mechanisms)
     person.until(
         lambda: person.field(panel, "External").text() == wanted[1],
         "track and positioner to be entered",

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from freecad_am import api
-from freecad_am.core.parameters.external import externals
+from freecad_am.core.parameters.cell_records import EXTERNAL
 
 ROBOT = "kuka-kr8-r2100-2-arc-hw"
 
@@ -43,9 +43,9 @@ def test_a_positioner_is_proposed_in_new_job_and_the_robot_is_shown_there(
     cell, feature, _, path = api.stages_of(doc)[:4]
     assert (path.Status, doc.UndoCount) == ("up to date", steps + 1), api.issues(path)
     assert math.isclose(feature.MaxFromVertical.Value, 10.0) and cell.Setup == "tool-on-robot"
-    (positioner,) = externals(cell.External)
+    (positioner,) = EXTERNAL.read(cell.External)
     assert positioner.carries == "part"
-    assert f"proposed for this job: {cell.External}" in person.console()[before:]
+    assert f"proposed for this job: {EXTERNAL.text([positioner])}" in person.console()[before:]
     # the robot stands there with its torch on the part, drawn
     assert cell.ViewObject.ShowMachine and cell.ViewObject.Proxy.nodes.machine is not None
     person.look()

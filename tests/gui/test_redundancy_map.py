@@ -9,7 +9,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.kinematics.limits import margins
-from freecad_am.core.parameters.joints import given_polynomials
+from freecad_am.core.parameters.joints import GIVEN
 from freecad_am.core.planning.redundancy import curve as spin_curve
 from freecad_am.core.planning.redundancy import map
 from freecad_am.core.planning.redundancy import map as spin_map
@@ -279,7 +279,7 @@ def test_the_curve_is_dragged_and_becomes_the_plan(person, hemisphere, hand):
     assert docks._open == []
     again = App.openDocument(name)
     person.idle(0.3)
-    read = given_polynomials(tuple(again.getObject("JointPath").Given))
+    read = {one.bead: one.coefficients for one in GIVEN.read(again.getObject("JointPath").Given)}
     assert read and np.allclose(
         [read.get((layer, index), read.get(None)) for layer, index in one.source.places],
         wanted,

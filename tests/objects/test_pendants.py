@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from freecad_am.core.geometry import frames
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.cell import CellParameters
-from freecad_am.core.parameters.external import externals
+from freecad_am.core.parameters.cell_records import EXTERNAL
 from freecad_am.objects.fields import pendants
 from freecad_am.objects.fields.rows import rows
 from freecad_am.posts.fanuc import numbers as tp
@@ -88,19 +88,20 @@ def test_what_is_no_such_pose_is_told(text, words):
 def test_a_positioner_where_its_pendant_says():
     row = next(row for row in rows(CellParameters) if row.name == "External")
     typed = "motoman-motopos-d500 at 1100 60 -100 kuka 30 0 0 carries part; track at abb, 0, 0, 5, 1, 0, 0, 0 carries robot"
-    text = row.inner(typed, "here")
-    assert text == row.inner(text, "here") and "kuka" not in text
-    other = externals(
+    mechanisms = row.inner(typed, "here")
+    text = row.outer(mechanisms)
+    assert mechanisms == row.inner(text, "here") and "kuka" not in text
+    other = EXTERNAL.read(
         "motoman-motopos-d500 at 1100 60 -100 0 0 30 carries part; track at 0 0 5 0 0 0 carries robot"
     )
-    for one, wanted in zip(externals(text), other, strict=True):
+    for one, wanted in zip(EXTERNAL.read(text), other, strict=True):
         assert (one.machine, one.carries) == (wanted.machine, wanted.carries)
         assert np.allclose(one.pose, wanted.pose, atol=1e-12)
     with pytest.raises(InputError, match="A B C") as raised:
         row.inner("motoman-motopos-d500 at kuka 1 2 3 4 5 carries part", "cell.external")
     assert raised.value.where == "cell.external"
     plain = "m at 1 2 3 0 0 30 carries part"
-    assert row.inner(plain, "here") == plain
+    assert row.outer(row.inner(plain, "here")) == plain
 
 
 def test_numbers_that_posts_write_and_pendants_show_are_the_same_ones():

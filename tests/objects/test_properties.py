@@ -99,9 +99,8 @@ def random_value(row, rng):
         pose = tuple(rng.uniform(-50, 50) for _ in range(6))
         return rng.choice([rng.uniform(0, 50), pose])
     if row.key == "given":
-        return tuple(
-            f"{layer}/0:{rng.uniform(-180, 180):.6g}:360" for layer in range(rng.randint(0, 3))
-        )
+        texts = [f"{k}/0:{rng.uniform(-180, 180):.6g}:360" for k in range(rng.randint(0, 3))]
+        return row.spec.records.read(texts)
     if row.form == rows.TEXT_LIST:
         return tuple(rng.sample(METHODS, rng.randint(0, len(METHODS))))
     if row.key == "origin":
@@ -116,6 +115,8 @@ def random_value(row, rng):
         return rng.choice(spec.choices)
     if spec.kind == f.FLAG:
         return rng.random() < 0.5
+    if spec.kind == f.RECORDS:
+        return spec.records.read(TEXTS[row.path[-1]])
     if spec.kind == f.TEXT:
         return TEXTS[row.path[-1]]
     return random_number(spec, rng)
@@ -416,7 +417,7 @@ def spellings(row, value):
 def job_cases():
     for cls, section in (*CLASSES, *FAMILIES):
         for row in rows.rows(cls):
-            plain_text = row.spec.kind in (f.TEXT, f.POSE) or row.form == rows.TEXT_LIST
+            plain_text = row.spec.kind in (f.TEXT, f.POSE, f.RECORDS) or row.form == rows.TEXT_LIST
             if not plain_text and not (cls is CladdingParameters and row.key in NOT_FOR_CLADDING):
                 yield pytest.param(cls, section, row, id=f"{cls.__name__}-{row.key}")
 
@@ -455,3 +456,20 @@ def test_a_percentage_in_a_property_has_no_digits_of_rounding(holder):
     for percent in range(1, 90):
         properties.write(holder, rows.build(SolidParameters, {"bead_overlap": percent * 0.01}))
         assert holder.BeadOverlap == f"{float(percent)} %"
+
+
+def test_records_are_stored_as_json_and_read_from_older_texts(holder):
+    properties.add(holder, CellParameters, "Group")
+    assert holder.Obstacles == "none"
+    holder.Obstacles = TEXTS["obstacles"]
+    parameters = properties.read(holder, CellParameters, "cell")
+    properties.write(holder, parameters)
+    assert holder.Obstacles == TEXTS["obstacles"]  # unchanged values leave an older document alone
+    properties.write(holder, dataclasses.replace(parameters, obstacles=parameters.obstacles[:0]))
+    properties.write(holder, parameters)
+    assert holder.Obstacles.startswith('[{"name": "post"')
+    assert properties.read(holder, CellParameters, "cell") == parameters
+    holder.Obstacles = "table.step"
+    with pytest.raises(InputError, match="is not an obstacle") as error:
+        properties.read(holder, CellParameters, "cell")
+    assert error.value.where == "Héros n° 1.Obstacles"

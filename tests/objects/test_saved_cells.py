@@ -6,7 +6,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.issues import InputError
-from freecad_am.core.parameters.external import externals
+from freecad_am.core.parameters.cell_records import EXTERNAL
 from freecad_am.objects.fields import saved_cells
 
 CELL = """\
@@ -79,13 +79,13 @@ def test_a_job_is_made_in_a_saved_cell(own, tmp_path, root, monkeypatch, no_reme
         "tool-on-robot",
         (0.0, 0.0, 150.0),
     )
-    (one,) = externals(cell.external)
+    (one,) = EXTERNAL.read(cell.external)
     assert (one.machine, one.pose[:3]) == ("motoman-motopos-d500", (1100.0, 60.0, -100.0))
     doc = App.newDocument()
     part = api.open_part(doc, str(root / "resources/examples/hemisphere.step"))
     made = api.make_all(doc, part, cell=str(path))
     assert api.result(made[0]) == cell or (
-        made[0].Machine == "kuka-kr16-2" and made[0].External == cell.external
+        made[0].Machine == "kuka-kr16-2" and EXTERNAL.read(made[0].External) == cell.external
     )
     again = tmp_path / "again.yaml"
     api.export_cell(made[0], str(again))
@@ -133,7 +133,7 @@ external: [{machine: motoman-motopos-d500, pose: [1100, 60, -100, 0, 0, 30], car
         (shown.deposition_point, wanted.deposition_point),
         (shown.nozzle.tool, wanted.nozzle.tool),
         (shown.platform, wanted.platform),
-        (externals(shown.external)[0].pose, externals(wanted.external)[0].pose),
+        (EXTERNAL.read(shown.external)[0].pose, EXTERNAL.read(wanted.external)[0].pose),
     ):
         assert one == pytest.approx(other, abs=1e-6)
     doc = App.newDocument()

@@ -14,7 +14,7 @@ import pytest
 from freecad_am import api
 from freecad_am.core.kinematics import external
 from freecad_am.core.kinematics.proposed_cell import cell_of
-from freecad_am.core.parameters.external import externals
+from freecad_am.core.parameters.cell_records import EXTERNAL
 from freecad_am.core.planning import suited
 from freecad_am.macro import suit
 
@@ -76,7 +76,7 @@ def test_a_positioner_is_proposed_before_the_job_is_planned_without(doc, dome, l
     assert math.isclose(feature.MaxFromVertical.Value, MOST)
     assert path.Status == program.Status == "up to date", (api.issues(path), api.issues(program))
     made = api.result(cell)
-    (positioner,) = externals(made.external)
+    (positioner,) = EXTERNAL.read(made.external)
     assert positioner.carries == "part" and made.setup == TOOL
     assert leaning(path, positioner).max() <= MOST + 1e-6
     assert len(looked) >= 2 and max(looked) <= 4

@@ -147,10 +147,12 @@ def _valid(job, chance):
         return "process.classes", _classes(chance)
     while True:
         key, spec, default = chance.choice(specs(job))
-        if (
-            key in ("cell.machine", "cell.setup", "strategy.base.axis", "process.bead_model")
-            or spec.kind == f.TEXT
-        ):
+        if key in (
+            "cell.machine",
+            "cell.setup",
+            "strategy.base.axis",
+            "process.bead_model",
+        ) or spec.kind in (f.TEXT, f.RECORDS):
             continue
         return key, valid_value(key, spec, default, chance)
 

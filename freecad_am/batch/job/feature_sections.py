@@ -15,6 +15,7 @@ from ...core.parameters import bead_classes
 from ...core.parameters import field as f
 from ...core.parameters.build_direction import BuildDirectionParameters
 from ...core.parameters.process import ProcessParameters
+from ...core.parameters.records import NONE as NO_RECORDS
 from ...core.parameters.strategy import LayerParameters
 from ...core.process.model import wire
 from ...sections import fields, quantity
@@ -22,10 +23,10 @@ from . import material
 from .part_source import PartSource, part_of
 
 
-def as_text(section: dict[str, Any]) -> dict[str, Any]:
-    """The section `process` with its classes as their text. InputError naming class and key."""
+def with_classes(section: dict[str, Any]) -> dict[str, Any]:
+    """The section `process` with its classes as records. InputError naming class and key."""
     classes = section.get("classes")
-    if classes in (None, {}) or classes == bead_classes.NONE:
+    if classes in (None, {}, [], NO_RECORDS):
         return {key: value for key, value in section.items() if key != "classes"}
     if not isinstance(classes, dict):
         raise InputError(
@@ -36,17 +37,16 @@ def as_text(section: dict[str, Any]) -> dict[str, Any]:
             quantity.quote(classes),
         )
     fields.known_keys(classes, bead_classes.CLASSES, bead_classes.WHERE)
-    parameters_by_name = {
-        name: fields.build(
-            bead_classes.BeadClass,
-            _flat({} if class_section is None else class_section, name),
-            f"{bead_classes.WHERE}.{name}",
-        )
-        for name, class_section in classes.items()
-    }
-    for name, parameters in parameters_by_name.items():
-        bead_classes.build_class(name, parameters.own_values())
-    return {**section, "classes": bead_classes.text_of(parameters_by_name)}
+    records = [_bead_class(class_section, name) for name, class_section in classes.items()]
+    return {**section, "classes": bead_classes.in_order(records)}
+
+
+def _bead_class(class_section: Any, name: str) -> bead_classes.BeadClass:
+    """A class of its section. InputError naming class and key."""
+    where = f"{bead_classes.WHERE}.{name}"
+    values = fields.mapping(_flat({} if class_section is None else class_section, name), where)
+    fields.known_keys(values, bead_classes.SPECS, where)
+    return fields.build(bead_classes.BeadClass, {**values, "name": name}, where)
 
 
 def _flat(class_section: Any, name: str) -> Any:
@@ -78,7 +78,7 @@ def process_of(section: Any, strategy: LayerParameters | None = None) -> Process
     any value. strategy: None for a program of several features, which may differ, or if not chosen
     yet. InputError, also from its bead table.
     """
-    process_section = as_text(material.filled_in(fields.mapping(section, "process")))
+    process_section = with_classes(material.filled_in(fields.mapping(section, "process")))
     if strategy is not None and "bead_width" in process_section and family_of(strategy).is_filled:
         process_section = {"fill_width": "bead_width", **process_section}
     process = fields.build(ProcessParameters, process_section, "process")

@@ -13,7 +13,6 @@ from ...core.kinematics.arrangement import arrangement_of
 from ...core.parameters import field as f
 from ...core.parameters.build_direction import BuildDirectionParameters
 from ...core.parameters.cell import CellParameters
-from ...core.parameters.external import NONE
 from ...core.parameters.joints import JointParameters
 from ...core.parameters.place import PlaceParameters
 from ...core.parameters.process import ProcessParameters
@@ -281,7 +280,7 @@ def _issues_of_cell(job: Job) -> Iterator[Issue]:
             job.joints.method,
         )
         yield Issue(WARNING, NO_EFFECT, message)
-    fixed_part = not arrangement.carries_part and job.cell.external == NONE
+    fixed_part = not arrangement.carries_part and not job.cell.external
     if fixed_part and _gives(cell, "platform"):
         message = Text(
             "cell.platform has no effect with cell.setup: {}: cell.deposition_point is the pose "

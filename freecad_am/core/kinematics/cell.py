@@ -23,8 +23,7 @@ from ..geometry.columns import columns
 from ..geometry.obstacles import Body
 from ..issues import InputError, Text, Word
 from ..parameters.cell import CellParameters, NozzleParameters
-from ..parameters.external import PART, externals
-from ..parameters.touched import WHERE, Touched, parse_touched
+from ..parameters.cell_records import PART, TOUCHED_KEY, TouchedPoint
 from ..types import Array
 from .arrangement import Arrangement, arrangement_of, planned_of
 from .external import ExternalAxes, coupled, upward
@@ -66,14 +65,14 @@ def offset_of_cell(parameters: CellParameters, arrangement: Arrangement) -> Work
     """Return the pose of the part of a cell from touched points; None without any. Raises
     InputError TOUCHED.
     """
-    points = parse_touched(parameters.touched)
+    points = parameters.touched
     if not points:
         return None
-    carried = any(external_axis.carries == PART for external_axis in externals(parameters.external))
+    carried = any(external_axis.carries == PART for external_axis in parameters.external)
     if arrangement.carries_part or carried:
         raise InputError(
             CODE,
-            WHERE,
+            TOUCHED_KEY,
             "touched points calibrate a part that the robot moves, but here the part is fixed "
             "and the robot holds the tool; remove them, and measure cell.platform or the pose of "
             "the positioner",
@@ -81,7 +80,7 @@ def offset_of_cell(parameters: CellParameters, arrangement: Arrangement) -> Work
     return work_offset(points, parameters.touched_tolerance)
 
 
-def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
+def work_offset(points: Sequence[TouchedPoint], tolerance: float) -> WorkOffset:
     """Return the pose of the part.
 
     Raises InputError TOUCHED for fewer than three points, points on a line, of another size,
@@ -90,7 +89,7 @@ def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
     if len(points) < MIN_POINTS:
         raise InputError(
             CODE,
-            WHERE,
+            TOUCHED_KEY,
             "{} point(s) cannot locate a part; touch at least {}, spread out and not collinear",
             len(points),
             MIN_POINTS,
@@ -108,7 +107,7 @@ def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
         if not spread[1] > LINE * spread[0]:
             raise InputError(
                 CODE,
-                WHERE,
+                TOUCHED_KEY,
                 "the points {} are collinear or coincide, so the rotation about their line is "
                 "undetermined; touch a point off that line",
                 Word("touched" if side == "robot" else "on the part"),
@@ -123,7 +122,7 @@ def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
         text = ", ".join(f"{value:.3g}" for value in residual)
         raise InputError(
             CODE,
-            WHERE,
+            TOUCHED_KEY,
             "point {} is {:.3g} mm from its touched position (all points: {} mm), more than "
             "cell.touched_tolerance = {:g} mm; touch it again, and check the order of the "
             "points, the part, and the tip calibration",
@@ -142,7 +141,7 @@ def _refuse_other_size(ratio: float) -> None:
     unit = next((name for factor, name in _UNITS if abs(ratio * factor - 1.0) <= SAME_SIZE), "")
     raise InputError(
         CODE,
-        WHERE,
+        TOUCHED_KEY,
         "the touched points are {:.4g} times as far apart as planned; {}",
         ratio,
         Word(
@@ -418,7 +417,7 @@ def resolve(
     """
     arrangement = planned_of(parameters.setup)
     machine = machines.load(parameters.machine, tuple(folders))
-    mechanisms = externals(parameters.external)
+    mechanisms = parameters.external
     _refuse_otherwise(machine, arrangement, bool(mechanisms))
     platform = parameters.platform
     platform_pose = (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""External axes: a robot and its mechanisms as one machine.
+"""ExternalMechanism axes: a robot and its mechanisms as one machine.
 
 Seen from the part, robot and mechanisms are one chain: from the face of the last
 mechanism that carries the part backwards through the positioner to the floor, or from the
@@ -21,7 +21,7 @@ import numpy as np
 
 from ..geometry import frames
 from ..issues import InputError
-from ..parameters.external import PART, ROBOT, WHERE, External
+from ..parameters.cell_records import EXTERNAL_KEY, PART, ROBOT, ExternalMechanism
 from ..types import Array, Index
 from .chain import Chain, Piece, join_chains
 from .limits import Limits
@@ -113,7 +113,7 @@ class ExternalAxes:
 def coupled(
     robot: Machine,
     limits: Limits,
-    named: Sequence[External],
+    named: Sequence[ExternalMechanism],
     up: Sequence[float],
     folders: Sequence[str] = (),
 ) -> tuple[Machine, Limits, ExternalAxes]:
@@ -179,27 +179,27 @@ def coupled(
     )
 
 
-def _check(loaded: Sequence[tuple[External, Machine]]) -> None:
+def _check(loaded: Sequence[tuple[ExternalMechanism, Machine]]) -> None:
     """Refuse what cannot be planned."""
     tracks = [machine for named_axis, machine in loaded if named_axis.carries == ROBOT]
     for machine in tracks:
         if machine.chain.axes != 1 or not machine.chain.sliding.all():
             raise InputError(
                 "NOT_YET",
-                WHERE,
+                EXTERNAL_KEY,
                 "{} carries the robot but is not a track, a single prismatic axis; choose a track",
                 machine.title,
             )
     if len(tracks) > 1:
         raise InputError(
-            "NOT_YET", WHERE, "{} mechanisms carry the robot; choose one track", len(tracks)
+            "NOT_YET", EXTERNAL_KEY, "{} mechanisms carry the robot; choose one track", len(tracks)
         )
     carriers = [machine for named_axis, machine in loaded if named_axis.carries == PART]
     for machine in carriers:
         if machine.chain.sliding.any():
             raise InputError(
                 "NOT_YET",
-                WHERE,
+                EXTERNAL_KEY,
                 "{} carries the part on a prismatic axis, which cannot be planned yet; use "
                 "revolute axes",
                 machine.title,
@@ -207,17 +207,17 @@ def _check(loaded: Sequence[tuple[External, Machine]]) -> None:
     count = sum(machine.chain.axes for machine in carriers)
     if count > 2:
         raise InputError(
-            "NOT_YET", WHERE, "{} axes carry the part; use one or two revolute axes", count
+            "NOT_YET", EXTERNAL_KEY, "{} axes carry the part; use one or two revolute axes", count
         )
 
 
-def _check_names(robot: Machine, loaded: Sequence[tuple[External, Machine]]) -> None:
+def _check_names(robot: Machine, loaded: Sequence[tuple[ExternalMechanism, Machine]]) -> None:
     """Refuse mechanisms that are the robot itself, or each other."""
     for k, (named_axis, machine) in enumerate(loaded):
         if machine.id == robot.id or (_alike(machine, robot) and named_axis.carries == ROBOT):
             raise InputError(
                 "BAD_VALUE",
-                WHERE,
+                EXTERNAL_KEY,
                 "{} is the machine of the cell and cannot carry itself; name a track or positioner",
                 machine.title,
             )
@@ -227,7 +227,7 @@ def _check_names(robot: Machine, loaded: Sequence[tuple[External, Machine]]) -> 
             if not _alike(machine, earlier_machine):
                 raise InputError(
                     "BAD_VALUE",
-                    WHERE,
+                    EXTERNAL_KEY,
                     "{} and {} share the name {!r}; change the id of one file",
                     named_axis.machine,
                     earlier_axis.machine,
@@ -236,7 +236,7 @@ def _check_names(robot: Machine, loaded: Sequence[tuple[External, Machine]]) -> 
             if named_axis.pose == earlier_axis.pose or named_axis.carries != earlier_axis.carries:
                 raise InputError(
                     "BAD_VALUE",
-                    WHERE,
+                    EXTERNAL_KEY,
                     "{!r} is listed twice; remove one, or give the second one its own pose",
                     machine.id,
                 )
@@ -268,7 +268,7 @@ def load(name: str, folders: Sequence[str] = ()) -> Machine:
         built_in = ", ".join(sorted(path.stem for path in MECHANISMS.glob("*.json")))
         raise InputError(
             "UNKNOWN_MACHINE",
-            WHERE,
+            EXTERNAL_KEY,
             "unknown mechanism {!r}; use one of {}, or the path of a machine file or a URDF",
             name,
             built_in,
@@ -281,7 +281,7 @@ def upward(up: Sequence[float]) -> Array:
     return np.asarray(vector / np.linalg.norm(vector))
 
 
-def _chain(loaded: Sequence[tuple[External, Machine]]) -> tuple[Chain, Array]:
+def _chain(loaded: Sequence[tuple[ExternalMechanism, Machine]]) -> tuple[Chain, Array]:
     """Return the chain from the world to the face that carries the part, and that face (4, 4) at
     zero.
 
@@ -304,7 +304,7 @@ def _chain(loaded: Sequence[tuple[External, Machine]]) -> tuple[Chain, Array]:
 
 
 def _mechanisms(
-    loaded: Sequence[tuple[External, Machine]], values: Sequence[Index]
+    loaded: Sequence[tuple[ExternalMechanism, Machine]], values: Sequence[Index]
 ) -> tuple[Mechanism, ...]:
     """Return the mechanisms with their frames: those that carry the part are on one another."""
     adjacent: list[Mechanism] = []

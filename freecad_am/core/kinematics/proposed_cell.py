@@ -23,8 +23,8 @@ import numpy as np
 
 from ..geometry import frames
 from ..geometry.cylinders import Cylinder
-from ..parameters.cell import CellParameters, Pose
-from ..parameters.external import externals
+from ..parameters.cell import CellParameters
+from ..parameters.records import Pose
 from ..types import Array
 from .arrangement import OF_ROBOTS, arrangement_of
 from .cell import Cell, resolve
@@ -81,11 +81,7 @@ def search_cell(
     """Search the parameters for `proposed`."""
     machine = machines.load(parameters.machine, tuple(folders))
     arrangement = arrangement_of(parameters.setup)
-    if (
-        externals(parameters.external)
-        or machine.arm is None
-        or not (arrangement.free and arrangement.planned)
-    ):
+    if parameters.external or machine.arm is None or not (arrangement.free and arrangement.planned):
         return parameters
     cell = resolve(parameters, np.eye(4), folders=folders)
     branches = range(len(opw.BRANCHES)) if cell.branch is None or not own_branch else [cell.branch]

@@ -5,16 +5,15 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any, ClassVar
 
 from ..issues import InputError
 from . import field as f
+from .records import SEPARATOR, Records, entry, split
 
-NONE = "none"
 WHERE = "process.classes"
-SEPARATOR = ";"  # separator of classes
 FIRST_LAYER, CONTOUR, FILL, CLOSING, LINK, WALL = CLASSES = (
     "first_layer",
     "contour",
@@ -90,8 +89,12 @@ def _phase(name: str) -> Any:
 
 @dataclass(frozen=True)
 class BeadClass:
-    """The settings of a bead class; None means the value of the process, or of the build direction."""
+    """The settings of a bead class; None means the value of the process, or of the build direction.
 
+    name: of CLASSES; '' for a class without settings.
+    """
+
+    name: str = entry(f.TEXT, "")
     travel_speed: float | None = f.parameter(
         None,
         f.SPEED,
@@ -156,20 +159,29 @@ class BeadClass:
     end_schedule: int | None = _phase("schedule")
     end_ramp: float | None = _phase("ramp")
 
+    def __post_init__(self) -> None:
+        if self.name and self.name not in CLASSES:
+            raise f.unknown_choice(WHERE, self.name, CLASSES)
+        for key, value in self.own_values().items():
+            f.check_value(SPECS[key], value, f"{WHERE}.{self.name}.{key}")
+
     def own_values(self) -> dict[str, float]:
         """Return the overrides of the class by name, in internal units."""
-        return {name: value for name, value in vars(self).items() if value is not None}
+        return {
+            key: value for key, value in vars(self).items() if value is not None and key in SPECS
+        }
 
     def __str__(self) -> str:
-        fields = {one.name: f.spec_of(one).kind for one in dataclasses.fields(self)}
         outer = {
-            name: _TO_OUTER_UNITS.get(fields[name], float)(value)
-            for name, value in self.own_values().items()
+            key: _TO_OUTER_UNITS.get(SPECS[key].kind, float)(value)
+            for key, value in self.own_values().items()
         }
-        return ", ".join(f"{name} {value:.12g}" for name, value in outer.items())
+        return f"{self.name}: {', '.join(f'{key} {value:.12g}' for key, value in outer.items())}"
 
 
-SPECS = {one.name: f.spec_of(one) for one in dataclasses.fields(BeadClass)}
+SPECS = {
+    field.name: f.spec_of(field) for field in dataclasses.fields(BeadClass) if field.name != "name"
+}
 
 
 def number_of(name: str) -> int:
@@ -177,54 +189,43 @@ def number_of(name: str) -> int:
     return CLASSES.index(name) if name in CLASSES else -1
 
 
-def build_class(name: str, values: dict[str, float | int | None], where: str = WHERE) -> BeadClass:
-    """Build the class of this name from values in internal units.
-
-    Raises InputError BAD_VALUE with `where`, the class and the key.
-    """
-    if name not in CLASSES:
-        raise f.unknown_choice(where, name, CLASSES)
-    for key, value in values.items():
-        f.check_value(SPECS[key], value, f"{where}.{name}.{key}")
-    return BeadClass(**values)  # type: ignore[arg-type]
+def check_twice(classes: Sequence[BeadClass]) -> None:
+    """Raises InputError BAD_VALUE if two classes have the same name."""
+    names = [bead_class.name for bead_class in classes]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError("BAD_VALUE", WHERE, "{} is defined twice; merge the two entries", name)
 
 
-def text_of(classes: dict[str, BeadClass]) -> str:
-    """Return the text of the classes that have overrides, in the usual order; NONE without any."""
-    parts = [
-        f"{name}: {classes[name]}"
-        for name in CLASSES
-        if name in classes and classes[name].own_values()
-    ]
-    return f"{SEPARATOR} ".join(parts) or NONE
+def in_order(classes: Sequence[BeadClass]) -> tuple[BeadClass, ...]:
+    """Return the classes that have overrides, in the usual order."""
+    with_overrides = [bead_class for bead_class in classes if bead_class.own_values()]
+    return tuple(sorted(with_overrides, key=lambda bead_class: number_of(bead_class.name)))
 
 
-@lru_cache(maxsize=64)
-def _parsed(text: str) -> tuple[tuple[str, BeadClass], ...]:
-    if text.strip() in (NONE, ""):
-        return ()
-    found: dict[str, BeadClass] = {}
-    for part in filter(str.strip, text.split(SEPARATOR)):
+def parse_classes(text: str) -> tuple[BeadClass, ...]:
+    """Return the classes of a text, in its order. Raises InputError BAD_VALUE."""
+    classes = []
+    for part in split(text):
         name, colon, rest = (piece.strip() for piece in part.partition(":"))
         if not colon:
-            raise InputError(
-                "BAD_VALUE", WHERE, "{!r} is not a class of beads; {}", part.strip(), _FORM
-            )
-        if name in found:
-            raise InputError("BAD_VALUE", WHERE, "{} is defined twice; merge the two entries", name)
-        found[name] = build_class(name, _values(name, rest))
-    return tuple(found.items())
+            raise InputError("BAD_VALUE", WHERE, "{!r} is not a class of beads; {}", part, _FORM)
+        if not name:
+            raise f.unknown_choice(WHERE, name, CLASSES)
+        classes.append(BeadClass(name, **_values(name, rest)))  # type: ignore[arg-type]
+    check_twice(classes)
+    return tuple(classes)
 
 
-def classes(text: str) -> dict[str, BeadClass]:
-    """Return the classes of a text; empty for none. Raises InputError BAD_VALUE."""
-    return dict(_parsed(text))
+def format_classes(classes: Sequence[BeadClass]) -> str:
+    """Return the text of the classes that have overrides, in the usual order."""
+    return f"{SEPARATOR} ".join(map(str, in_order(classes)))
 
 
 def _values(name: str, text: str) -> dict[str, float | int | None]:
     values: dict[str, float | int | None] = {}
-    for entry in filter(str.strip, text.split(",")):
-        key, _, number = entry.strip().partition(" ")
+    for setting in filter(str.strip, text.split(",")):
+        key, _, number = setting.strip().partition(" ")
         if key not in SPECS:
             raise InputError(
                 "BAD_VALUE", WHERE, "{} has no {!r}; use one of {}", name, key, ", ".join(SPECS)
@@ -233,8 +234,11 @@ def _values(name: str, text: str) -> dict[str, float | int | None]:
             value = float(number)
         except ValueError:
             raise InputError(
-                "BAD_VALUE", WHERE, "{}: {!r} has no number; {}", name, entry.strip(), _FORM
+                "BAD_VALUE", WHERE, "{}: {!r} has no number; {}", name, setting.strip(), _FORM
             ) from None
         whole = SPECS[key].kind == f.COUNT and value.is_integer()
         values[key] = int(value) if whole else _INNER.get(SPECS[key].kind, float)(value)
     return values
+
+
+BEAD_CLASSES = Records(BeadClass, parse_classes, format_classes)

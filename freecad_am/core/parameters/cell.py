@@ -8,16 +8,19 @@ from dataclasses import dataclass
 
 from ..issues import InputError
 from . import field as f
-from .external import NONE as NO_AXES
-from .external import externals
-from .obstacles import NONE as NO_OBSTACLES
-from .obstacles import obstacles
-from .touched import NONE as NOT_TOUCHED
-from .touched import parse_touched
+from .cell_records import (
+    EXTERNAL,
+    NOZZLE_SHAPE,
+    OBSTACLES,
+    TOUCHED,
+    ExternalMechanism,
+    NozzleShape,
+    Obstacle,
+    TouchedPoint,
+    check_names,
+)
+from .records import Pose, convert_texts
 
-Pose = tuple[float, float, float, float, float, float]
-
-NO_SHAPE = "none"
 SHOULDERS, ELBOWS, WRISTS = ("front", "back"), ("up", "down"), ("noflip", "flip")
 
 
@@ -43,15 +46,17 @@ class NozzleParameters:
         f.POSE,
         "Tool on robot only: pose of the tip on the flange, its Z pointing out of the nozzle. mm, RX RY RZ.",
     )
-    shape: str = f.parameter(
-        NO_SHAPE,
-        f.TEXT,
+    shape: NozzleShape | None = f.parameter(
+        None,
+        f.RECORDS,
         "Robots: file of the torch as closed solids, mm, with the tip at the origin and Z out of "
         "the nozzle; parts above the length of the nozzle keep the arm clearance, like links.",
         advanced=True,
+        records=NOZZLE_SHAPE,
     )
 
     def __post_init__(self) -> None:
+        convert_texts(self)
         f.check(self, "cell.nozzle")
 
 
@@ -95,14 +100,15 @@ class CellParameters:
         "Robots: shoulder, elbow and wrist, or auto to search all eight.",
     )
     nozzle: NozzleParameters = f.group(NozzleParameters, "The nozzle.")
-    external: str = f.parameter(
-        NO_AXES,
-        f.TEXT,
+    external: tuple[ExternalMechanism, ...] = f.parameter(
+        (),
+        f.RECORDS,
         "Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 "
         "at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, the "
         "base frame of the robot; separate several with ;.",
         advanced=True,
         poses=True,
+        records=EXTERNAL,
     )
     world_up: str = f.parameter(
         "0 0 1",
@@ -119,24 +125,26 @@ class CellParameters:
         high=1000.0,
         optional=True,
     )
-    obstacles: str = f.parameter(
-        NO_OBSTACLES,
-        f.TEXT,
+    obstacles: tuple[Obstacle, ...] = f.parameter(
+        (),
+        f.RECORDS,
         "Robots: obstacles in the cell that nozzle, part and links must clear, such as: table = "
         "table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY "
         "RZ deg of the origin of the file, or of the centre of the box, in the manufacturer's "
         "base frame.",
         advanced=True,
+        records=OBSTACLES,
     )
 
-    touched: str = f.parameter(
-        NOT_TOUCHED,
-        f.TEXT,
+    touched: tuple[TouchedPoint, ...] = f.parameter(
+        (),
+        f.RECORDS,
         "Tool on robot only: points of the part and the positions where the tip touched them, at "
         "least three, which replace the deposition point, such as: 0 0 0 = 900.4 2.1 -99.7; 100 "
         "0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5. In the part file and in the "
         "manufacturer's base frame, mm.",
         advanced=True,
+        records=TOUCHED,
     )
     touched_tolerance: float = f.parameter(
         1.0,
@@ -158,9 +166,8 @@ class CellParameters:
         )
 
     def __post_init__(self) -> None:
-        externals(self.external)
-        obstacles(self.obstacles)
-        parse_touched(self.touched)
+        convert_texts(self)
+        check_names(self.obstacles)
         self.upward()
         if isinstance(self.platform, (tuple, list)):
             if len(self.platform) != 6:

@@ -10,9 +10,12 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..issues import InputError, Text, Word
+
+if TYPE_CHECKING:
+    from .records import Records, RecordTexts
 
 LENGTH, ANGLE, SPEED, TIME = "length", "angle", "speed", "time"
 RATIO, NUMBER, COUNT, FLAG, CHOICE, TEXT, POSE = (
@@ -25,6 +28,7 @@ RATIO, NUMBER, COUNT, FLAG, CHOICE, TEXT, POSE = (
     "pose",
 )
 ANGLE_RANGE, RATIO_RANGE, TURN_RATE = "angle range", "ratio range", "turn rate"
+POINT, RECORDS = "point", "records"
 GROUP = "group"
 
 # the outer unit of a bare number, and its size in internal units
@@ -57,8 +61,8 @@ class Spec:
     `low` and `high` are in inner units and belong to the allowed range unless `open_low`.
     `optional` parameters may be None. `words` are texts allowed in place of a number (such as
     'auto'). `advanced` parameters are folded away in a panel. `unit` belongs to a NUMBER, or to a
-    TEXT of numbers with one common unit; panels show it. `poses`: the TEXT contains poses, which
-    may be typed in the notation of a pendant.
+    TEXT of numbers with one common unit; panels show it. `poses`: the text contains poses, which
+    may be typed in the notation of a pendant. `records`: the notations of a field of RECORDS.
     """
 
     kind: str
@@ -72,6 +76,7 @@ class Spec:
     advanced: bool = False
     unit: str = ""
     poses: bool = False
+    records: Records | RecordTexts | None = None
 
 
 def parameter(default: Any, kind: str, help: str, **more: Any) -> Any:
@@ -110,6 +115,21 @@ def outer_text(spec: Spec, value: float) -> str:
     return f"{value / TO_INNER.get(spec.kind, 1.0):.9g} {unit}".strip()
 
 
+def degrees(angle: float) -> float:
+    """Degrees of an angle in rad, without the noise of the last digits where the round number means the same."""
+    value = math.degrees(angle)
+    short = float(f"{value:.13g}")
+    return short if abs(math.radians(short) - angle) <= 4e-16 * max(1.0, abs(angle)) else value
+
+
+def percent(ratio: float) -> float:
+    """Percent of a ratio, without the noise of the last digits where the round number means the same."""
+    value = ratio / TO_INNER[RATIO]
+    short = float(f"{value:.13g}")
+    inner = short * TO_INNER[RATIO]
+    return short if abs(inner - ratio) <= 4e-16 * max(1.0, abs(ratio)) else value
+
+
 def check(owner: Any, prefix: str, skip: frozenset[str] = frozenset()) -> None:
     """Check every field of a parameters dataclass against its `Spec`, except the names in `skip`.
 
@@ -143,6 +163,8 @@ def check_value(spec: Spec, value: Any, key: str) -> None:
             raise InputError(
                 "BAD_VALUE", key, "{!r} is not true or false; use true or false", value
             )
+    elif spec.kind == RECORDS:
+        return  # checked when they are made
     elif spec.kind == TEXT:
         if not isinstance(value, str):
             raise InputError("BAD_VALUE", key, "{!r} is not a text; put it in quotes", value)

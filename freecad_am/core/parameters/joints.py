@@ -5,10 +5,12 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..issues import InputError
 from . import field as f
+from .records import RecordTexts, convert_texts
 
 BRANCHES = tuple(
     "-".join(words)
@@ -30,6 +32,72 @@ OBJECTIVES = (
 
 
 @dataclass(frozen=True)
+class GivenPolynomial:
+    """A given polynomial of the rotation about the tool axis.
+
+    bead: (layer, bead), None for all other beads. coefficients: the constant first, rad and rad per
+    power of the bead's parameter; one turn is 2 pi of the parameter. Its text has degrees and turns.
+    """
+
+    bead: tuple[int, int] | None
+    coefficients: tuple[float, ...]
+
+    def __str__(self) -> str:
+        name = ALL_BEADS if self.bead is None else f"{self.bead[0]}/{self.bead[1]}"
+        values = [
+            math.degrees(value) * (2.0 * math.pi) ** power
+            for power, value in enumerate(self.coefficients)
+        ]
+        return ":".join([name, *(f"{round(value, 9) + 0.0:.12g}" for value in values)])
+
+
+def parse_given(entry: str) -> GivenPolynomial:
+    """Return the polynomial of a text such as 12/0:-35:360. Raises InputError BAD_VALUE."""
+    place, *numbers = entry.split(":") if isinstance(entry, str) else ("", "")
+    try:
+        layer, slash, number = place.strip().partition("/")
+        bead = None if place.strip() == ALL_BEADS else (int(layer), int(number) if slash else 0)
+        values = [float(number) for number in numbers]
+    except ValueError:
+        values = []
+    if (
+        not values
+        or len(values) > HIGHEST + 1
+        or not all(map(math.isfinite, values))
+        or (bead and min(bead) < 0)
+    ):
+        raise InputError(
+            "BAD_VALUE",
+            "joints.given",
+            "{!r} is not understood; use layer/bead:constant:slope with up to {} "
+            "coefficients in deg and deg per turn, such as 12/0:-35:360; * means every other "
+            "bead",
+            entry,
+            HIGHEST + 1,
+        )
+    return GivenPolynomial(
+        bead,
+        tuple(math.radians(value) / (2.0 * math.pi) ** power for power, value in enumerate(values)),
+    )
+
+
+def check_given(polynomials: Sequence[GivenPolynomial]) -> None:
+    """Raises InputError BAD_VALUE if a bead has two polynomials."""
+    beads = [polynomial.bead for polynomial in polynomials]
+    for bead in beads:
+        if beads.count(bead) > 1:
+            raise InputError(
+                "BAD_VALUE",
+                "joints.given",
+                "{} is listed twice; keep one entry per bead",
+                ALL_BEADS if bead is None else f"{bead[0]}/{bead[1]}",
+            )
+
+
+GIVEN = RecordTexts(GivenPolynomial, parse_given)
+
+
+@dataclass(frozen=True)
 class JointParameters:
     """How the rotation about the tool axis is used (Chalvin 2020, section 4). rad, mm."""
 
@@ -48,12 +116,13 @@ class JointParameters:
     degree: int = f.parameter(
         1, f.COUNT, "Degree of the polynomial of a layer.", low=0, high=HIGHEST
     )
-    given: tuple[str, ...] = f.parameter(
+    given: tuple[GivenPolynomial, ...] = f.parameter(
         (),
-        f.TEXT,
+        f.RECORDS,
         "Method layer-by-layer: given polynomials instead of a search: "
         "layer/bead:constant:slope, or * for all other beads, in deg and deg per turn.",
         advanced=True,
+        records=GIVEN,
     )
     parameter: str = f.parameter(
         "rotation",
@@ -157,64 +226,10 @@ class JointParameters:
     )
 
     def __post_init__(self) -> None:
-        f.check(self, "joints", skip=frozenset({"compare", "given"}))
+        convert_texts(self)
+        f.check(self, "joints", skip=frozenset({"compare"}))
         object.__setattr__(self, "compare", tuple(self.compare))
-        object.__setattr__(self, "given", tuple(self.given))
-        given_polynomials(self.given)
+        check_given(self.given)
         for method in self.compare:
             if method not in METHODS:
                 raise f.unknown_choice("joints.compare", method, METHODS)
-
-
-def given_polynomials(given: tuple[str, ...]) -> dict[tuple[int, int] | None, tuple[float, ...]]:
-    """Return the polynomials of the parameter `given` by (layer, bead); the polynomial for all
-    other beads by None.
-
-    Their coefficients, the constant first, are in rad and rad per power of the bead's parameter;
-    one turn is 2 pi of the parameter. Raises InputError BAD_VALUE for unreadable or duplicate
-    entries.
-    """
-    found: dict[tuple[int, int] | None, tuple[float, ...]] = {}
-    for entry in given:
-        place, *numbers = entry.split(":") if isinstance(entry, str) else ("", "")
-        try:
-            layer, slash, bead = place.strip().partition("/")
-            key = None if place.strip() == ALL_BEADS else (int(layer), int(bead) if slash else 0)
-            values = [float(number) for number in numbers]
-        except ValueError:
-            values = []
-        if (
-            not values
-            or len(values) > HIGHEST + 1
-            or not all(map(math.isfinite, values))
-            or (key and min(key) < 0)
-        ):
-            raise InputError(
-                "BAD_VALUE",
-                "joints.given",
-                "{!r} is not understood; use layer/bead:constant:slope with up to {} "
-                "coefficients in deg and deg per turn, such as 12/0:-35:360; * means every other "
-                "bead",
-                entry,
-                HIGHEST + 1,
-            )
-        if key in found:
-            raise InputError(
-                "BAD_VALUE",
-                "joints.given",
-                "{} is listed twice; keep one entry per bead",
-                place.strip(),
-            )
-        found[key] = tuple(
-            math.radians(value) / (2.0 * math.pi) ** power for power, value in enumerate(values)
-        )
-    return found
-
-
-def given_text(place: tuple[int, int] | None, coefficients: tuple[float, ...]) -> str:
-    """An entry of the parameter `given`, of coefficients as `given_polynomials` has them."""
-    name = ALL_BEADS if place is None else f"{place[0]}/{place[1]}"
-    shown = [
-        math.degrees(value) * (2.0 * math.pi) ** power for power, value in enumerate(coefficients)
-    ]
-    return ":".join([name, *(f"{round(value, 9) + 0.0:.12g}" for value in shown)])

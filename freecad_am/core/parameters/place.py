@@ -11,7 +11,7 @@ import numpy as np
 from ..issues import InputError
 from ..types import Array
 from . import field as f
-from .cell import Pose
+from .records import Pose
 
 AUTO, POINT, PLATFORM, POSITIONER = "auto", "deposition-point", "platform", "positioner"
 MARGIN, TIME, CLEARANCE = "margin", "time", "clearance"

@@ -11,6 +11,7 @@ from typing import Any
 from . import bead_classes
 from . import field as f
 from .bead_classes import BeadClass, BeadEnd, BeadStart
+from .records import convert_texts
 
 # what each of several features may have of its own, with _ for nested keys; the rest holds for the whole program
 OF_FEATURE = (
@@ -277,11 +278,12 @@ class ProcessParameters:
         high=bead_classes.LARGEST_SCHEDULE,
         optional=True,
     )
-    classes: str = f.parameter(
-        bead_classes.NONE,
-        f.TEXT,
+    classes: tuple[BeadClass, ...] = f.parameter(
+        (),
+        f.RECORDS,
         "Settings of bead classes (first_layer, contour, fill, closing, link, wall), such as: "
         "contour: travel_speed 8, schedule 3; fill: lead 5; or none.",
+        records=bead_classes.BEAD_CLASSES,
     )
 
     weave: int | None = f.parameter(
@@ -307,12 +309,14 @@ class ProcessParameters:
     )
 
     def __post_init__(self) -> None:
+        convert_texts(self)
         f.check(self, "process")
-        bead_classes.classes(self.classes)  # whether it is understood
+        bead_classes.check_twice(self.classes)
 
     def of_class(self, name: str) -> BeadClass:
         """What beads of a class have of their own; nothing of a class that is not named."""
-        return bead_classes.classes(self.classes).get(name, BeadClass())
+        named = (bead_class for bead_class in self.classes if bead_class.name == name)
+        return next(named, BeadClass())
 
     def for_class(self, name: str) -> ProcessParameters:
         """Return the process for beads of a class."""
@@ -331,24 +335,20 @@ class ProcessParameters:
     @property
     def weaves(self) -> bool:
         """Return whether any bead uses a weave of the controller."""
-        return any(
-            (self.weave, *(one.weave for one in bead_classes.classes(self.classes).values()))
-        )
+        return any((self.weave, *(bead_class.weave for bead_class in self.classes)))
 
     @property
     def ramped(self) -> bool:
         """Whether starts or ends of any beads have ramps."""
-        named = [self, *(self.for_class(name) for name in bead_classes.classes(self.classes))]
-        return any(
-            phase.there and phase.ramp > 0.0 for one in named for phase in (one.start, one.end)
-        )
+        processes = [self, *(self.for_class(bead_class.name) for bead_class in self.classes)]
+        phases = [phase for process in processes for phase in (process.start, process.end)]
+        return any(phase.there and phase.ramp > 0.0 for phase in phases)
 
     @property
     def scheduled(self) -> bool:
         """Whether any bead has a schedule."""
-        classes = bead_classes.classes(self.classes).values()
         keys = ("schedule", "start_schedule", "end_schedule")
         ends = (self.schedule, self.start.schedule, self.end.schedule)
-        return any(one is not None for one in ends) or any(
-            key in one.own_values() for one in classes for key in keys
+        return any(schedule is not None for schedule in ends) or any(
+            key in bead_class.own_values() for bead_class in self.classes for key in keys
         )

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from . import field as f
-from .cell import Pose
+from .records import Pose
 
 MOTIONS = ("joint", "cartesian")
 

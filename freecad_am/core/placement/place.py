@@ -16,8 +16,8 @@ import numpy as np
 
 from ..issues import InputError, Text
 from ..kinematics.arrangement import arrangement_of
-from ..parameters.cell import CellParameters, Pose
-from ..parameters.external import PART, SEPARATOR, externals
+from ..parameters.cell import CellParameters
+from ..parameters.cell_records import EXTERNAL, PART
 from ..parameters.place import (
     AUTO,
     CLEARANCE,
@@ -28,6 +28,7 @@ from ..parameters.place import (
     TIME,
     PlaceParameters,
 )
+from ..parameters.records import Pose
 from ..planning.plan import Progress
 from ..types import Array
 from .judge import Job, Judge, Judged
@@ -40,7 +41,7 @@ def movable(settings: CellParameters) -> tuple[str, ...]:
         return (POINT, PLATFORM)
     if arrangement.carries_part:
         return (PLATFORM,)
-    if any(mechanism.carries == PART for mechanism in externals(settings.external)):
+    if any(mechanism.carries == PART for mechanism in settings.external):
         return (POSITIONER, PLATFORM)
     return (POINT,) if arrangement.planned else ()
 
@@ -67,11 +68,7 @@ def pose_of(settings: CellParameters, moves: str) -> Pose:
     if moves == POINT:
         return settings.deposition_point
     if moves == POSITIONER:
-        return next(
-            mechanism.pose
-            for mechanism in externals(settings.external)
-            if mechanism.carries == PART
-        )
+        return next(mechanism.pose for mechanism in settings.external if mechanism.carries == PART)
     platform = settings.platform
     return (
         (0.0, 0.0, float(platform), 0.0, 0.0, 0.0)
@@ -89,13 +86,11 @@ def replace_pose(settings: CellParameters, moves: str, pose: Sequence[float]) ->
     if moves == PLATFORM:
         return dataclasses.replace(settings, platform=new_pose)
     mechanisms, is_replaced = [], False
-    for mechanism in externals(settings.external):
+    for mechanism in settings.external:
         turns = mechanism.carries == PART and not is_replaced
         is_replaced |= turns
-        mechanisms.append(
-            str(dataclasses.replace(mechanism, pose=new_pose) if turns else mechanism)
-        )
-    return dataclasses.replace(settings, external=f"{SEPARATOR} ".join(mechanisms))
+        mechanisms.append(dataclasses.replace(mechanism, pose=new_pose) if turns else mechanism)
+    return dataclasses.replace(settings, external=tuple(mechanisms))
 
 
 def outer(pose: Pose) -> list[float]:
@@ -146,7 +141,8 @@ class Placed:
     def entries(self, number: int) -> dict[str, object]:
         """Return the parameters that set a pose of the cell, in the units of macros: mm and deg."""
         if self.moves == POSITIONER:
-            return {"external": replace_pose(self.settings, self.moves, self.pose(number)).external}
+            moved = replace_pose(self.settings, self.moves, self.pose(number))
+            return {"external": EXTERNAL.text(moved.external)}
         return {
             "deposition_point" if self.moves == POINT else "platform": tuple(
                 outer(self.pose(number))

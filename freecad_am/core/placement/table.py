@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..parameters.cell import Pose
-from ..parameters.external import PART, externals
+from ..parameters.cell_records import PART
 from ..parameters.place import PLATFORM, POINT
+from ..parameters.records import Pose
 from .place import Placed, outer
 
 HEAD = (
@@ -64,7 +64,7 @@ def key(placed: Placed, number: int) -> str:
     if placed.moves == PLATFORM:
         return f"platform: {_list(placed.pose(number))}"
     mechanisms, is_replaced = [], False
-    for mechanism in externals(placed.settings.external):
+    for mechanism in placed.settings.external:
         turns = mechanism.carries == PART and not is_replaced
         is_replaced |= turns
         pose = placed.pose(number) if turns else mechanism.pose

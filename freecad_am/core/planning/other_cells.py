@@ -23,10 +23,10 @@ from ..kinematics.arrangement import arrangement_of
 from ..kinematics.inverse import opw
 from ..kinematics.links.external_links import ExternalLink, external_links
 from ..kinematics.torch import Torch
-from ..parameters.cell import CellParameters, Pose
-from ..parameters.external import externals
+from ..parameters.cell import CellParameters
 from ..parameters.joints import OF_CELL, JointParameters
 from ..parameters.process import ProcessParameters
+from ..parameters.records import Pose
 from ..toolpath import Toolpath
 from .arm.kept import Cylinders
 from .external import remedies as external_remedies
@@ -163,7 +163,7 @@ def held_by_clamp(job: Tried) -> Tried | None:
     if low[2] > -BELOW:
         return None
     shift = [*np.round(-0.5 * (low[:2] + high[:2]), 1), math.ceil(-low[2])]
-    on_point = not (arrangement_of(settings.setup).carries_part or externals(settings.external))
+    on_point = not (arrangement_of(settings.setup).carries_part or settings.external)
     pose = settings.deposition_point if on_point else settings.platform
     old_pose = (0.0, 0.0, pose, 0.0, 0.0, 0.0) if isinstance(pose, (int, float)) else pose
     x, y, z = (frames.bryant(old_pose) @ np.array([*shift, 1.0]))[:3].round(3).tolist()
@@ -199,7 +199,7 @@ def points(job: Tried) -> Iterator[Tried]:
 
     The first is the one where the machine has most room; positions near the present one follow.
     """
-    if externals(job.settings.external):  # the platform is on the positioner
+    if job.settings.external:  # the platform is on the positioner
         return
     best = proposed_cell.proposed(job.settings, job.folders)
     if best.deposition_point != job.settings.deposition_point:

@@ -12,7 +12,6 @@ import numpy as np
 from ..issues import ERROR, NOTE, WARNING, Issue, Text, has_errors
 from ..kinematics.cell import Cell
 from ..kinematics.inverse import opw
-from ..parameters.cell import NO_SHAPE
 from ..parameters.joints import OF_CELL, JointParameters
 from ..toolpath import Bead, Toolpath
 from . import criteria
@@ -252,7 +251,7 @@ def _used(cell: Cell, parameters: JointParameters) -> tuple[JointParameters, lis
     )
     ignored += [] if cell.arm_clearance is None else ["cell.arm_clearance"]
     ignored += ["cell.obstacles"] if cell.obstacles else []
-    ignored += ["cell.nozzle.shape"] if cell.nozzle.shape != NO_SHAPE else []
+    ignored += ["cell.nozzle.shape"] if cell.nozzle.shape is not None else []
     if not ignored:
         return parameters, []
     return parameters, [

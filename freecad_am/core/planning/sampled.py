@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..geometry.angles import TURN
-from ..parameters.joints import given_polynomials
+from ..parameters.joints import GivenPolynomial
 from ..toolpath import Bead, Toolpath
 from ..types import Index
 
@@ -39,21 +39,20 @@ class Sampled:
         """Whether the sample is the complete toolpath."""
         return self.beads == self.points == 1
 
-    def select_given(self, entries: Sequence[str]) -> tuple[str, ...]:
-        """Return the entries of `joints.given` for the sampled beads, with the numbers of the beads in the
-        sample.
+    def select_given(self, polynomials: Sequence[GivenPolynomial]) -> tuple[GivenPolynomial, ...]:
+        """Return the polynomials of `joints.given` for the sampled beads, with the numbers of the
+        beads in the sample.
         """
         sample_ids = {
             bead_id: (layer, bead) for bead_id, (layer, bead, _) in zip(self.places, self.toolpath)
         }
-        issues = []
-        for entry, bead_id in zip(entries, given_polynomials(tuple(entries))):
-            if bead_id is None:
-                issues.append(entry)
-            elif bead_id in sample_ids:
-                layer, bead = sample_ids[bead_id]
-                issues.append(f"{layer}/{bead}:{entry.partition(':')[2]}")
-        return tuple(issues)
+        return tuple(
+            polynomial
+            if polynomial.bead is None
+            else replace(polynomial, bead=sample_ids[polynomial.bead])
+            for polynomial in polynomials
+            if polynomial.bead is None or polynomial.bead in sample_ids
+        )
 
 
 def sample_toolpath(toolpath: Toolpath, max_points: int, together: int = 1) -> Sampled:

@@ -14,8 +14,9 @@ from ...core.issues import AmError, InputError
 from ...core.kinematics.arrangement import arrangement_of
 from ...core.kinematics.machines.machine import Machine
 from ...core.kinematics.proposed_cell import cell_of
-from ...core.kinematics.urdf.cell import texts_of_machine
+from ...core.kinematics.urdf.cell import cell_values_of_machine
 from ...core.kinematics.urdf.machine import WHOLE_CELL
+from ...core.parameters import cell_records
 from ...core.parameters.cell import CellParameters
 from ...objects import user_machines
 from ...objects.fields.rows import flat
@@ -37,7 +38,8 @@ def whole_cell(machine: object, external: object) -> tuple[str, str] | None:
     """
     if not isinstance(external, str) or external.strip() != WHOLE_CELL:
         return None
-    return texts_of_machine(machine)
+    name, mechanisms = cell_values_of_machine(machine)
+    return name, cell_records.EXTERNAL.text(mechanisms)
 
 
 MACHINE, SETUP, POINT, BRANCH = "cell_machine", "cell_setup", "cell_deposition_point", "cell_branch"
@@ -139,10 +141,9 @@ class ProposingPanel(PreviewPanel):
         usual = (None if previous is None else self.of_machine.get(previous)) or default
         if proposal is None:  # no cell can have it; the preview reports it
             return
-        if EXTERNAL in self.put and self._may_put(
-            EXTERNAL, default.external
-        ):  # of the previous machine
-            self.places[EXTERNAL][0].show(default.external)
+        no_axes = self.places[EXTERNAL][0].row.outer(default.external)
+        if EXTERNAL in self.put and self._may_put(EXTERNAL, no_axes):  # of the previous machine
+            self.places[EXTERNAL][0].show(no_axes)
         for key, value, *was in (
             (POINT, proposal.deposition_point, usual.deposition_point, default.deposition_point),
             (BRANCH, proposal.branch, usual.branch, default.branch),

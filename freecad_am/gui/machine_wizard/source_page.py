@@ -22,7 +22,7 @@ from ...core.kinematics.urdf import machine as urdf_machine
 from ...core.kinematics.urdf.cell import UrdfCell
 from ...core.kinematics.urdf.read import Urdf
 from ...core.kinematics.urdf.reference import reference
-from ...core.parameters.external import ROBOT
+from ...core.parameters.cell_records import ROBOT
 from ...objects import user_machines
 from ..texts.in_language import tr
 from .figure_table import FigureTable, Page, choice, error_text

@@ -16,7 +16,7 @@ from ...core.issues import NOTE, WARNING, InputError
 from ...core.kinematics.arrangement import OF_ROBOTS
 from ...core.parameters.build_direction import BuildDirectionParameters
 from ...core.parameters.cell import CellParameters
-from ...core.parameters.external import externals
+from ...core.parameters.cell_records import EXTERNAL
 from ...core.parameters.filled import GEODESIC, PLANES, FilledParameters
 from ...core.parameters.process import ProcessParameters
 from ...objects.checks import deposit
@@ -280,10 +280,11 @@ def show_machine(stages: list[Any], is_setup_chosen: bool) -> None:
     if cell is None or not is_setup_chosen:
         return
     cell.ViewObject.ShowMachine = True
-    if externals(cell.External):
+    mechanisms = cell.Proxy.parameters(cell, CellParameters).external
+    if mechanisms:
         App.Console.PrintWarning(
             tr("{}: proposed for this job: {}; enter the values of your cell.").format(
-                cell.Label, cell.External
+                cell.Label, EXTERNAL.text(mechanisms)
             )
             + "\n"
         )

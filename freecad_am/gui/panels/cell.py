@@ -13,7 +13,7 @@ from ...core.issues import AmError, InputError
 from ...core.kinematics.arrangement import arrangement_of
 from ...core.kinematics.machines import machine as machines
 from ...core.kinematics.machines.machine import Machine
-from ...core.parameters.external import NONE
+from ...core.parameters.records import NONE
 from ...objects import user_machines
 from ...objects.cell import Cell
 from ...objects.stage import stage_of

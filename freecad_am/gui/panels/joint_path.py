@@ -14,7 +14,6 @@ from ...core.issues import ERROR, InputError, Issue
 from ...core.kinematics import cell as cells
 from ...core.kinematics.machines import machine as machines
 from ...core.parameters.cell import CellParameters
-from ...core.parameters.external import externals
 from ...core.parameters.joints import LEVEL_METHOD
 from ...core.planning.joint_path import JointPath as JointsOfBeads
 from ...core.planning.plan import OF_ROBOTS, plan_joints
@@ -92,7 +91,7 @@ class JointPathPanel(PreviewPanel):
                 return
             method = self.places[METHOD][0].value
             unused = {name for key, names in _OF_METHODS.items() if key != method for name in names}
-            if not externals(cell.Proxy.parameters(cell, CellParameters).external):
+            if not cell.Proxy.parameters(cell, CellParameters).external:
                 unused.add("external_axes")
             self.leave_out({_place(name) for name in (*_OF_ROTARY_AXES, *unused)})
 

@@ -22,7 +22,7 @@ from ...core.kinematics.links import external_links
 from ...core.kinematics.links.contact import ArmContact
 from ...core.kinematics.links.external_links import Mesh
 from ...core.parameters.joints import BRANCHES as BRANCH_WORDS
-from ...core.parameters.joints import OF_CELL, JointParameters, given_text
+from ...core.parameters.joints import OF_CELL, GivenPolynomial, JointParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.planning.joint_path import BeadPath, JointPath
 from ...core.planning.points import Points
@@ -456,7 +456,9 @@ class Draft:
             if same
             else list(zip(self.source.places, self.coefficients))
         )
-        return tuple(given_text(key, tuple(float(value) for value in row)) for key, row in rows)
+        return tuple(
+            str(GivenPolynomial(bead, tuple(float(value) for value in row))) for bead, row in rows
+        )
 
     # ----
 

@@ -14,7 +14,6 @@ from ...core.issues import ERROR, InputError
 from ...core.kinematics.external import coupled
 from ...core.kinematics.machines import machine as machines
 from ...core.parameters.cell import CellParameters
-from ...core.parameters.external import externals
 from ...core.parameters.strategy import RevolutionParameters
 from ...core.simulation.achievable_feed import from_next, speed_ratios
 from ...core.types import Array, Integers, Mask
@@ -221,7 +220,7 @@ def _limit_shares(obj: Any, value: Seen, kind: str) -> Array:
     joints, limits, mechanisms = (
         value.course.joints,
         machine.limits(value.limits),
-        externals(settings.external),
+        settings.external,
     )
     if mechanisms:
         machine, limits, _ = coupled(machine, limits, mechanisms, settings.upward(), folders)

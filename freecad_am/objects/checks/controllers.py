@@ -13,7 +13,6 @@ from ...core.kinematics.cell import Cell
 from ...core.kinematics.machines import machine as machines
 from ...core.kinematics.machines.machine import UNKNOWN_REMARK, Machine
 from ...core.parameters.cell import CellParameters
-from ...core.parameters.external import externals
 from ...core.parameters.program import MOTIONS, ProgramParameters
 from ...core.toolpath import Toolpath
 from ...posts.catalogue import NAMES, controller, fitting, motion_written
@@ -267,7 +266,7 @@ def post_of(settings: CellParameters, preferred: str, folders: Sequence[str]) ->
     """
     machine, usual = machines.load(settings.machine, tuple(folders)), ProgramParameters()
     posts = written_by(machine)
-    if externals(settings.external):
+    if settings.external:
         posts = _select_external(posts)
     preferred = preferred or usual.post
     if posts is None or preferred in posts:

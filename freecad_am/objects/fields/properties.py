@@ -12,6 +12,7 @@ import FreeCAD as App
 
 from ...core.issues import InputError
 from ...core.parameters import field as f
+from ...core.parameters.records import Records
 from ..shapes.placement import placement_of
 from .rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row, build, flat, property_name, rows
 
@@ -84,18 +85,24 @@ def read(obj: Any, cls: type, section: str) -> Any:
 
     `section` is the prefix of the dataclass's own errors. Raises InputError naming the object's Label and property.
     """
-    values = {
-        row.key: row.inner(getattr(obj, row.name), f"{obj.Label}.{row.name}") for row in rows(cls)
-    }
     try:
-        return build(cls, values)
+        return build(cls, _inner_values(obj, cls))
     except InputError as error:
+        if error.where.startswith(f"{obj.Label}."):
+            raise
         key = (
             error.where[len(section) + 1 :]
             if error.where.startswith(f"{section}.")
             else error.where
         )
         raise InputError(error.code, f"{obj.Label}.{property_name(key)}", error.message) from None
+
+
+def _inner_values(obj: Any, cls: type) -> dict[str, Any]:
+    """Inner values by row key. InputError names Label and property, or the key of bad records."""
+    return {
+        row.key: row.inner(getattr(obj, row.name), f"{obj.Label}.{row.name}") for row in rows(cls)
+    }
 
 
 def fingerprint(obj: Any, cls: type) -> list[str]:
@@ -125,10 +132,12 @@ def _set(obj: Any, row: Row, value: Any) -> None:
         _retype(obj, row)
     if row.form in (MIXED, LENGTH_OR_POSE):
         setattr(obj, row.name, row.text(value))
+    elif isinstance(row.spec.records, Records):
+        setattr(obj, row.name, row.spec.records.to_json(value))
     elif row.form == f.POSE:
         setattr(obj, row.name, placement_of(value))
     elif row.form == TEXT_LIST:
-        setattr(obj, row.name, list(value))
+        setattr(obj, row.name, list(row.outer(value)))
     else:
         setattr(obj, row.name, row.outer(value))
         if row.form == f.ANGLE and abs(row.inner(getattr(obj, row.name), row.name) - value) > 1e-9:

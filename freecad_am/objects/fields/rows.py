@@ -19,6 +19,7 @@ import FreeCAD as App
 
 from ...core.issues import InputError, Text, Word
 from ...core.parameters import field as f
+from ...core.parameters.records import Records
 from ...posts import catalogue
 from . import pendants
 
@@ -162,12 +163,12 @@ class Row:
         """
         if isinstance(value, str):
             checked_words([value], where)
+        if isinstance(self.spec.records, Records):
+            return self._records(self.spec.records, value, where)
         if self.form == f.POSE:
             return _pose(value, where)
         if self.form == TEXT_LIST:
-            return tuple(
-                split(value, where) if isinstance(value, str) else checked_words(value, where)
-            )
+            return self._list(value, where)
         if self.form == LENGTH_OR_POSE and (
             _is_list(value) or (isinstance(value, str) and len(split(value, where)) > 2)
         ):
@@ -179,20 +180,32 @@ class Row:
         if self.spec.kind == f.TEXT and not isinstance(value, str):
             return " ".join(checked_words(value, where))
         if self.spec.kind in (f.TEXT, f.CHOICE, f.FLAG):
-            return (
-                pendants.plain(value, where)
-                if self.spec.poses and isinstance(value, str)
-                else value
-            )
+            return value
         if self.spec.kind == f.POSE:
             return _pose(value, where)
         return _number(self.spec, value, where)
 
+    def _records(self, records: Records, value: Any, where: str) -> Any:
+        """Records of their text or JSON. InputError BAD_VALUE, at the dotted key of a job file."""
+        if isinstance(value, str) and self.spec.poses:
+            value = pendants.plain(value, where)
+        return records.read(value)
+
+    def _list(self, value: Any, where: str) -> tuple[Any, ...]:
+        """Words, or records of words. InputError BAD_VALUE."""
+        records = self.spec.records
+        if records is not None and not isinstance(value, str) and _are(records.record, value):
+            return tuple(value)
+        words = split(value, where) if isinstance(value, str) else checked_words(value, where)
+        return tuple(words) if records is None else records.read(words)
+
     def outer(self, value: Any) -> Any:
         """The value in outer units as a Python literal, such as a panel shows and a macro passes."""
+        if self.spec.records is not None:
+            return self.spec.records.text(value)
         if _is_list(value) and (self.spec.kind == f.POSE or self.form == LENGTH_OR_POSE):
             return tuple(float(number) for number in value[:3]) + tuple(
-                degrees(angle) for angle in value[3:]
+                f.degrees(angle) for angle in value[3:]
             )
         if self.form == TEXT_LIST:
             return tuple(value)
@@ -203,7 +216,7 @@ class Row:
             and not isinstance(value, str)
             and value is not None
         ):
-            return percent(value) if self.spec.kind == f.RATIO else degrees(value)
+            return f.percent(value) if self.spec.kind == f.RATIO else f.degrees(value)
         return value
 
     def text(self, value: Any) -> str:
@@ -277,21 +290,6 @@ def flat(parameters: Any) -> dict[str, Any]:
     return values
 
 
-def degrees(angle: float) -> float:
-    """Degrees of an angle in rad, without the noise of the last digits where the round number means the same."""
-    value = math.degrees(angle)
-    short = float(f"{value:.13g}")
-    return short if abs(math.radians(short) - angle) <= 4e-16 * max(1.0, abs(angle)) else value
-
-
-def percent(ratio: float) -> float:
-    """Percent of a ratio, without the noise of the last digits where the round number means the same."""
-    value = ratio / f.TO_INNER[f.RATIO]
-    short = float(f"{value:.13g}")
-    inner = short * f.TO_INNER[f.RATIO]
-    return short if abs(inner - ratio) <= 4e-16 * max(1.0, abs(ratio)) else value
-
-
 def _assemble(cls: type, nested: dict[str, Any]) -> Any:
     values = {}
     for field in dataclasses.fields(cls):
@@ -308,9 +306,16 @@ def _assemble(cls: type, nested: dict[str, Any]) -> Any:
 def _form(spec: f.Spec, annotation: str) -> str:
     if spec.kind == f.LENGTH and "Pose" in annotation:
         return LENGTH_OR_POSE
+    if spec.records is not None:
+        return f.TEXT if isinstance(spec.records, Records) else TEXT_LIST
     if spec.kind == f.TEXT and annotation.startswith("tuple"):
         return TEXT_LIST
     return MIXED if spec.words or spec.optional else spec.kind
+
+
+def _are(cls: type, values: Any) -> bool:
+    """Whether a value is a list of objects of one class."""
+    return _is_list(values) and all(isinstance(value, cls) for value in values)
 
 
 def _is_list(value: Any) -> bool:

@@ -27,13 +27,15 @@ SCHEMAS: dict[str, Schema] = {
     "bead": Schema("core.toolpath:Bead"),
     "bead_curve": Schema("core.geometry.curves.bead_curves:BeadCurve"),
     "bead_path": Schema("core.planning.joint_path:BeadPath"),
-    "cell_parameters": Schema("core.parameters.cell:CellParameters"),
+    "cell_obstacle": Schema("core.parameters.cell_records:Obstacle"),
+    "cell_parameters": Schema("core.parameters.cell:CellParameters", 2),
     "clad_faces": Schema("core.geometry.walls.clad_faces:CladFaces"),
     "cone_surface": Schema("core.geometry.walls.surface:Cone"),
     "curves": Schema("core.geometry.curves.bead_curves:Curves"),
     "developable_surface": Schema("core.geometry.developable:Developable"),
     "deviation_map": Schema("core.geometry.fitted:DeviationMap"),
     "deviation_spread": Schema("core.inspection.figures:Spread"),
+    "external_mechanism": Schema("core.parameters.cell_records:ExternalMechanism"),
     "first_curve": Schema("core.geometry.walls.patch_wall:FirstCurve"),
     "fitted": Schema("core.geometry.fitted:Fitted"),
     "fitted_ball": Schema("core.inspection.figures:Ball"),
@@ -49,7 +51,8 @@ SCHEMAS: dict[str, Schema] = {
     "mesh": Schema("core.geometry.mesh.triangle_mesh:Mesh"),
     "mesh_wall": Schema("core.geometry.walls.mesh_wall:MeshWall"),
     "motion": Schema("core.motion:Motion"),
-    "nozzle_parameters": Schema("core.parameters.cell:NozzleParameters"),
+    "nozzle_parameters": Schema("core.parameters.cell:NozzleParameters", 2),
+    "nozzle_shape": Schema("core.parameters.cell_records:NozzleShape"),
     "obstacle": Schema("core.geometry.obstacles:Body"),
     "own_hub": Schema("core.geometry.on_hub:OwnHub"),
     "part_depths": Schema("core.geometry.walls.part_depths:PartDepths"),
@@ -69,13 +72,17 @@ SCHEMAS: dict[str, Schema] = {
     "surface_patch": Schema("core.geometry.walls.patch:Patch"),
     "surface_wall": Schema("core.geometry.walls.surface_wall:SurfaceWall"),
     "toolpath": Schema("core.toolpath:Toolpath"),
+    "touched_point": Schema("core.parameters.cell_records:TouchedPoint"),
     "torus_surface": Schema("core.geometry.walls.surface:Torus"),
     "verification": Schema("verify:Verification"),
     "wall_rim": Schema("core.geometry.walls.patch_wall:Rim"),
 }
 
 # by name and version: turns the fields of that version into the next version's
-UPGRADES: dict[tuple[str, int], Callable[[Fields], Fields]] = {}
+UPGRADES: dict[tuple[str, int], Callable[[Fields], Fields]] = {
+    ("cell_parameters", 1): lambda fields: fields,  # texts, which the class turns into records
+    ("nozzle_parameters", 1): lambda fields: fields,
+}
 
 _PACKAGE = __name__.split(".", maxsplit=1)[0]
 

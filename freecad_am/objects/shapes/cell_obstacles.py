@@ -27,8 +27,8 @@ from ...core.kinematics.cell import Cell
 from ...core.kinematics.links.bodies import LinkShape
 from ...core.kinematics.links.external_links import Mesh, external_links
 from ...core.kinematics.machines.machine import Machine
-from ...core.parameters.cell import NO_SHAPE, CellParameters, NozzleParameters
-from ...core.parameters.obstacles import WHERE, Obstacle, obstacles
+from ...core.parameters.cell import CellParameters, NozzleParameters
+from ...core.parameters.cell_records import OBSTACLES_KEY, Obstacle
 from ...core.toolpath import Toolpath
 
 
@@ -80,41 +80,42 @@ def resolved(settings: CellParameters, toolpath: Toolpath, folders: Sequence[str
 
 def bodies_of(settings: CellParameters) -> tuple[Body, ...]:
     """The obstacles of a cell in the world, mm. Raises InputError naming the obstacle and its file."""
-    return tuple(_body(obstacle) for obstacle in obstacles(settings.obstacles))
+    return tuple(_body(obstacle) for obstacle in settings.obstacles)
 
 
 def torch_of(settings: CellParameters) -> torch.Torch | None:
     """The torch of a cell; None without one. Raises InputError TORCH and the errors of its file."""
-    shape = settings.nozzle.shape.strip()
-    if shape == NO_SHAPE:
+    shape = settings.nozzle.shape
+    if shape is None:
         return None
     try:
-        return _torch(_read(locate(shape)), settings.nozzle)
+        return _torch(_read(locate(shape.file)), settings.nozzle)
     except InputError as error:
         raise InputError(error.code, torch.WHERE, error.message) from None
 
 
-def hashes_of(text: str, shape: str) -> list[str]:
-    """Hashes of the existing files that a text of obstacles and the shape of a torch name.
-    InputError for a file that is too large.
+def hashes_of(settings: CellParameters) -> list[str]:
+    """Hashes of the existing files of obstacles and of the torch. InputError for a file that is
+    too large.
     """
     files = [
-        (Path(obstacle.file), f"{WHERE} {obstacle.name}")
-        for obstacle in obstacles(text)
+        (Path(obstacle.file), f"{OBSTACLES_KEY} {obstacle.name}")
+        for obstacle in settings.obstacles
         if obstacle.file
     ]
-    files += [(Path(shape.strip()), torch.WHERE)] if shape.strip() != NO_SHAPE else []
+    if settings.nozzle.shape is not None:
+        files.append((Path(settings.nozzle.shape.file), torch.WHERE))
     return [digest(file, MAX_FILE_MB, "BAD_FILE", where) for file, where in files if is_there(file)]
 
 
 def _body(obstacle: Obstacle) -> Body:
     pose = frames.bryant(obstacle.pose)
-    if obstacle.size is not None:
-        return box(obstacle.size, pose, obstacle.name)
+    if obstacle.box is not None:
+        return box(obstacle.box, pose, obstacle.name)
     try:
         body = _read(locate(obstacle.file))
     except InputError as error:
-        raise InputError(error.code, f"{WHERE} {obstacle.name}", error.message) from None
+        raise InputError(error.code, f"{OBSTACLES_KEY} {obstacle.name}", error.message) from None
     return dataclasses.replace(body, name=obstacle.name).move(pose)
 
 
@@ -164,7 +165,7 @@ def _refuse_at_start(cell: Cell, toolpath: Toolpath) -> None:
         if scene((obstacle,), point, nozzle.reach).find_touching(nozzle, point, axis).any():
             raise InputError(
                 CODE,
-                f"{WHERE} {obstacle.name}",
+                f"{OBSTACLES_KEY} {obstacle.name}",
                 "it already touches the nozzle at the first point of the job, in every arm "
                 "configuration; its pose is in the manufacturer's base frame, and its file in "
                 "mm: move it, or the deposition point",

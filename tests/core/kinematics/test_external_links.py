@@ -20,7 +20,7 @@ from freecad_am.core.kinematics.links.own import NONE
 from freecad_am.core.kinematics.machines import draft as machine_draft
 from freecad_am.core.kinematics.urdf import machine as urdf_machine
 from freecad_am.core.kinematics.urdf import read as urdf
-from freecad_am.core.kinematics.urdf.cell import texts_of
+from freecad_am.core.kinematics.urdf.cell import cell_values
 from freecad_am.core.kinematics.urdf.reference import Reference
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.simulation.table_links import placing
@@ -317,7 +317,7 @@ def test_collision_bodies_of_a_urdf_go_with_their_links(tmp_path):
     )
     path = tmp_path / "bay.urdf"
     path.write_text(text_, encoding="utf-8")
-    machine, external = texts_of(Reference(str(path)))
+    machine, external = cell_values(Reference(str(path)))
     cell = cells.resolve(
         CellParameters(machine=machine, setup="tool-on-robot", external=external, platform=0.0),
         np.eye(4),

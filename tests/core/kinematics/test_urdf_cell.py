@@ -8,10 +8,10 @@ import pytest
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import external
-from freecad_am.core.kinematics.urdf.cell import UrdfCell, texts_of
+from freecad_am.core.kinematics.urdf.cell import UrdfCell, cell_values
 from freecad_am.core.kinematics.urdf.reference import Reference, reference
 from freecad_am.core.parameters.cell import CellParameters
-from freecad_am.core.parameters.external import externals
+from freecad_am.core.parameters.cell_records import EXTERNAL
 from tests.core.kinematics.urdf_cells import FINGERS, fixed, placed, whole_cell, with_prefix
 
 SEVENTH = """\
@@ -32,9 +32,9 @@ def written(tmp_path, text):
 @pytest.mark.always
 def test_tool_part_and_base_are_where_the_tree_has_them(tmp_path, track, positioner, more):
     text = whole_cell(track, positioner, more)
-    machine, beside = texts_of(Reference(str(written(tmp_path, text))))
+    machine, beside = cell_values(Reference(str(written(tmp_path, text))))
     assert (reference(machine).base, reference(machine).tip) == ("robot_base_link", "robot_tool0")
-    named = externals(beside)
+    named = EXTERNAL.read(beside)
     assert [one.carries for one in named] == ["robot"] * track + ["part"] * positioner
     cell = cells.resolve(
         CellParameters(machine=machine, setup="tool-on-robot", external=beside, platform=0.0),
@@ -112,9 +112,9 @@ def test_two_robots_are_named(tmp_path):
 def test_links_of_a_mechanism_are_not_named_as_well(tmp_path):
     path = written(tmp_path, whole_cell())
     with pytest.raises(InputError, match="remove base and tip"):
-        texts_of(Reference(str(path), "robot_base_link"))
+        cell_values(Reference(str(path), "robot_base_link"))
     with pytest.raises(InputError, match="does not exist"):
-        texts_of(Reference(str(path) + "x.urdf"))
+        cell_values(Reference(str(path) + "x.urdf"))
 
 
 def test_a_mechanism_of_a_urdf_needs_no_cell_of_its_own(tmp_path):

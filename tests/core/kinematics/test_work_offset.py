@@ -12,7 +12,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.cell import work_offset
 from freecad_am.core.parameters.cell import CellParameters
-from freecad_am.core.parameters.touched import Touched, parse_touched
+from freecad_am.core.parameters.cell_records import TOUCHED, TouchedPoint
 from tests.kdl_links import KdlLinks
 
 POINTS = np.array([[0.0, 0.0, 0.0], [120.0, 0.0, 5.0], [0.0, 80.0, 0.0], [110.0, 90.0, -3.0]])
@@ -20,7 +20,7 @@ POINTS = np.array([[0.0, 0.0, 0.0], [120.0, 0.0, 5.0], [0.0, 80.0, 0.0], [110.0,
 
 def pairs(part, robot):
     return tuple(
-        Touched(tuple(one), tuple(other))
+        TouchedPoint(tuple(one), tuple(other))
         for one, other in zip(part.tolist(), robot.tolist(), strict=True)
     )
 
@@ -85,9 +85,9 @@ def test_points_of_the_toolpath_are_met_where_they_were_touched():
     turn = Rotation.from_euler("xyz", [2.0, -3.0, 25.0], degrees=True)
     move = np.array([880.0, 60.0, -120.0])
     text = "; ".join(map(str, pairs(POINTS, turn.apply(POINTS) + move)))
-    assert parse_touched(text) == pairs(
+    assert TOUCHED.read(text) == pairs(
         *(
-            np.array([getattr(one, side) for one in parse_touched(text)])
+            np.array([getattr(one, side) for one in TOUCHED.read(text)])
             for side in ("part", "robot")
         )
     )

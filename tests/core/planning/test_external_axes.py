@@ -15,7 +15,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
-from freecad_am.core.parameters.external import External, externals
+from freecad_am.core.parameters.cell_records import EXTERNAL, ExternalMechanism
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning.motion import assemble
@@ -365,9 +365,9 @@ def test_texts_that_name_no_axes(text):
 
 def test_text_and_back():
     named = (
-        External("d500", (1500.25, 0.0, -3.0, 0.0, 0.1, math.pi)),
-        External("track", (0.0,) * 6, "robot"),
+        ExternalMechanism("d500", (1500.25, 0.0, -3.0, 0.0, 0.1, math.pi)),
+        ExternalMechanism("track", (0.0,) * 6, "robot"),
     )
-    again = externals("; ".join(map(str, named)))
+    again = EXTERNAL.read("; ".join(map(str, named)))
     assert [one.machine for one in again] == ["d500", "track"] and again[1].carries == "robot"
     assert np.allclose([one.pose for one in again], [one.pose for one in named], atol=1e-9)

@@ -13,7 +13,7 @@ from freecad_am.core.issues import InputError, has_errors
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.parameters.cell import CellParameters
-from freecad_am.core.parameters.obstacles import Obstacle, obstacles
+from freecad_am.core.parameters.cell_records import OBSTACLES, Obstacle
 from freecad_am.core.simulation import rapid_look
 from freecad_am.kdl.chain import KdlArm
 from tests.core.planning.test_arm_clearance import (
@@ -215,16 +215,17 @@ def test_an_impossible_one_is_refused_by_name(dome):
 
 def test_texts_of_obstacles_say_what_they_are():
     text = "table = /a b/table.step at 0 0 -200 0 0 90; box 60 60 400 at 900, 200, 0, 0, 0, 0; post.stl at 1 2 3 0 0 0"
-    table, beam, post = found = obstacles(text)
+    table, beam, post = found = OBSTACLES.read(text)
     assert (table.name, table.file, table.pose) == (
         "table",
         "/a b/table.step",
         (0, 0, -200, 0, 0, np.radians(90.0)),
     )
-    assert (beam.name, beam.file, beam.size) == ("box 2", "", (60.0, 60.0, 400.0))
+    assert (beam.name, beam.file, beam.box) == ("box 2", "", (60.0, 60.0, 400.0))
     assert (post.name, post.file) == ("post", "post.stl")
     assert (
-        obstacles("; ".join(map(str, found))) == found and obstacles("none") == obstacles("") == ()
+        OBSTACLES.read("; ".join(map(str, found))) == found
+        and OBSTACLES.read("none") == OBSTACLES.read("") == ()
     )
 
 
@@ -238,14 +239,14 @@ def test_texts_of_obstacles_say_what_they_are():
 ])  # fmt: skip
 def test_texts_that_say_nothing_are_refused(text, told):
     with pytest.raises(InputError, match=r"cell\.obstacles") as error:
-        obstacles(text)
+        OBSTACLES.read(text)
     assert told in error.value.message
     with pytest.raises(InputError):
         CellParameters(obstacles=text)
 
 
 def test_an_obstacle_is_a_file_or_a_box():
-    for more in ({}, {"file": "a.step", "size": (1.0, 1.0, 1.0)}):
+    for more in ({}, {"file": "a.step", "box": (1.0, 1.0, 1.0)}):
         with pytest.raises(InputError, match="either a file or a box"):
             Obstacle("a", (0.0,) * 6, **more)
 

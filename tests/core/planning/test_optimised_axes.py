@@ -9,7 +9,7 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics.inverse import opw
-from freecad_am.core.parameters.joints import JointParameters, given_text
+from freecad_am.core.parameters.joints import GivenPolynomial, JointParameters
 from freecad_am.core.planning.external import optimised
 from freecad_am.core.planning.external.freedom import IRRELEVANT_MARGIN
 from freecad_am.core.planning.external.optimised import least_margin
@@ -194,7 +194,7 @@ def test_what_is_no_better_stays(hemisphere, both, monkeypatch):
 def test_given_polynomials_stay(hemisphere, both):
     level, better = both
     given = tuple(
-        given_text((one.layer, one.index), tuple(one.coefficients)) for one in level.beads[2:]
+        GivenPolynomial((one.layer, one.index), tuple(one.coefficients)) for one in level.beads[2:]
     )
     path = plan_joints(
         hemisphere, cell_for(hemisphere), JointParameters(external_axes="optimised", given=given)

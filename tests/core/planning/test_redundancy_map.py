@@ -18,9 +18,9 @@ from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.joints import (
     BRANCHES,
+    GIVEN,
+    GivenPolynomial,
     JointParameters,
-    given_polynomials,
-    given_text,
 )
 from freecad_am.core.planning import criteria, plan
 from freecad_am.core.planning.points import TURN, gather
@@ -255,7 +255,8 @@ def planned(toolpath, **joints):
 def test_what_the_planner_found_can_be_given_back_to_it(dome):
     _, free = planned(dome)
     given = tuple(
-        given_text((path.layer, path.index), tuple(path.coefficients)) for path in free.beads
+        str(GivenPolynomial((path.layer, path.index), tuple(path.coefficients)))
+        for path in free.beads
     )
     _, again = planned(dome, given=given)
     assert again.feasible and [path.reason for path in again.beads] == ["given"] * len(free.beads)
@@ -270,7 +271,7 @@ def test_what_the_planner_found_can_be_given_back_to_it(dome):
 def test_some_beads_may_be_given_and_the_rest_is_searched(dome):
     _, free = planned(dome)
     constant, slope = free.beads[2].coefficients
-    text = given_text((2, 0), (constant + 0.1, slope))
+    text = str(GivenPolynomial((2, 0), (constant + 0.1, slope)))
     _, mixed = planned(dome, given=(text,))
     assert mixed.feasible
     assert np.allclose(mixed.beads[2].coefficients, [constant + 0.1, slope], atol=1e-9)
@@ -307,9 +308,13 @@ def test_given_texts_are_read_back():
     random = np.random.default_rng(2)
     for degree in range(7):
         values = tuple(random.uniform(-3, 3, degree + 1))
-        text = given_text((12, 3), values)
-        assert given_polynomials((text,))[12, 3] == pytest.approx(values, abs=1e-9)
-    assert given_polynomials(("*:90:-360", "4:10")) == {
+        text = str(GivenPolynomial((12, 3), values))
+        (polynomial,) = GIVEN.read((text,))
+        assert polynomial.bead == (12, 3)
+        assert polynomial.coefficients == pytest.approx(values, abs=1e-9)
+        assert GIVEN.text(GIVEN.read((text,))) == (text,)
+    read = GIVEN.read(("*:90:-360", "4:10"))
+    assert {polynomial.bead: polynomial.coefficients for polynomial in read} == {
         None: pytest.approx((np.pi / 2, -1.0)),
         (4, 0): pytest.approx((np.radians(10),)),
     }

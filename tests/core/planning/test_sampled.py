@@ -8,7 +8,7 @@ import pytest
 
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics.jacobian import condition, jacobian
-from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.joints import GIVEN, JointParameters
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.rotation.given import coefficients
 from freecad_am.core.planning.rotation.headroom import judge_paths
@@ -71,7 +71,7 @@ def test_polynomials_that_are_given_stay_with_their_beads(most):
         assert (bead.points[0] == whole.layers[layer].beads[index].points[0]).all()
     named = [(layer, index) for layer in (0, 30, 31, 99) for index in range(5)]
     given = tuple(f"{layer}/{index}:{layer}.5:{index}" for layer, index in named)
-    told = sample.select_given((*given, "*:7"))
+    told = sample.select_given(GIVEN.read((*given, "*:7")))
     places = [(layer, index) for layer, index, _ in sample.toolpath]
     found = coefficients(JointParameters(given=told), places)
     wanted = coefficients(JointParameters(given=(*given, "*:7")), sample.places)
@@ -85,13 +85,10 @@ def test_a_polynomial_for_a_bead_that_is_left_out_falls_on_no_other():
     lost = next(
         (layer, k) for layer in range(100) for k in range(5) if (layer, k) not in sample.places
     )
-    assert sample.select_given((f"{lost[0]}/{lost[1]}:1.0", "200/0:3")) == ()
+    assert sample.select_given(GIVEN.read((f"{lost[0]}/{lost[1]}:1.0", "200/0:3"))) == ()
     whole = sample_toolpath(rings(2, 2), 10_000)
-    assert whole.is_complete and whole.select_given(("1/1:2:3", "0:4", "*:5")) == (
-        "1/1:2:3",
-        "0/0:4",
-        "*:5",
-    )
+    selected = whole.select_given(GIVEN.read(("1/1:2:3", "0:4", "*:5")))
+    assert whole.is_complete and GIVEN.text(selected) == ("1/1:2:3", "0/0:4", "*:5")
 
 
 @pytest.mark.parametrize("layer_height", [3.0, 1.0, 0.5])

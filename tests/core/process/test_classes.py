@@ -8,7 +8,7 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import bead_classes
-from freecad_am.core.parameters.bead_classes import CLASSES, BeadClass, classes, text_of
+from freecad_am.core.parameters.bead_classes import BEAD_CLASSES, CLASSES, BeadClass
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.process.classes import fill_bead_class, leaning, wall_bead_class
@@ -28,8 +28,10 @@ def test_texts_read_back(seed):
     given = {}
     for name in rng.sample(CLASSES, rng.randint(0, len(CLASSES))):
         values = {key: rng.uniform(*ends) for key, ends in KEYS.items() if rng.random() < 0.6}
-        given[name] = BeadClass(**values, schedule=rng.choice([None, rng.randint(1, 65535)]))
-    found = classes(text_of(given))
+        schedule = rng.choice([None, rng.randint(1, 65535)])
+        given[name] = BeadClass(name, **values, schedule=schedule)
+    records = BEAD_CLASSES.read(BEAD_CLASSES.text(given.values()))
+    found = {one.name: one for one in records}
     assert set(found) == {name for name, one in given.items() if one.own_values()}
     for name, one in found.items():
         assert (
@@ -38,6 +40,10 @@ def test_texts_read_back(seed):
         )
         for key, value in one.own_values().items():
             assert math.isclose(value, given[name].own_values()[key], rel_tol=1e-11, abs_tol=1e-11)
+    read = BEAD_CLASSES.read(BEAD_CLASSES.to_json(records))
+    assert [one.name for one in read] == [one.name for one in records]
+    for one, other in zip(read, records, strict=True):
+        assert one.own_values() == pytest.approx(other.own_values(), rel=1e-15)
 
 
 @pytest.mark.parametrize(

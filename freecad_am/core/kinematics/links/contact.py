@@ -45,7 +45,7 @@ from ...geometry.columns import dots
 from ...geometry.cylinders import Cylinder, enclosing_cylinder, enclosing_row
 from ...geometry.obstacles import Body, disc
 from ...parameters.cell import NozzleParameters
-from ...parameters.external import ROBOT
+from ...parameters.cell_records import ROBOT
 from ...types import Array, ArrayLike, Index, Mask
 from ..cell import Cell
 from .external_links import STANDS, ExternalLink

@@ -18,7 +18,8 @@ import numpy as np
 from ...geometry import frames
 from ...geometry.located import is_there
 from ...issues import InputError, Text
-from ...parameters.external import PART, ROBOT, SEPARATOR, WHERE, External, Pose
+from ...parameters.cell_records import EXTERNAL_KEY, PART, ROBOT, ExternalMechanism
+from ...parameters.records import Pose
 from ...types import Array
 from .elements import CODE
 from .machine import WHOLE_CELL
@@ -63,7 +64,7 @@ class UrdfCell:
         """The robot."""
         return self._reference(self.robot, self._tip((*self.track, *self.robot)))
 
-    def external(self) -> tuple[External, ...]:
+    def external(self) -> tuple[ExternalMechanism, ...]:
         """Return track and positioner at their poses in the world: the robot's base frame with the
         track at zero.
         """
@@ -78,7 +79,7 @@ class UrdfCell:
             if joint_names:
                 mechanism_reference = self._reference(joint_names, tip)
                 mechanisms.append(
-                    External(
+                    ExternalMechanism(
                         str(mechanism_reference),
                         _six(world @ self._stands(mechanism_reference)),
                         carried,
@@ -143,7 +144,7 @@ class UrdfCell:
                     "part; name it in `{}`, with base and tip",
                     len(other_chains),
                     names,
-                    WHERE,
+                    EXTERNAL_KEY,
                 )
             )
         return other_chains[0] if other_chains else ()
@@ -199,15 +200,15 @@ class UrdfCell:
             "base and tip, and its external axes in `{}`",
             len(robots),
             ", ".join(robot_joints[-1] for robot_joints in robots),
-            WHERE,
+            EXTERNAL_KEY,
         )
 
     def _refuse(self, message: str) -> NoReturn:
         raise InputError(CODE, self.urdf.path.name, message)
 
 
-def texts_of(cell_reference: Reference) -> tuple[str, str]:
-    """Return the cell's texts for its machine and its external axes, from a URDF that has them
+def cell_values(cell_reference: Reference) -> tuple[str, tuple[ExternalMechanism, ...]]:
+    """Return the cell's text for its machine and its external axes, from a URDF that has them
     all.
 
     Raises InputError BAD_URDF if they cannot be identified, BAD_VALUE if links of one of them
@@ -216,7 +217,7 @@ def texts_of(cell_reference: Reference) -> tuple[str, str]:
     if cell_reference.base is not None or cell_reference.tip is not None:
         raise InputError(
             "BAD_VALUE",
-            WHERE,
+            EXTERNAL_KEY,
             "{} uses the whole file; remove base and tip of the machine, or list the mechanisms",
             WHOLE_CELL,
         )
@@ -228,24 +229,23 @@ def texts_of(cell_reference: Reference) -> tuple[str, str]:
             cell_reference.file,
         )
     urdf_cell = UrdfCell(cell_reference.file)
-    external = f"{SEPARATOR} ".join(map(str, urdf_cell.external()))
-    return str(urdf_cell.machine()), external or "none"
+    return str(urdf_cell.machine()), urdf_cell.external()
 
 
-def texts_of_machine(machine: object) -> tuple[str, str]:
-    """Return the same texts from the cell's machine. Raises InputError BAD_VALUE if that is not
+def cell_values_of_machine(machine: object) -> tuple[str, tuple[ExternalMechanism, ...]]:
+    """Return the same values from the cell's machine. Raises InputError BAD_VALUE if that is not
     a URDF.
     """
     cell_reference = reference(machine) if isinstance(machine, str) else None
     if cell_reference is None:
         raise InputError(
             "BAD_VALUE",
-            WHERE,
+            EXTERNAL_KEY,
             "{} needs a machine that is the URDF of the whole cell, such as machine: bay.urdf; "
             "otherwise give a list of mechanisms",
             WHOLE_CELL,
         )
-    return texts_of(cell_reference)
+    return cell_values(cell_reference)
 
 
 def _six(pose: Array) -> Pose:

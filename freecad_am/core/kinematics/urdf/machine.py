@@ -11,7 +11,7 @@ import numpy as np
 
 from ...geometry.located import is_there
 from ...issues import InputError, Text, Word
-from ...parameters.external import WHERE
+from ...parameters.cell_records import EXTERNAL_KEY
 from ...types import Array
 from ..chain import Chain
 from ..inverse import opw_recognition, recognition
@@ -85,7 +85,7 @@ def chain_of(mechanism_reference: Reference) -> Description:
     """Return the chain of a mechanism besides the robot. Raises InputError UNKNOWN_MACHINE
     without the file, BAD_URDF.
     """
-    return external_chain(*_ends(mechanism_reference, WHERE))
+    return external_chain(*_ends(mechanism_reference, EXTERNAL_KEY))
 
 
 def external_chain(robot: Urdf, base: str, tip: str) -> Description:

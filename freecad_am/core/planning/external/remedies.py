@@ -20,8 +20,9 @@ from ...kinematics.arrangement import arrangement_of
 from ...kinematics.machines import machine as machines
 from ...kinematics.machines.machine import Machine
 from ...parameters.cell import CellParameters
-from ...parameters.external import PART, ROBOT, SEPARATOR, WHERE, External, Pose, externals
+from ...parameters.cell_records import EXTERNAL_KEY, PART, ROBOT, ExternalMechanism
 from ...parameters.process import ProcessParameters
+from ...parameters.records import Pose
 from ...toolpath import Toolpath
 from ...types import Array
 
@@ -36,7 +37,7 @@ NOT_LEVEL, AUTO = "NOT_LEVEL", "{} and `cell.branch: auto`"
 
 def move_positioner(settings: CellParameters, folders: Sequence[str]) -> Cells:
     """The positioner, with all that carries the part, nearer to the robot, or farther off; nothing of a cell without one."""
-    named = externals(settings.external)
+    named = settings.external
     carriers = [k for k, mechanism in enumerate(named) if mechanism.carries == PART]
     robot = machines.load(settings.machine, tuple(folders))
     if not carriers or robot.arm is None:
@@ -53,9 +54,12 @@ def move_positioner(settings: CellParameters, folders: Sequence[str]) -> Cells:
             )
         remedy = Text.joined(
             " and ",
-            (Text("`{}[{}].pose: {}`", WHERE, k, _format_pose(changed[k].pose)) for k in carriers),
+            (
+                Text("`{}[{}].pose: {}`", EXTERNAL_KEY, k, _format_pose(changed[k].pose))
+                for k in carriers
+            ),
         )
-        yield remedy, dataclasses.replace(settings, external=_text(changed))
+        yield remedy, dataclasses.replace(settings, external=tuple(changed))
 
 
 def added(
@@ -72,11 +76,7 @@ def added(
     external axes or the robot holds the part.
     """
     robot = machines.load(settings.machine, tuple(folders))
-    if (
-        externals(settings.external)
-        or arrangement_of(settings.setup).carries_part
-        or robot.arm is None
-    ):
+    if settings.external or arrangement_of(settings.setup).carries_part or robot.arm is None:
         return
     platform = np.array(settings.deposition_point[:3])
     points = np.concatenate([bead.points for _, _, bead in toolpath])
@@ -89,12 +89,12 @@ def added(
             face = _face(suited, (0.0,) * 6)
             for position in _before(robot, platform[:2], float(face[2]))[:3]:
                 x, y, _ = position - face
-                mechanism = External(
+                mechanism = ExternalMechanism(
                     suited.id, (float(round(x)), float(round(y)), 0.0, 0.0, 0.0, 0.0), PART
                 )
                 yield (
                     Text(AUTO, _key_text(mechanism)),
-                    dataclasses.replace(settings, external=_text([mechanism]), branch="auto"),
+                    dataclasses.replace(settings, external=(mechanism,), branch="auto"),
                 )
         return
     spans = np.ptp(points, axis=0)
@@ -105,10 +105,10 @@ def added(
     turn = math.atan2(along[1], along[0]) if math.hypot(along[0], along[1]) > 0.5 else 0.5 * math.pi
     for track in external.tracks(robot, folders)[:1]:
         height = float(track.chain.forward(np.zeros(1))[2, 3])
-        mechanism = External(track.id, (0.0, 0.0, -height, 0.0, 0.0, turn), ROBOT)
+        mechanism = ExternalMechanism(track.id, (0.0, 0.0, -height, 0.0, 0.0, turn), ROBOT)
         yield (
             Text(AUTO, _key_text(mechanism)),
-            dataclasses.replace(settings, external=_text([mechanism]), branch="auto"),
+            dataclasses.replace(settings, external=(mechanism,), branch="auto"),
         )
 
 
@@ -152,12 +152,8 @@ def _before(robot: Machine, towards: Array, height: float) -> list[Array]:
     ]
 
 
-def _text(named: Sequence[External]) -> str:
-    return f"{SEPARATOR} ".join(map(str, named))
-
-
-def _key_text(mechanism: External) -> str:
-    return f"`{WHERE}: [{{machine: {mechanism.machine}, pose: {_format_pose(mechanism.pose)}, carries: {mechanism.carries}}}]`"
+def _key_text(mechanism: ExternalMechanism) -> str:
+    return f"`{EXTERNAL_KEY}: [{{machine: {mechanism.machine}, pose: {_format_pose(mechanism.pose)}, carries: {mechanism.carries}}}]`"
 
 
 def _format_pose(pose: Any) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ...issues import WARNING, Issue, Text
-from ...parameters.joints import JointParameters, given_polynomials
+from ...parameters.joints import JointParameters
 from ...toolpath import Bead
 from ..joint_path import BeadPath
 from ..points import gather
@@ -25,7 +25,7 @@ def coefficients(
     parameters: JointParameters, bead_ids: Sequence[Place]
 ) -> dict[int, tuple[float, ...]]:
     """The coefficients given, by number of the bead among the places (layer, index)."""
-    polynomials = given_polynomials(parameters.given)
+    polynomials = {polynomial.bead: polynomial.coefficients for polynomial in parameters.given}
     default = polynomials.get(None)
     by_number = {k: polynomials.get(bead_id, default) for k, bead_id in enumerate(bead_ids)}
     return {k: values for k, values in by_number.items() if values is not None}
@@ -77,9 +77,9 @@ def not_used(parameters: JointParameters, bead_ids: Sequence[Place]) -> list[Iss
             )
         ]
     missing = sorted(
-        bead_id
-        for bead_id in given_polynomials(parameters.given)
-        if bead_id is not None and bead_id not in set(bead_ids)
+        polynomial.bead
+        for polynomial in parameters.given
+        if polynomial.bead is not None and polynomial.bead not in set(bead_ids)
     )
     if not missing:
         return []
