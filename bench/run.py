@@ -46,6 +46,7 @@ BENCHMARKS = (
     "arm",
     "collision",
     "filling",
+    "infill",
     "kinematics",
     "ladder",
     "load",

@@ -20,7 +20,7 @@ LAUNCHED = {
     "demo": r"(-o \S+)?",
     "test": r"(--freecad 1\.[01])? ?(--long)? ?[\w/.]*",
     "docs": r"(\S+)?",
-    "bench": r"(--smallest|kinematics|planning|whole)?",
+    "bench": r"(--smallest|infill|kinematics|planning|whole)?",
 }
 
 
