@@ -225,7 +225,12 @@ def test_decisions_are_numbered_and_whole():
 
 
 def test_every_tool_has_a_page_and_the_index_lists_it():
-    source = (ROOT / "freecad_am" / "gui" / "tools" / "commands.py").read_text(encoding="utf-8")
+    gui = ROOT / "freecad_am" / "gui"
+    commands_source = (gui / "tools" / "commands.py").read_text(encoding="utf-8")
+    texts = [path.read_text(encoding="utf-8") for path in (gui / "families").glob("*.py")]
+    ranks = {int(match[1]): text for text in texts if (match := re.search(r" rank = (\d+)", text))}
+    of_features = "".join(ranks[rank] for rank in sorted(ranks))
+    source = commands_source + of_features
     tools = re.findall(r'Tool\(\s*"(\w+)",\s*marked\("([^"]+)"\)', source)
     pages = [(name, f"{icon.replace('_', '-')}.md") for icon, name in tools]
     index = (DOCS / "tools" / "README.md").read_text(encoding="utf-8")
@@ -235,8 +240,12 @@ def test_every_tool_has_a_page_and_the_index_lists_it():
     assert all(page == f"{icon.replace('_', '-')}.md" for icon, _, page in listed)
     groups = re.search(r"^GROUPS = \((.*?)^\)", source, re.DOTALL | re.MULTILINE)[1]
     commands = dict(re.findall(r'"(\w+)": Tool\(\s*"(\w+)"', source))
+    names = ", ".join(re.findall(r'"\w+": Tool\(', of_features))
+    in_order = groups.replace(
+        "*(name for window in feature_windows() for name in window.tools())", names
+    )
     assert [icon for icon, _, _ in listed] == [
-        commands[name] for name in re.findall(r'"(\w+)"', groups)
+        commands[name] for name in re.findall(r'"(\w+)"', in_order)
     ]
     for name, page in pages:
         assert (DOCS / "tools" / page).read_text(encoding="utf-8").splitlines()[

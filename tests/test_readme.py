@@ -112,12 +112,12 @@ def test_packages_are_those_the_launcher_installs():
 
 
 def test_tools_have_the_names_of_the_toolbar():
-    source = (ROOT / "freecad_am" / "gui" / "tools" / "commands.py").read_text(encoding="utf-8")
+    gui = ROOT / "freecad_am" / "gui"
+    files = [gui / "tools" / "commands.py", *sorted((gui / "families").glob("*.py"))]
+    source = "".join(path.read_text(encoding="utf-8") for path in files)
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     tools = re.findall(r'Tool\(\s*"\w+",\s*marked\("([^"]+)"\)', source)
-    assert len(tools) == len(
-        re.findall(r"\bTool\(", source.split("TOOLS = {")[1].split("def register")[0])
-    )
+    assert len(tools) == len(re.findall(r"\bTool\(", source))
     assert [
         tool for tool in tools if f"**{tool}**" not in readme and f"**[{tool}]" not in readme
     ] == []

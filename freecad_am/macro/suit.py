@@ -19,6 +19,7 @@ from ..core.parameters.filled import SolidParameters
 from ..core.strategies.support import ABOVE_PLATFORM, OVER_PLATFORM, surely_above
 from ..objects import user_machines
 from ..objects.checks.collisions import in_platform
+from ..objects.families.registry import stage_family
 from ..objects.fields import properties
 from ..objects.fields.rows import rows
 from ..objects.planned import suited_cell
@@ -158,10 +159,15 @@ def _mounted(cell: Any, features: Sequence[Any], make: Callable[[], Any]) -> Any
 def _is_above(cell: Any, features: Sequence[Any]) -> bool:
     """Return whether the check will certainly report that a feature begins above the platform."""
     settings, proxy = cell.Proxy.value(cell), features[0].Proxy
-    solid = any(section.cls is SolidParameters for section in proxy.sections)
-    if len(features) > 1 or not solid or settings.platform_diameter <= 0.0:
+    family = stage_family(proxy)
+    if (
+        len(features) > 1
+        or family is None
+        or not family.has_plane_layers
+        or settings.platform_diameter <= 0.0
+    ):
         return False
-    height = proxy.parameters(features[0], SolidParameters).layer_height
+    height = proxy.parameters(features[0], family.parameters).layer_height
     return settings.mount != "feature" and surely_above(proxy.value(features[0]), height)
 
 

@@ -290,7 +290,7 @@ def test_closed_panels_leave_nothing_behind(person, job, coarse):
 
 def test_a_document_closed_while_its_part_is_looked_at(person, hemisphere, monkeypatch):
     """What comes of it belongs to an object that is gone, and so does what is chosen afterwards."""
-    found = job_proposal.JobProposal(job_proposal.REVOLUTION, "", (Pick(hemisphere),))
+    found = job_proposal.JobProposal("revolution", "", (Pick(hemisphere),))
     closed = threading.Event()
 
     def slowly():

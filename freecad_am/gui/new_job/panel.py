@@ -13,22 +13,21 @@ from PySide import QtCore, QtGui
 
 from ... import api
 from ...brep.kernel import limits as kernel
-from ...brep.revolution.wall import find_wall
-from ...brep.shapes import part_depths
-from ...brep.walls.wall_on import named_faces
+from ...core.families.family import NONE
+from ...core.families.registry import DEFAULT_KIND, KINDS
 from ...core.issues import AmError, InputError, Issue
 from ...core.parameters.cell import CellParameters
-from ...core.parameters.filled import GEODESIC, PLANES, DevelopableParameters
+from ...core.parameters.filled import GEODESIC, PLANES
 from ...core.process.deposit import balance as deposit_balance
-from ...objects.developable_feature import found_in
 from ...objects.fields import preferences, saved_cells
-from ...objects.planned.proposed_family import COARSE
-from ...objects.shapes.bodies import Taken, snapshot_of
+from ...objects.shapes.bodies import snapshot_of
 from ...objects.work.progress import Cancelled
 from .. import icons, recorded
 from ..background.busy import carry_out
 from ..background.worker import Background, Worker
 from ..colours import INVALID, PLAIN, set_role
+from ..families.registry import feature_windows, window_of
+from ..families.window import JobProposal
 from ..panels.stage import CLOSED
 from ..picking import picking
 from ..picking.picking import Pick
@@ -39,15 +38,8 @@ from ..widgets.fold import Fold
 from ..widgets.upright import scrolls, upright
 from . import proposal
 from .proposal import (
-    CLADDING,
-    CURVES,
-    DEVELOPABLE,
-    REVOLUTION,
-    SOLID,
-    SURFACE,
     HowItStands,
     JobName,
-    JobProposal,
     Sizes,
     label,
     machines,
@@ -59,54 +51,24 @@ def left_out(job: JobProposal, width: float) -> Callable[[], tuple[Issue, ...]]:
     """Return a function that finds the regions missed by beads of a width, mm; it touches no document.
     Errors of the job are reported when it is made."""
     snapshots, ground = [snapshot_of(pick.obj) for pick in job.parts], job.ground
-    names = job.parts[0].names
     is_same_object = ground is not None and ground.obj == job.parts[0].obj
     under = None if ground is None or is_same_object else snapshot_of(ground.obj)
 
     def work() -> tuple[Issue, ...]:
         try:
-            return deposit_balance.issues(_balance(job, snapshots, names, under, width))
+            balance = window_of(KINDS[job.kind]).balance(job, snapshots, under, width)
+            return deposit_balance.issues(balance)
         except (InputError, *kernel.FAULTS):
             return ()
 
     return work
 
 
-def _balance(
-    job: JobProposal,
-    snapshots: Sequence[Taken],
-    names: tuple[str, ...],
-    under: Taken | None,
-    width: float,
-) -> deposit_balance.Balance | None:
-    snapshot, depths = snapshots[0], None
-    if job.kind == DEVELOPABLE:
-        face_names = () if job.ground is None else job.ground.names
-        base = None if under is None or not face_names else (under, face_names)
-        faces = face_names if under is None else ()
-        solids = found_in(snapshots, faces, under, base, DevelopableParameters(chord_error=COARSE))
-        return deposit_balance.feature_balance(solids, width)
-    if job.kind not in (REVOLUTION, SURFACE) or snapshot.shape is None:
-        return None
-    shape = snapshot.shape.copy(False)
-    if job.kind == REVOLUTION:
-        depths = part_depths.revolved_depths(
-            shape, find_wall(shape, names, label=snapshot.label), snapshot.label
-        )
-    else:
-        faces = tuple(name for name, _ in named_faces(shape, names, snapshot.label))
-        depths = part_depths.face_depths(
-            shape, faces, snapshot.label, None if under is None else under.body()
-        )
-    return None if depths is None else deposit_balance.wall_balance(depths, width)
-
-
 def arguments(job: JobProposal, machine: str, is_chosen: bool) -> dict[str, str]:
     """Return keywords and values as text for a proposed or chosen job, with a machine or a saved cell. If proposed
     curved layers are infeasible, planes are used, as in jobs with `kind: auto`."""
-    pick = job.parts[0]
-    keywords = {"source": recorded.reference(pick.obj)}
-    if job.kind != REVOLUTION:
+    keywords = {"source": recorded.reference(job.parts[0].obj)}
+    if job.kind != DEFAULT_KIND:
         keywords["kind"] = repr(job.kind)
     if job.layers == GEODESIC:
         keywords["layers"] = repr(job.layers)
@@ -114,12 +76,7 @@ def arguments(job: JobProposal, machine: str, is_chosen: bool) -> dict[str, str]
             keywords["layers_otherwise"] = repr(PLANES)
     if job.mend:
         keywords["mend"] = repr(job.mend)
-    if job.kind in (DEVELOPABLE, SOLID):
-        keywords.update(_solid_arguments(job))
-    else:
-        keywords["faces"] = repr(list(pick.names))
-        if job.ground is not None:
-            keywords["substrate"] = recorded.reference(job.ground.obj)
+    keywords.update(window_of(KINDS[job.kind]).arguments(job))
     if saved_cells.is_file_of_cell(machine):
         keywords["cell"] = repr(machine)
     elif machine != CellParameters().machine:
@@ -128,21 +85,6 @@ def arguments(job: JobProposal, machine: str, is_chosen: bool) -> dict[str, str]
         keywords["post"] = repr(preferences.post())
     if preferences.process():
         keywords["process"] = repr(preferences.process())
-    return keywords
-
-
-def _solid_arguments(job: JobProposal) -> dict[str, str]:
-    """Return the solids and their base, which may be the same object, as macro arguments."""
-    source, *further = (pick.obj for pick in job.parts)
-    keywords, ground = {}, job.ground
-    if further:
-        keywords["further"] = f"[{', '.join(recorded.reference(obj) for obj in further)}]"
-    if ground is not None and ground.obj == source:
-        keywords["faces"] = repr(list(ground.names))
-    elif ground is not None:
-        keywords["substrate"] = recorded.reference(ground.obj)
-        if ground.names:
-            keywords["base_faces"] = repr(list(ground.names))
     return keywords
 
 
@@ -160,7 +102,6 @@ def setup(document: Any, name: str) -> str:
     return ""
 
 
-FILLED = (SOLID, DEVELOPABLE, CLADDING)  # families whose beads have a spacing
 WIDEST_LABEL = 70  # pixels; with a wider label the setup box exceeds the panel
 
 
@@ -171,15 +112,8 @@ class JobPanel:
 
     def __init__(self) -> None:
         self.document = App.ActiveDocument
-        self.kinds = {
-            REVOLUTION: tr("Part of revolution"),
-            SURFACE: tr("Wall on a part"),
-            SOLID: tr("Solids in plane layers"),
-            GEODESIC: tr("Solids without support"),
-            DEVELOPABLE: tr("Solids on a hub"),
-            CLADDING: tr("Cladding of faces"),
-            CURVES: tr("Curves as beads"),
-        }
+        windows = sorted(feature_windows(), key=lambda window: window.job_rank)
+        self.kinds = {key: text for window in windows for key, text in window.entries().items()}
         self.picks: list[Pick] = []
         self.found = JobProposal("", "")
         self.asked = ""  # the family the user chose, '' for the one that is proposed
@@ -372,9 +306,11 @@ class JobPanel:
             widget.setText(text)
             widget.setCursorPosition(0)
             widget.setToolTip(text or widget.whatsThis())
-        self.fold.enable(self.ground, job.kind != REVOLUTION)
-        self.fold.enable(self.sizes.width.widget, job.kind not in FILLED)
-        self.fold.enable(self.sizes.spacing.widget, job.kind in FILLED)
+        family = job.family
+        is_filled = family is not None and family.is_filled
+        self.fold.enable(self.ground, family is None or family.substrate != NONE)
+        self.fold.enable(self.sizes.width.widget, not is_filled)
+        self.fold.enable(self.sizes.spacing.widget, is_filled)
         missing = (
             job.missing
             if self.picks
@@ -430,7 +366,7 @@ class JobPanel:
             return False
         try:
             self._wait()
-            if self.found.missing or not self.found.parts:
+            if self.found.missing or not self.found.parts or not self.found.kind:
                 self.say(self.found.missing or self.reason.text())
                 return False
             old_names = {obj.Name for obj in self.document.Objects}
@@ -464,7 +400,7 @@ class JobPanel:
     def _arguments(self) -> dict[str, str]:
         keywords = arguments(self.found, choices.entered(self.machine), bool(self.asked))
         saved = saved_cells.is_file_of_cell(choices.entered(self.machine))
-        sizes = self.sizes.arguments(self.found.kind in FILLED, saved)
+        sizes = self.sizes.arguments(KINDS[self.found.kind].is_filled, saved)
         return {**keywords, **self.stands.arguments(), **self.name.choice.arguments(), **sizes}
 
     def reject(self) -> Any:

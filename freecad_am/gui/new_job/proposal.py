@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import FreeCAD as App
@@ -12,6 +11,10 @@ import FreeCADGui as Gui
 from PySide import QtGui
 
 from ... import api
+from ...core.families.family import NEEDED
+from ...core.families.registry import KINDS
+from ...core.families.solid import Solid
+from ...core.families.surface import Surface
 from ...core.issues import NOTE, WARNING, InputError
 from ...core.kinematics.arrangement import OF_ROBOTS
 from ...core.parameters.build_direction import BuildDirectionParameters
@@ -25,8 +28,10 @@ from ...objects.fields import preferences, saved_cells
 from ...objects.fields.rows import Row, is_expression, name_for, refusal, rows
 from ...objects.planned.proposed_family import Proposal, proposed, stands_on_hub
 from ...objects.results.findings import issues_of
-from ...objects.shapes.bodies import Taken, global_shape, snapshot_of
+from ...objects.shapes.bodies import Taken, snapshot_of
 from ...objects.staleness import FAILED, INFEASIBLE, STALE, UP_TO_DATE
+from ..families.registry import feature_windows, window_of
+from ..families.window import JobProposal, ground_missing, several_elements
 from ..picking import picking, shape_inputs
 from ..picking.picking import Pick
 from ..texts.in_language import sentence, tr, translated
@@ -298,36 +303,6 @@ def _show_whole() -> None:
     Gui.SendMsgToActiveView("ViewFit")
 
 
-# as in job files
-REVOLUTION, SURFACE, DEVELOPABLE, SOLID, CURVES = (
-    "revolution",
-    "surface",
-    "developable",
-    "solid",
-    "curves",
-)
-CLADDING = "cladding"
-
-
-@dataclass(frozen=True)
-class JobProposal:
-    """A family, its reason, the deposited parts and their ground. missing: inputs still to select, '' for none.
-    layers: for solids. mend: size of the largest hole to close, mm, 0 for the default."""
-
-    kind: str
-    reason: str
-    parts: tuple[Pick, ...] = ()
-    ground: Pick | None = None
-    missing: str = ""
-    layers: str = ""
-    mend: float = 0.0
-
-    @property
-    def choice(self) -> str:
-        """The entry of the kinds to choose from."""
-        return self.layers if self.layers == GEODESIC else self.kind
-
-
 def proposal(picks: Sequence[Pick], width: float) -> Callable[[], JobProposal]:
     """Return a function that interprets picks for beads of a width, mm, without touching the document. Raises
     InputError NO_SHAPE; the function raises FAULTY, NO_FACES."""
@@ -338,67 +313,22 @@ def proposal(picks: Sequence[Pick], width: float) -> Callable[[], JobProposal]:
 
 
 def as_kind(choice: str, picks: Sequence[Pick], reason: str) -> JobProposal:
-    """The roles of picks where the family is chosen."""
-    kind, layers = (SOLID, choice) if choice == GEODESIC else (choice, "")
-    if kind == REVOLUTION:
-        if picking.is_mesh(picks[0].obj):
-            return JobProposal(
-                kind,
-                reason,
-                (),
-                None,
-                tr("A part of revolution needs exact faces; {} is a mesh.").format(
-                    picks[0].obj.Label
-                ),
-            )
-        return JobProposal(kind, reason, (picking.expand_pick(picks[0]),))
-    if kind == SURFACE:
-        wall, ground, unclear = picking.proposal(picks)
-        if wall is None:
-            missing = unclear or tr("Select also, with Ctrl, the faces to deposit on {}.").format(
-                picks[0].obj.Label
-            )
-            return JobProposal(kind, reason, (), ground, missing)
-        wall = picking.expand_pick(wall)
-        missing = "" if picking.stands(wall) else _ground_missing(wall, ground)
-        return JobProposal(kind, reason, (wall,), ground, unclear or missing)
-    if kind == CURVES:
-        return JobProposal(
-            kind,
-            reason,
-            (_several_elements(picks[0]),),
-            next((Pick(pick.obj) for pick in picks[1:]), None),
-        )
-    if kind == CLADDING:
-        faces = picking.pick_of_faces(picks[0])
-        solid = not picking.is_mesh(faces.obj) and bool(global_shape(faces.obj).Solids)
-        missing = tr("Click, with Ctrl, the faces to cover.") if solid and not faces.names else ""
-        return JobProposal(
-            kind, reason, (faces,), next((Pick(pick.obj) for pick in picks[1:]), None), missing
-        )
-    if kind == SOLID:
-        return JobProposal(kind, reason, tuple(Pick(pick.obj) for pick in picks), layers=layers)
-    faced = [pick for pick in picks if picking.pick_of_faces(pick).names]
-    if len(picks) == 1:
-        mesh = picking.is_mesh(picks[0].obj)
-        lonely = mesh or (not faced and len(global_shape(picks[0].obj).Solids) < 2)
-        missing = tr("Select also, with Ctrl, the hub: a cylinder or cone.") if lonely else ""
-        ground = picking.pick_of_faces(faced[0]) if faced else None
-        return JobProposal(kind, reason, (Pick(picks[0].obj),), ground, missing)
-    hub = faced[0] if len(faced) == 1 else picks[-1]
-    return JobProposal(
-        kind,
-        reason,
-        tuple(Pick(pick.obj) for pick in picks if pick is not hub),
-        picking.pick_of_faces(hub),
-    )
+    """The roles of picks where the family is chosen, or a kind of layers."""
+    for window in feature_windows():
+        entries = tuple(window.entries())
+        if choice in entries:
+            layers = "" if choice == entries[0] else choice
+            return window.assign_roles(picks, reason, layers)
+    raise KeyError(choice)
 
 
 def taken_whole(job: JobProposal, picks: Sequence[Pick]) -> str:
     """Return a note that one clicked face selects the whole object; '' if it does not apply."""
+    if job.family is not None and window_of(job.family).face_is_base:
+        return ""
     clicked = {pick.obj.Name for pick in picks if len(picking.pick_of_faces(pick).names) == 1}
     for target in job.parts:
-        if job.kind != DEVELOPABLE and not target.names and target.obj.Name in clicked:
+        if not target.names and target.obj.Name in clicked:
             return tr(
                 "The whole of {} is used. To use single faces, click several with Ctrl; for a "
                 "single one, use the panel of Feature or Wall on Part."
@@ -412,7 +342,7 @@ def _propose_for_one(pick: Pick, snapshot: Taken, width: float) -> JobProposal:
     result = proposed(
         snapshot, target.names, None, False, width, True, clicked=() if target.names else clicked
     )
-    if result.kind == DEVELOPABLE:  # hub and solids are of one object
+    if window_of(KINDS[result.kind]).face_is_base:  # hub and solids are of one object
         ground = (
             Pick(pick.obj, clicked)
             if clicked and snapshot.shape is not None and len(snapshot.shape.Solids) < 2
@@ -441,9 +371,11 @@ def _propose_for_several(pairs: Sequence[tuple[Pick, Taken]], width: float) -> J
         if all(snapshot.shape is None or snapshot.shape.Solids for _, snapshot in pairs):
             reason = tr("{} solids are selected, to be filled").format(len(pairs))
             return JobProposal(
-                SOLID, reason, tuple(Pick(pick.obj) for pick in picks), layers=PLANES
+                Solid.kind, reason, tuple(Pick(pick.obj) for pick in picks), layers=PLANES
             )
-        return as_kind(SURFACE, picks, tr("the selection includes an object that is not a solid"))
+        return as_kind(
+            Surface.kind, picks, tr("the selection includes an object that is not a solid")
+        )
     wall, ground, _ = picking.proposal(picks)
     if wall is None or ground is None:  # both are meshes
         wall, ground = picks
@@ -458,17 +390,11 @@ def _propose_for_several(pairs: Sequence[tuple[Pick, Taken]], width: float) -> J
 
 def _as_proposed(result: Proposal, picks: tuple[Pick, ...], ground: Pick | None) -> JobProposal:
     starts = result.stands and picking.is_alone(picks[0].obj)
-    missing = _ground_missing(picks[0], ground) if result.kind == SURFACE and not starts else ""
+    needs_ground = KINDS[result.kind].substrate == NEEDED and not starts
+    missing = ground_missing(picks[0], ground) if needs_ground else ""
     return JobProposal(
         result.kind, translated(result.reason), picks, ground, missing, result.layers, result.mend
     )
-
-
-def _ground_missing(wall: Pick, ground: Pick | None) -> str:
-    """Return what a wall lacks; a mesh may start on the platform."""
-    if ground is not None or picking.is_mesh(wall.obj):
-        return ""
-    return tr("Select also, with Ctrl, the part it grows on.")
 
 
 def _deposit_pick(pick: Pick, snapshot: Taken) -> Pick:
@@ -476,14 +402,9 @@ def _deposit_pick(pick: Pick, snapshot: Taken) -> Pick:
     if snapshot.shape is None:
         return Pick(pick.obj)
     if not snapshot.shape.Faces or sum(name.startswith(picking.EDGE) for name in pick.names) > 1:
-        return _several_elements(pick)
+        return several_elements(pick)
     faces = picking.pick_of_faces(pick)
     return Pick(pick.obj) if len(faces.names) == 1 and len(snapshot.shape.Faces) > 1 else faces
-
-
-def _several_elements(pick: Pick) -> Pick:
-    """Return the pick with its elements; a single one means the whole object."""
-    return pick if len(pick.names) > 1 else Pick(pick.obj)
 
 
 def _copy_shape(pick: Pick) -> Taken:

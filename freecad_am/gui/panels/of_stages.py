@@ -1,18 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of every kind of stage."""
+"""The panel of every kind of stage; families have those of their features."""
 
 from __future__ import annotations
 
 from typing import Any
 
+from ...objects.families.registry import stage_family
+from ..families.registry import window_of
 from ..inspection.panel import InspectionPanel
 from .cell import CellPanel
-from .features.cladding import CladdingPanel
-from .features.curves import CurvesPanel
-from .features.hub import HubPanel
-from .features.revolution import FeaturePanel
-from .features.solid import SolidPanel
-from .features.wall import WallPanel
 from .joint_path import JointPathPanel
 from .program import ProgramPanel
 from .stage import show
@@ -22,12 +18,6 @@ PANELS: dict[type, Any] = {
     panel.stage: panel
     for panel in (
         CellPanel,
-        FeaturePanel,
-        WallPanel,
-        HubPanel,
-        SolidPanel,
-        CladdingPanel,
-        CurvesPanel,
         ToolpathPanel,
         JointPathPanel,
         ProgramPanel,
@@ -38,4 +28,6 @@ PANELS: dict[type, Any] = {
 
 def edit(obj: Any) -> None:
     """Open the panel of an existing stage."""
-    show(PANELS[type(obj.Proxy)](obj))
+    family = stage_family(obj.Proxy)
+    panel = PANELS[type(obj.Proxy)] if family is None else window_of(family).panel()
+    show(panel(obj))

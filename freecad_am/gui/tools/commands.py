@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from ..families.registry import feature_windows
 from ..texts.in_language import marked
 from . import openers, whats_this
 from .freecad_am import add_command
@@ -11,7 +12,7 @@ from .tool import PREFIX, Tool
 # In workflow order, with a separator between groups. Other tools come last.
 GROUPS = (
     ("OpenPart", "NewJob"),
-    ("Cell", "Feature", "WallOnPart", "Solid", "SolidsOnHub", "Curves", "Cladding"),
+    ("Cell", *(name for window in feature_windows() for name in window.tools())),
     ("Toolpath", "JointPath", "SpinMap", "Placement"),
     ("Path", "Simulate"),
     ("Program", "Plots", "Inspect", "ExportPath"),
@@ -38,48 +39,7 @@ TOOLS = {
         marked("Adds a cell: machine, setup, platform and nozzle"),
         openers.cell,
     ),
-    "Feature": Tool(
-        "feature",
-        marked("Feature…"),
-        marked("Deposits the selected shape of revolution"),
-        openers.feature,
-        whats_this.faces,
-    ),
-    "WallOnPart": Tool(
-        "wall_on_part",
-        marked("Wall on Part…"),
-        marked("Deposits the selected faces as a wall on the other selected object"),
-        openers.wall,
-        whats_this.faces,
-    ),
-    "Solid": Tool(
-        "solid",
-        marked("Solid…"),
-        marked("Deposits the selected solids in planar layers"),
-        openers.solid,
-        whats_this.part,
-    ),
-    "SolidsOnHub": Tool(
-        "solids_on_hub",
-        marked("Solids on Hub…"),
-        marked("Deposits the selected solids on the cylinder or cone that is selected last"),
-        openers.hub,
-        whats_this.part,
-    ),
-    "Curves": Tool(
-        "curves",
-        marked("Curves…"),
-        marked("Deposits the selected edges, wires, sketches or tables as beads"),
-        openers.curves,
-        whats_this.document,
-    ),
-    "Cladding": Tool(
-        "cladding",
-        marked("Cladding…"),
-        marked("Covers the selected faces with layers of beads"),
-        openers.cladding,
-        whats_this.faces,
-    ),
+    **{name: tool for window in feature_windows() for name, tool in window.tools().items()},
     "Toolpath": Tool(
         "toolpath",
         marked("Toolpath…"),

@@ -89,54 +89,6 @@ def cell() -> None:
     show(CellPanel())
 
 
-def feature() -> None:
-    """The panel of a new feature of revolution."""
-    from ..panels.features.revolution import FeaturePanel
-    from ..panels.stage import show
-
-    show(FeaturePanel())
-
-
-def wall() -> None:
-    """The panel of a new wall."""
-    from ..panels.features.wall import WallPanel
-    from ..panels.stage import show
-
-    show(WallPanel())
-
-
-def solid() -> None:
-    """The panel of new solids."""
-    from ..panels.features.solid import SolidPanel
-    from ..panels.stage import show
-
-    show(SolidPanel())
-
-
-def curves() -> None:
-    """The panel of new curves."""
-    from ..panels.features.curves import CurvesPanel
-    from ..panels.stage import show
-
-    show(CurvesPanel())
-
-
-def cladding() -> None:
-    """The panel of a new cladding."""
-    from ..panels.features.cladding import CladdingPanel
-    from ..panels.stage import show
-
-    show(CladdingPanel())
-
-
-def hub() -> None:
-    """The panel of new solids on a hub."""
-    from ..panels.features.hub import HubPanel
-    from ..panels.stage import show
-
-    show(HubPanel())
-
-
 def toolpath() -> None:
     """The panel of a new toolpath."""
     from ..panels.stage import show

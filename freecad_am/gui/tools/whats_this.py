@@ -8,6 +8,7 @@ for it in a dialog. So in What's This mode, and only then, clicks on our widgets
 from __future__ import annotations
 
 import contextlib
+import functools
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -15,10 +16,12 @@ from typing import Any
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
+from ...core.families.registry import FAMILIES
 from ...objects.results.findings import message_of
 from ...objects.stage import stage_of
 from ...objects.staleness import INFEASIBLE
 from .. import icons
+from ..families.registry import window_of
 from ..picking.picking import is_mesh, usable
 from ..signals import connect
 from ..texts.in_language import tr, translated
@@ -124,18 +127,19 @@ PAGES = Path(__file__).resolve().parents[3] / "docs" / "tools"
 NAME, INDEX, PREFIX = "RoboticAM_Help", "README.md", "RoboticAM_"
 # of panels and docks that are not called as their tool is
 _CALLED = {
-    "RevolutionFeature": "feature",
-    "SurfaceFeature": "wall-on-part",
-    "DevelopableFeature": "solids-on-hub",
-    "SolidFeature": "solid",
-    "CurvesFeature": "curves",
-    "CladdingFeature": "cladding",
     "PathDock": "path",
     "Simulation": "simulate",
     "ProgramText": "program",
     "Inspection": "inspect",
 }
 _SIZE = (900, 700)
+
+
+@functools.cache
+def _pages() -> dict[str, str]:
+    """Return the pages of panels and docks that are not called as their tool is, by name."""
+    of_features = {f"{type(family).__name__}Feature": window_of(family).page for family in FAMILIES}
+    return {**_CALLED, **of_features}
 
 
 def page_of(name: str) -> str:
@@ -145,7 +149,7 @@ def page_of(name: str) -> str:
     words = "".join(f"-{letter.lower()}" if letter.isupper() else letter for letter in bare).lstrip(
         "-"
     )
-    page = f"{_CALLED.get(bare, words)}.md"
+    page = f"{_pages().get(bare, words)}.md"
     return page if (PAGES / page).is_file() else INDEX
 
 

@@ -9,23 +9,17 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore
 
-from ...objects.cladding_feature import CladdingFeature
-from ...objects.curves_feature import CurvesFeature
-from ...objects.developable_feature import DevelopableFeature
+from ...objects.families.registry import stage_family
 from ...objects.job_group import is_group
-from ...objects.solid_feature import SolidFeature
 from ...objects.stage import Stage
 from .. import registry
 from ..background.busy import carry_out
+from ..families.registry import window_of
 from ..inspection.view import InspectionView
 from ..preferences import watch
 from . import job
 from .base import MODE, StageView
 from .cell import CellView
-from .cladding import CladdingView
-from .curves import CurvesView
-from .feature import FeatureView
-from .hub import HubView, SolidView
 from .joint_path import JointPathView
 from .program import ProgramView
 from .toolpath import ToolpathView
@@ -34,17 +28,10 @@ __all__ = ("attach", "carry_out", "view_of")  # what `objects.hooks` calls, and 
 
 VIEWS: dict[str, type[StageView]] = {
     "cell": CellView,
-    "feature": FeatureView,
     "toolpath": ToolpathView,
     "joint path": JointPathView,
     "program": ProgramView,
     "inspection": InspectionView,
-}
-OF_FAMILIES: dict[type[Stage], type[StageView]] = {
-    DevelopableFeature: HubView,
-    SolidFeature: SolidView,
-    CurvesFeature: CurvesView,
-    CladdingFeature: CladdingView,
 }
 
 _to_be_seen: set[str] = set()
@@ -93,7 +80,8 @@ watch.listen(_preferences_changed)
 
 def view_of(stage: Stage) -> type[StageView]:
     """The view provider of a stage."""
-    return OF_FAMILIES.get(type(stage), VIEWS[stage.kind])
+    family = stage_family(stage)
+    return VIEWS[stage.kind] if family is None else window_of(family).view()
 
 
 def attach(obj: Any) -> None:

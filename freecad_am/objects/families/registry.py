@@ -10,8 +10,9 @@ import functools
 import importlib
 
 from ...core.families.family import Family
-from ...core.families.registry import family_of
+from ...core.families.registry import FAMILIES, family_of
 from ...core.parameters.strategy import LayerParameters
+from ..stage import Stage
 from .planner import FeaturePlanner
 
 
@@ -27,3 +28,9 @@ def planner_of(family: Family) -> FeaturePlanner:
 def planner_for(strategy: LayerParameters) -> FeaturePlanner:
     """Return the planner of a feature with this strategy."""
     return planner_of(family_of(strategy))
+
+
+def stage_family(stage: Stage) -> Family | None:
+    """Return the family of a feature; None for other stages."""
+    sections = {section.cls for section in stage.sections}
+    return next((family for family in FAMILIES if family.parameters in sections), None)

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The side of the window of each family, imported at first need.
+
+`core.families.registry` lists the families; the module here has the kind as its name.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib
+
+from ...core.families.family import Family
+from ...core.families.registry import FAMILIES
+from .window import FeatureWindow
+
+
+@functools.cache
+def window_of(family: Family) -> FeatureWindow:
+    """Return the side of the window of a family."""
+    module = importlib.import_module(f"{__package__}.{family.kind}")
+    window: FeatureWindow = getattr(module, f"{type(family).__name__}Window")()
+    return window
+
+
+def feature_windows() -> list[FeatureWindow]:
+    """Return the sides of all families in the order of their tools."""
+    return sorted(map(window_of, FAMILIES), key=lambda window: window.rank)

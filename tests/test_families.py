@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Modules ask a family of features for facts and do not compare its kind: `core/families` says what follows from it."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+from freecad_am.core.families.registry import AUTO, FAMILIES
+
+PACKAGE = Path(__file__).resolve().parent.parent / "freecad_am"
+KINDS = {family.kind for family in FAMILIES}
+NAMES = {kind.upper() for kind in KINDS}  # constants with the name of a kind
+FEATURE_CLASSES = {family.parameters.__name__ for family in FAMILIES} | {
+    f"{type(family).__name__}Feature" for family in FAMILIES
+}
+WALL_CLASSES = {"RevolvedWall", "PatchWall", "SurfaceWall", "SolidsOnHub", "CladFaces"}
+# comparisons with a kind, and tests of the class of parameters, features and walls; only goes down
+MAX_SWITCHES = 16
+MAX_FILES_OF_A_FAMILY = 12  # that have its kind as a string
+OTHER_WORDS = {  # files in which a word is no kind
+    "brep/files/stl_check.py",
+    "brep/files/three_mf.py",
+    "core/geometry/curves/gcode_roles.py",
+}
+
+
+def modules():
+    """(name below the package, syntax tree) of every module."""
+    for path in sorted(PACKAGE.rglob("*.py")):
+        name = path.relative_to(PACKAGE).as_posix()
+        if name not in OTHER_WORDS:
+            yield name, ast.parse(path.read_text(encoding="utf-8"))
+
+
+def kinds_in(tree):
+    """The kinds that are strings of a syntax tree."""
+    return {
+        node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)
+    } & KINDS  # an unhashable constant does not exist
+
+
+def identifiers(tree):
+    """The names and attributes of a syntax tree."""
+    return {
+        node.id if isinstance(node, ast.Name) else node.attr
+        for node in ast.walk(tree)
+        if isinstance(node, (ast.Name, ast.Attribute))
+    }
+
+
+def is_none(comparison):
+    """Whether a comparison asks for None."""
+    return isinstance(comparison.ops[0], (ast.Is, ast.IsNot))
+
+
+def is_switch(node):
+    """Whether a node compares the kind of a feature, looks it up in a table, or tests a class of a family."""
+    if isinstance(node, ast.Compare):
+        sides = (node.left, *node.comparators)
+        attributes = {side.attr for side in sides if isinstance(side, ast.Attribute)}
+        has_kind = any(kinds_in(side) or identifiers(side) & NAMES for side in sides)
+        return has_kind or ("family" in attributes and not is_none(node))
+    if isinstance(node, ast.Dict):
+        return len(kinds_in(ast.Tuple([key for key in node.keys if key is not None]))) > 1
+    if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "isinstance":
+        return bool(identifiers(node.args[1]) & (FEATURE_CLASSES | WALL_CLASSES))
+    return False
+
+
+def test_switches_on_the_kind_of_a_feature_are_few():
+    found = [
+        f"{name}:{node.lineno}"
+        for name, tree in modules()
+        for node in ast.walk(tree)
+        if is_switch(node)
+    ]
+    assert len(found) <= MAX_SWITCHES, found
+
+
+@pytest.mark.parametrize("kind", sorted(KINDS))
+def test_a_family_is_named_in_few_modules(kind):
+    named = [name for name, tree in modules() if kind in kinds_in(tree)]
+    assert 0 < len(named) <= MAX_FILES_OF_A_FAMILY, named
+
+
+def test_switches_are_recognised():
+    for text in (
+        'toolpath.family == "revolution"',
+        'kind not in ("solid", "curves")',
+        "job.kind == CLADDING",
+        "isinstance(wall, PatchWall)",
+        "isinstance(strategy, (SolidParameters, int))",
+        'PLANNERS = {"solid": plan_solid, "curves": plan_curves}',
+    ):
+        assert any(is_switch(node) for node in ast.walk(ast.parse(text))), text
+    for text in ("toolpath.traits.has_axis", 'kind == "auto"', 'Toolpath(layers, "curves")'):
+        assert not any(is_switch(node) for node in ast.walk(ast.parse(text))), text
+
+
+@pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family.kind)
+def test_the_files_of_a_family_are_complete(family):
+    from freecad_am.objects.families.registry import planner_of, stage_family
+    from freecad_am.objects.planned.feature_kinds import proxy_of
+
+    planner, proxy = planner_of(family), proxy_of(family.kind)
+    assert proxy.__name__ == planner.proxy[1] == f"{type(family).__name__}Feature"
+    assert stage_family(proxy) is family
+    window = (PACKAGE / "gui" / "families" / f"{family.kind}.py").read_text(encoding="utf-8")
+    assert f"class {type(family).__name__}Window(FeatureWindow):" in window
+    for method in ("tools", "panel", "entries", "assign_roles"):
+        assert f"def {method}(" in window, method
+    page = re.search(r'page = "([\w-]+)"', window)[1]
+    assert (PACKAGE.parent / "docs" / "tools" / f"{page}.md").is_file()
+
+
+def test_modes_are_those_of_the_parameter():
+    for family in FAMILIES:
+        assert set(family.modes) <= set(AUTO.modes)
+        assert family.mode_refusal or set(family.modes) == set(AUTO.modes)
