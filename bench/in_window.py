@@ -33,7 +33,7 @@ def freecad() -> str | None:
 def measured(program: str, script: Path, folder: Path, longest: int, **more: str) -> Any:
     """What a script finds; `longest`: s it may take; `more`: of its environment."""
     sys.path.insert(0, str(ROOT))
-    from tests.run import SCREEN, private_home
+    from tests.window import SCREEN, private_home
 
     told = folder / "told.json"
     path = os.pathsep.join([str(script.parent), *filter(None, [os.environ.get("PYTHONPATH")])])

@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Makes FreeCAD importable in whatever Python runs the tests, and skips GUI tests where there is no window."""
 
-import contextlib
 import gc
 import os
 import sys
-import time
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
+
+# xdist gives its workers the path of the process that started them, in PYTHONPATH too, which commands would inherit
+if "PYTEST_XDIST_WORKER" in os.environ:
+    os.environ.pop("PYTHONPATH", None)
+module_path = os.environ.get("FREECAD_MODULE_PATH", "").split(os.pathsep)  # tests/gui_runner.py
+sys.path += [folder for folder in module_path if folder and folder not in sys.path]
 
 from freecad_am.batch import host  # noqa: E402
 
@@ -24,7 +28,7 @@ if (
 ):  # as commands have it (freecad_am/batch/boot.py): a tenth of the time of what is computed here
     gc.set_threshold(300_000, 50, 50)
 
-WHY, LONGEST = 6, 220  # lines of why a test failed, and characters of each
+REASON_LINES, REASON_WIDTH = 6, 220  # of a failed test in the summary
 
 
 def pytest_addoption(parser):
@@ -84,41 +88,25 @@ def pytest_collection_modifyitems(config, items):
             )
 
 
-def used():
-    """s of the processor of this process, of those that it has started, and of theirs that ended."""
-    ticks = 0
-    for thread in os.listdir("/proc/self/task"):
-        started = ""
-        with contextlib.suppress(OSError):  # the thread has just ended
-            started = Path(f"/proc/self/task/{thread}/children").read_text(encoding="ascii")
-        for process in started.split():
-            with contextlib.suppress(OSError, ValueError):  # it has just ended
-                stat = Path(f"/proc/{process}/stat").read_text(encoding="utf-8", errors="replace")
-                ticks += sum(map(int, stat.rpartition(")")[2].split()[11:15]))
-    return sum(os.times()[:4]) + ticks / os.sysconf("SC_CLK_TCK")
-
-
-@pytest.hookimpl(hookwrapper=True)
-def pytest_runtest_protocol(item):
-    """Adds what a test took, and the fixtures made for it, to the file of TEST_TIMES: s, s of processor, name."""
-    file = os.environ.get("TEST_TIMES")
-    began, before = time.monotonic(), used() if file else 0.0
-    yield
-    if file:
-        with open(file, "a", encoding="utf-8") as stream:
-            stream.write(f"{time.monotonic() - began:.2f}\t{used() - before:.2f}\t{item.nodeid}\n")
+@pytest.hookimpl(optionalhook=True, tryfirst=True)
+def pytest_handlecrashitem():
+    """A crash is a failure: no plugin runs the test once more."""
+    return True
 
 
 def pytest_terminal_summary(terminalreporter):
-    """Names what failed and the first lines of why, for the end of tests/run.py, which may be all that is seen of a run."""
-    for kind in ("failed", "error"):
-        for report in terminalreporter.stats.get(kind, ()):
-            crash = getattr(report.longrepr, "reprcrash", None)
-            shown = str(report.longrepr).splitlines()[-WHY:]
-            if crash:
-                shown = [f"{crash.path}:{crash.lineno}", *crash.message.splitlines()][:WHY]
-            told = "".join(f"\n    {line[:LONGEST]}" for line in shown)
-            terminalreporter.write_line(f"failed: {report.nodeid}{told}")
+    """Print the failures and totals that tests/run.py sums up."""
+    stats = terminalreporter.stats
+    failed = [*stats.get("failed", ()), *stats.get("error", ())]
+    for report in failed:
+        crash = getattr(report.longrepr, "reprcrash", None)
+        lines = str(report.longrepr).splitlines()[-REASON_LINES:]
+        if crash:
+            lines = [f"{crash.path}:{crash.lineno}", *crash.message.splitlines()][:REASON_LINES]
+        reason = "".join(f"\n    {line[:REASON_WIDTH]}" for line in lines)
+        terminalreporter.write_line(f"failed: {report.nodeid}{reason}")
+    passed, skipped = (len(stats.get(outcome, ())) for outcome in ("passed", "skipped"))
+    terminalreporter.write_line(f"total: {passed} passed, {len(failed)} failed, {skipped} skipped")
 
 
 @pytest.fixture

@@ -151,6 +151,7 @@ def application(saved, **program):
     FreeCAD.closeDocument(document.Name)
 
 
+@pytest.mark.any_version
 def test_what_an_earlier_longer_export_left_is_removed_and_nothing_else(workshop, saved):
     application(saved, MaxPoints=200)
     done = workshop.run("export", saved, "-o", "out")
@@ -181,6 +182,7 @@ def test_what_an_earlier_longer_export_left_is_removed_and_nothing_else(workshop
     assert files["program/first/start.pgx"] != longer["program/first/start.pgx"]
 
 
+@pytest.mark.any_version
 def test_what_cannot_be_carried_out_is_status_3(workshop, saved):
     document = FreeCAD.openDocument(str(saved))
     (cell,) = api.stages_of(document, "cell")

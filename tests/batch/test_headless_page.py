@@ -11,7 +11,7 @@ import subprocess
 
 import pytest
 
-from tests.run import private_home
+from tests.window import private_home
 
 LONGEST = 300  # s
 

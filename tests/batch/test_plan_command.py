@@ -62,6 +62,7 @@ def test_a_whole_job(workshop):
     assert report["comparison"] == []
 
 
+@pytest.mark.any_version
 def test_the_page_is_one_file_that_parses(workshop):
     workshop.change(
         "travel_speed: 6 mm/s",
@@ -148,6 +149,7 @@ def test_the_same_job_gives_the_same_bytes(workshop):
     assert all(one[name] == two[name] for name in same)
 
 
+@pytest.mark.any_version
 def test_sections_left_out_end_the_job_early(workshop):
     no_program = workshop.text[: workshop.text.index("program:")]
     workshop.write_job(no_program)
@@ -167,6 +169,7 @@ def test_sections_left_out_end_the_job_early(workshop):
     )
 
 
+@pytest.mark.any_version
 def test_an_infeasible_job_writes_all_but_the_program(workshop):
     assert workshop.run("plan", "cup.yaml", "--no-page").status == 0
     out = workshop.folder / "out" / "cup"
@@ -198,6 +201,7 @@ def test_an_infeasible_job_writes_all_but_the_program(workshop):
     assert rows[0]["q1_deg"] == "" and rows[0]["x_mm"] != ""
 
 
+@pytest.mark.any_version
 def test_a_toolpath_that_cannot_be_deposited_is_reported_too(workshop):
     workshop.change("cell:\n", "build_direction: {tilt: 60 deg, max_tilt: 10 deg}\ncell:\n")
     done = workshop.run("plan", "cup.yaml")
@@ -210,6 +214,7 @@ def test_a_toolpath_that_cannot_be_deposited_is_reported_too(workshop):
     assert report["status"] == "infeasible" and report["joints"] is None
 
 
+@pytest.mark.any_version
 def test_a_run_of_another_name_takes_the_place_of_the_last(workshop):
     assert workshop.run("plan", "cup.yaml", "-o", "out", "--no-page").status == 0
     workshop.change("name: cup", "name: bowl")
@@ -231,6 +236,7 @@ def test_spaces_and_accents(workshop):
     assert "Käse Glocke n° 1.FCStd" in workshop.files(folder)
 
 
+@pytest.mark.any_version
 def test_through_a_link_and_from_elsewhere(workshop, tmp_path_factory):
     link = tmp_path_factory.mktemp("bin") / "am"
     link.symlink_to(workshop.launcher)
@@ -317,6 +323,7 @@ def test_a_folder_that_cannot_be_written(workshop, folder):
     assert (workshop.folder / "taken").read_text() == "a file, not a folder"
 
 
+@pytest.mark.any_version
 def test_folders_in_the_place_of_files_leave_all_as_it_was(workshop):
     (workshop.folder / "out" / "cup" / "waypoints.csv").mkdir(parents=True)
     (workshop.folder / "out" / "cup" / "report.json").write_text("{}")
@@ -351,6 +358,7 @@ def test_usage_errors(workshop, words, says):
     assert "Traceback" not in done.err
 
 
+@pytest.mark.any_version
 def test_machines_lists_those_that_plan_accepts(workshop):
     done = workshop.launch("machines")
     assert done.status == 0 and done.err == ""
@@ -374,6 +382,7 @@ def test_machines_lists_those_that_plan_accepts(workshop):
     assert json.loads(workshop.files()["report.json"])["machine"]["id"] == "my-robot"
 
 
+@pytest.mark.any_version
 def test_progress_shows_on_a_terminal_and_is_gone_at_the_end(workshop):
     import os
     import pty
@@ -403,6 +412,7 @@ def test_progress_shows_on_a_terminal_and_is_gone_at_the_end(workshop):
     assert "\x1b" not in text[last + 12 :]
 
 
+@pytest.mark.any_version
 def test_a_large_job_is_told_before_its_work(workshop):
     """670,000 points: the line is there while the work goes on, which is then interrupted."""
     workshop.write_job(

@@ -149,6 +149,7 @@ def test_window_and_slanted_end():
     assert kinds[True] > 40.0 and kinds[False] == pytest.approx(25.0, abs=1.0)
 
 
+@pytest.mark.any_version
 def test_splines_loft_and_pipe():
     points = [Vector(0, 0, 0), Vector(0, 5, 40), Vector(20, 10, 80), Vector(60, 5, 110)]
     path = Part.BSplineCurve()
@@ -231,6 +232,7 @@ def oval(turned=0.0):
     return skin.rotated(Vector(), Vector(1, 0, 0), turned)
 
 
+@pytest.mark.any_version
 def test_what_stands_on_the_platform_needs_no_substrate_either():
     """Faces that are not sewn; their common edges are none to start from."""
     wall = wall_on(oval(), (), None, 4.0, "Vase")
@@ -329,6 +331,7 @@ def blade():
     return skin.toShape()
 
 
+@pytest.mark.any_version
 @pytest.mark.parametrize(
     ("make", "substrate", "height", "code", "words"),
     [
@@ -406,6 +409,7 @@ def test_the_mesh_of_a_slanted_tube_has_no_edges_across(radius, tall, lean, edge
     np.testing.assert_allclose(np.hypot(x - lean * z, y), radius, atol=1e-9)
 
 
+@pytest.mark.any_version
 def test_the_mesh_of_a_slanted_tube_that_is_cut_has_no_edges_across():
     """Edges that were turned stayed as long as they were, round for round: the mesh was given back unfinished, and to look
     where it cuts itself took more than a minute."""

@@ -14,6 +14,8 @@ from freecad_am.brep.shapes.tessellate import tessellated
 from freecad_am.core.geometry.mesh.refined import Edges
 from freecad_am.core.issues import InputError
 
+pytestmark = pytest.mark.any_version
+
 CHORD = 0.0015
 
 

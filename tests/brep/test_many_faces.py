@@ -77,6 +77,7 @@ def test_a_thousand_faces_that_are_not_of_revolution_are_soon_refused(make, look
     assert len(looks) < len(part.Faces)
 
 
+@pytest.mark.any_version
 def test_hundreds_of_rings_are_one_wall(looks):
     wall = find_wall(ribbed())
     steps = [

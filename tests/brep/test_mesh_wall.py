@@ -16,6 +16,8 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
 from freecad_am.core.strategies.walls import fronts as wall_fronts
 
+pytestmark = pytest.mark.any_version
+
 SIDES = 60
 
 

@@ -14,6 +14,8 @@ from freecad_am.brep.shapes.off_part import off_edges, off_faces, off_mesh, off_
 from freecad_am.objects import toolpath as stage
 from freecad_am.objects.planned import in_sequence
 
+pytestmark = pytest.mark.any_version
+
 
 @pytest.fixture
 def rng():

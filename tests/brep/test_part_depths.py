@@ -16,6 +16,8 @@ from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import InputError
 from freecad_am.core.process.deposit import balance as deposit_balance
 
+pytestmark = pytest.mark.any_version
+
 Z = Vector(0, 0, 1)
 WIDTH = 8.0
 

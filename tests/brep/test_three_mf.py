@@ -17,6 +17,8 @@ from freecad_am.core.geometry.mesh.repair import repair_mesh
 from freecad_am.core.geometry.mesh.solid import SolidMesh
 from freecad_am.core.issues import InputError
 
+pytestmark = pytest.mark.any_version
+
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3]], dtype=float)  # a volume of 1
 FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 PRODUCTION = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06"

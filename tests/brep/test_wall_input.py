@@ -312,6 +312,7 @@ def test_first_layers_on_meshes_are_as_good_as_the_facets(angle):
     assert "about the error of the mesh itself" in wall.issues[0].message
 
 
+@pytest.mark.any_version
 def test_a_large_mesh():
     ball = Mesh.createSphere(40.0, 330)
     assert ball.CountFacets > 200000

@@ -13,6 +13,8 @@ from freecad_am.core.parameters.strategy import SurfaceParameters
 from freecad_am.core.slicing.fronts import layers as fronts
 from freecad_am.core.strategies.walls import fronts as wall_fronts
 
+pytestmark = pytest.mark.any_version
+
 LONG, WIDE, ROUND, HEIGHT = 26.0, 20.0, 6.0, 3.0
 
 

@@ -10,6 +10,8 @@ from freecad_am.brep import hub
 from freecad_am.brep.shapes.tessellate import fine
 from freecad_am.core.geometry.mesh.solid import SolidMesh
 
+pytestmark = pytest.mark.any_version
+
 TORUS = Part.makeTorus(20.0, 5.0)
 
 

@@ -20,7 +20,7 @@ from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.gui.widgets import fields
 from freecad_am.gui.widgets.quantity import PlainQuantity, QuantityField
 from freecad_am.objects.fields.rows import rows
-from tests import run
+from tests.window import private_home
 
 NO_BREAK = "\u00a0"
 
@@ -257,7 +257,7 @@ def test_freecad_that_starts_in_french_shows_ours(tmp_path):
         encoding="utf-8",
     )
     with tempfile.TemporaryDirectory() as folder:
-        env = run.private_home(Path(folder))
+        env = private_home(Path(folder))
         profile = Path(folder) / "user.cfg"
         profile.write_text(
             profile.read_text(encoding="utf-8").replace(">English<", ">French<"), encoding="utf-8"

@@ -11,7 +11,7 @@ import subprocess
 
 import pytest
 
-from tests import run
+from tests.window import ROOT, private_home
 
 TIMEOUT = 500  # s, on a busy machine
 
@@ -31,15 +31,15 @@ def test_all_is_read_and_seen(tmp_path, screen, dpi, pages):
     home.mkdir()
     seen.mkdir()
     env = {
-        **run.private_home(home),
+        **private_home(home),
         "LOOKS_FOLDER": str(seen),
         "LOOKS_PAGES": pages,
-        "LOOKS_ROOT": str(run.ROOT),
+        "LOOKS_ROOT": str(ROOT),
         "QT_FONT_DPI": dpi,
     }
     options = f"-screen 0 {screen}x24 -dpi 96 -nolisten tcp"
     program = shutil.which("freecad") or shutil.which("FreeCAD")
-    script = str(run.ROOT / "tests" / "gui" / "looks.py")
+    script = str(ROOT / "tests" / "gui" / "looks.py")
     subprocess.run(
         ["xvfb-run", "-a", "-f", str(home / "Xauthority"), "-s", options]
         + ["timeout", str(TIMEOUT), program, script],

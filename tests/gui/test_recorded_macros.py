@@ -11,7 +11,7 @@ import FreeCAD as App
 import pytest
 
 from freecad_am.gui.tools import commands
-from tests import run
+from tests.window import ROOT, private_home
 
 TIMEOUT = 90  # s
 # ends FreeCAD's window with what came of the macro
@@ -91,7 +91,7 @@ def _play(macro, tmp_path, window):
     # a window that stays open because its macro failed is ended, and its output read
     ended = subprocess.run(
         ["timeout", str(TIMEOUT), program, str(played)],
-        env=run.private_home(home),
+        env=private_home(home),
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
@@ -144,7 +144,7 @@ def test_every_command_records_a_module_that_can_be_imported(person, recorder, h
     assert "freecad_am" in names
     python = (
         "import sys, importlib\n"
-        f"sys.path[:0] = [{str(run.ROOT)!r}]\n"
+        f"sys.path[:0] = [{str(ROOT)!r}]\n"
         f"[importlib.import_module(name) for name in {sorted(names - {'FreeCAD', 'PartGui'})!r}]"
     )
     ended = subprocess.run(

@@ -5,6 +5,7 @@ import subprocess
 
 import FreeCAD as App
 import numpy as np
+import pytest
 
 from freecad_am import api
 from freecad_am.gui.path.dock import facts
@@ -120,6 +121,7 @@ def test_a_document_made_without_a_window_shows_its_path(person, root, tmp_path)
     assert_shown(person, App.openDocument(str(tmp_path / "again.FCStd")))
 
 
+@pytest.mark.any_version
 def test_directions_and_infeasible_points_are_drawn_on_demand(person, hemisphere, no_remedies):
     document = hemisphere.Document
     cell = api.make_cell(document, limits="paper")

@@ -229,6 +229,7 @@ def test_a_job_copied_by_keys_into_another_document(person, hand, job):
     assert set(statuses(other)) == {"up to date"}
 
 
+@pytest.mark.any_version
 def test_a_parameter_follows_a_spreadsheet_until_that_goes(person, hand, job):
     sheet = job.addObject("Spreadsheet::Sheet", "Sizes")
     sheet.set("A1", "=12 mm")

@@ -67,6 +67,7 @@ def polylines(path):
     return found
 
 
+@pytest.mark.any_version
 def test_motion_and_toolpath_give_the_same_beads(job):
     planned = api.result(job)
     ours, theirs = (

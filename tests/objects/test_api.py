@@ -429,6 +429,7 @@ def test_a_users_own_machine_is_known_by_its_name(doc, part, tmp_path, monkeypat
     assert cell.Key != key and "ours" in cell.MachineTitle
 
 
+@pytest.mark.any_version
 @pytest.mark.parametrize("machine", ["kuka-kr6-r900-2", "motoman-ma2010", "staubli-tx60"])
 def test_a_new_job_of_another_robot_can_be_carried_out(doc, monkeypatch, machine, no_remedies):
     """At the deposition point and in the branch of the default robot each of these is out of reach or past a limit."""
@@ -464,6 +465,7 @@ def test_a_new_job_puts_a_part_that_lies_about_its_origin_on_the_platform(doc):
     assert files_of(program) == files_of(above)
 
 
+@pytest.mark.any_version
 @pytest.mark.parametrize(("seconds", "long"), [(0.0, True), (3600.0, False)])
 def test_remedies_that_take_long_are_told_before_they_are_looked_for(
     doc, part, monkeypatch, seconds, long
@@ -507,6 +509,7 @@ def test_a_new_job_is_written_in_the_motion_that_the_controller_has(machine, set
     assert controllers.post_of(settings, "", ()) == written
 
 
+@pytest.mark.any_version
 def test_a_new_job_of_a_kuka_robot_with_the_torch_ends_with_a_program(doc, part, monkeypatch):
     make = api.make_feature_of
     monkeypatch.setattr(

@@ -13,6 +13,8 @@ from freecad_am import api
 from freecad_am.core.issues import InputError
 from freecad_am.core.strategies import size
 
+pytestmark = pytest.mark.any_version
+
 UP = App.Vector(0, 0, 1)
 HUB, HEIGHT = 30.0, 120.0
 CONE = math.atan2(HUB, HEIGHT)

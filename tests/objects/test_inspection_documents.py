@@ -11,6 +11,8 @@ from freecad_am import api
 from freecad_am.core.inspection import surfaces
 from freecad_am.core.issues import InputError
 
+pytestmark = pytest.mark.any_version
+
 SETTINGS = {"probe_radius": 1.5, "tolerance": 0.1, "heights": "15 25 35"}
 
 

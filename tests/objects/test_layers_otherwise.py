@@ -7,6 +7,8 @@ from freecad_am import api
 from freecad_am.core.issues import InputError
 from tests.batch.test_auto_jobs import tee
 
+pytestmark = pytest.mark.any_version
+
 ROBOT, TOOL = (
     "kuka-kr16-2",
     "tool-on-robot",

@@ -9,6 +9,8 @@ import pytest
 
 from freecad_am import api
 
+pytestmark = pytest.mark.any_version
+
 # bytes a point at the peak, of all that is kept by then too. Packing has no fixed cost any more, so that the small job no
 # longer hides what the read-back of a program takes.
 MOST = 2200.0

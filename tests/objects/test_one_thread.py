@@ -17,6 +17,8 @@ import pytest
 
 from freecad_am.core import one_thread
 
+pytestmark = pytest.mark.any_version
+
 ROOT = Path(__file__).resolve().parent.parent.parent
 VASE = """
 import FreeCAD

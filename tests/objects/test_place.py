@@ -11,6 +11,7 @@ HIGH = (1045.747, -630.155, 2153.167, 0, 0, 0)  # out of reach
 BOX = {"x": 0, "y": 0, "z": "1500 mm", "step": "500 mm", "points": 60}
 
 
+@pytest.mark.any_version
 def test_the_best_pose_of_a_macro_makes_the_job_feasible(doc, no_remedies):
     part = doc.addObject("Part::Feature", "Cup")
     part.Shape = Part.makeCylinder(30.0, 20.0)

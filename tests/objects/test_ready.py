@@ -25,6 +25,8 @@ from freecad_am.objects.joint_path import planned_of
 from freecad_am.objects.shapes import cell_obstacles
 from tests.kdl_links import KdlLinks
 
+pytestmark = pytest.mark.any_version
+
 V = App.Vector
 OUTER, INNER, HALF, BRANCH = 60.0, 52.0, 150.0, 25.0
 WRIST = (

@@ -16,6 +16,8 @@ from freecad_am.objects import program as programs
 from freecad_am.posts.fanuc import post as fanuc
 from tests.posts.driven import Drive, depth_in_hub
 
+pytestmark = pytest.mark.any_version
+
 HUB, TOP = Developable(60.0, 270.0), 90.0
 # mm: what looks 5 deg apart may miss
 DEEP = 0.5

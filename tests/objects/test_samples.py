@@ -11,6 +11,8 @@ from freecad_am import api
 from freecad_am.objects.results import store
 from freecad_am.objects.results.findings import issues_of, message_of
 
+pytestmark = pytest.mark.any_version
+
 SAMPLES = ("hemisphere", "tube-on-pipe")
 # on the tube last bits of the processor's libraries decide how many points a bead gets, 1,167 or 1,197
 # in all, and so the speeds of the axes by 0.3 and the condition by 2 %

@@ -11,6 +11,8 @@ from freecad_am.core.issues import InputError
 from freecad_am.objects.checks import preflight
 from tests.core.inspection.test_scan import bent, points_on
 
+pytestmark = pytest.mark.any_version
+
 
 def heights(toolpath):
     return np.vstack([bead.points for bead in api.result(toolpath).layers[0].beads])

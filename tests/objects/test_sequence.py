@@ -8,6 +8,8 @@ import pytest
 from freecad_am import api
 from freecad_am.core.issues import InputError
 
+pytestmark = pytest.mark.any_version
+
 COARSE = {"layer_height": 5, "chord_error": 0.2, "bead_spacing": 5}
 
 

@@ -17,6 +17,8 @@ from freecad_am.core.layers.planes import field as planes
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.objects.planned import toolpaths
 
+pytestmark = pytest.mark.any_version
+
 UP = App.Vector(0, 0, 1)
 FAST = {"layer_height": 5, "chord_error": 0.1, "bead_spacing": 5}
 EXAMPLE = Path(__file__).parents[2] / "resources" / "examples" / "bracket.step"

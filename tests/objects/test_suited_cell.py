@@ -18,6 +18,8 @@ from freecad_am.core.parameters.cell_records import EXTERNAL
 from freecad_am.core.planning import suited
 from freecad_am.macro import suit
 
+pytestmark = pytest.mark.any_version
+
 ROBOT, TOOL, MOST = "kuka-kr8-r2100-2-arc-hw", "tool-on-robot", 10.0
 COARSE = {"layer_height": 15.0, "chord_error": 0.3}
 

@@ -32,6 +32,7 @@ def made(doc, tube, **values):
     )
 
 
+@pytest.mark.any_version
 def test_feature_and_toolpath(doc, tube):
     feature = made(doc, tube)
     wall = api.result(feature)
@@ -46,6 +47,7 @@ def test_feature_and_toolpath(doc, tube):
     assert max(bead.points[:, 2].max() for _, _, bead in value) == pytest.approx(60.0, abs=1e-6)
 
 
+@pytest.mark.any_version
 def test_a_tube_is_planned_by_fronts_where_that_is_chosen(doc, tube):
     """Of a cylinder on a pipe of another size: points of a layer of fronts against the axes of both, by hand."""
     feature = made(doc, tube, method="fronts", layer_height=6)
@@ -69,6 +71,7 @@ def test_a_tube_is_planned_by_fronts_where_that_is_chosen(doc, tube):
         made(doc, tube, method="fronts", spacing="iso-parameter")
 
 
+@pytest.mark.any_version
 def test_renewed_when_the_substrate_changes(doc, tube):
     feature = made(doc, tube)
     toolpath = api.make_toolpath(doc, feature)
@@ -81,6 +84,7 @@ def test_renewed_when_the_substrate_changes(doc, tube):
     assert np.hypot(start[:, 0], start[:, 2]) == pytest.approx(25.0, abs=1e-4)
 
 
+@pytest.mark.any_version
 def test_a_wall_that_reaches_below_the_platform_is_refused_with_its_depth(doc, tube):
     """The wall begins on the pipe 16 mm above its middle or, beside it, where the pipe is 29.66 mm high."""
     for obj in tube:
@@ -137,6 +141,7 @@ def post(doc, as_mesh):
     return found
 
 
+@pytest.mark.any_version
 @pytest.mark.parametrize(
     "as_mesh", [False, pytest.param(True, marks=pytest.mark.long)], ids=["solid", "mesh"]
 )
@@ -159,6 +164,7 @@ def test_fixtures_count_and_renew_the_toolpath(doc, tube, as_mesh):
     assert len(api.result(feature).surroundings) == 1
 
 
+@pytest.mark.any_version
 def test_tilts_that_take_long_are_told_before_they_are_searched_for(doc, tube, monkeypatch):
     feature = made(doc, tube, clearance="nozzle", chord_error=0.1, fixtures=[post(doc, False)])
     monkeypatch.setattr(
@@ -173,6 +179,7 @@ def test_tilts_that_take_long_are_told_before_they_are_searched_for(doc, tube, m
         api.make_toolpath(doc, feature)
 
 
+@pytest.mark.any_version
 def test_fixtures_of_a_part_of_revolution_are_looked_at(doc, tube):
     fixture = post(doc, False)
     feature = api.make_feature(doc, tube[0], ["Face1"], layer_height=5, fixtures=[fixture])
@@ -188,6 +195,7 @@ def test_fixtures_of_a_part_of_revolution_are_looked_at(doc, tube):
     assert not [issue for issue in api.issues(doc.Toolpath) if issue.level == "error"]
 
 
+@pytest.mark.any_version
 def test_needs_a_solid_substrate(doc, tube):
     tube[0].Placement = App.Placement(
         App.Vector(), App.Rotation(App.Vector(1, 0, 0), 20)

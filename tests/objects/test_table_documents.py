@@ -54,6 +54,7 @@ def test_a_table_is_there_after_reopening(job, tmp_path):
         FreeCAD.closeDocument(again.Name)
 
 
+@pytest.mark.any_version
 @pytest.mark.parametrize(
     "cell",
     [

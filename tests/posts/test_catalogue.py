@@ -9,6 +9,8 @@ import pytest
 
 from freecad_am.posts import catalogue
 
+pytestmark = pytest.mark.any_version
+
 GOLDEN = Path(__file__).resolve().parent.parent / "golden"
 
 

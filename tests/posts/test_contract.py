@@ -17,6 +17,8 @@ from tests.posts import planned_jobs
 from tests.posts.driven import Drive, bead_body, depth_in_hub, depths_in_nozzle
 from tests.posts.planned_jobs import CHORD_ERROR, HEIGHT, SETUPS, SPANNING, WAYS, WIDTH, written
 
+pytestmark = pytest.mark.any_version
+
 # mm: how deep the nozzle may touch: looks 0.5 mm apart, and digits; and how far digits and chords lead away
 DEEP, APART = 0.3, 0.15
 CARTESIAN = ("fanuc", "cartesian", "time", "fanuc tool-on-robot")

@@ -12,6 +12,8 @@ from freecad_am.read_back import followed
 from tests.posts.driven import Drive
 from tests.posts.planned_jobs import SPANNING, WAYS, written
 
+pytestmark = pytest.mark.any_version
+
 # mm and rad by which the digits of texts lead away, and s that they are rounded by
 APART, TURNED, LATE = 0.03, np.radians(0.02), 0.1
 

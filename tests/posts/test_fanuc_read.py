@@ -10,6 +10,8 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.program import DepositOff, DepositOn, Moves
 from freecad_am.posts.fanuc import post as fanuc
 
+pytestmark = pytest.mark.any_version
+
 HALF_DIGIT = 0.0005
 
 # an independent hand-written listing, as the pendant would list it

@@ -12,6 +12,8 @@ from freecad_am.posts import catalogue
 from freecad_am.posts.fanuc import post as fanuc
 from tests.posts.fanuc_programs import GOLDEN_JOINT, GOLDEN_TABLE, beads, moves, program, refusal
 
+pytestmark = pytest.mark.any_version
+
 
 @pytest.mark.parametrize(("name", "why", "proposal"), [
     ("", "empty", "AM"),

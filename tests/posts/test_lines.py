@@ -11,6 +11,8 @@ from freecad_am.posts import catalogue
 from freecad_am.posts.catalogue import lines_of
 from tests.posts.planned_jobs import SPANNING, WAYS, written
 
+pytestmark = pytest.mark.any_version
+
 NUMBER = re.compile(rb"-?\d+\.\d+")
 INDEX = re.compile(rb"(?<=P\[)\d+|(?<=MOV[JL] C)\d+")
 

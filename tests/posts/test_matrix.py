@@ -16,6 +16,8 @@ from freecad_am.objects.checks import controllers
 from freecad_am.posts import catalogue
 from tests.posts.planned_jobs import PULSES, WAYS
 
+pytestmark = pytest.mark.any_version
+
 ROBOTS = {  # one that reads each post
     "fanuc": "fanuc-arcmate120ic",
     "staubli": "staubli-rx60bl",

@@ -16,6 +16,8 @@ from freecad_am.verify import verify
 from tests.posts.mutations import KINDS, SMALLEST, mutated, stepped
 from tests.posts.planned_jobs import CHORD_ERROR, SPANNING, WAYS, written
 
+pytestmark = pytest.mark.any_version
+
 DRAWS = 2
 PARTS = 40  # points: the same job in parts
 

@@ -9,6 +9,8 @@ from freecad_am.posts.linuxcnc import post as linuxcnc
 from freecad_am.posts.nc import read as nc_read
 from freecad_am.posts.siemens import post as siemens
 
+pytestmark = pytest.mark.any_version
+
 # as others write them: short numbers, words in another order, lower case, remarks behind blocks
 MAIN = """; by hand
 N10 G17 G40 G710 G90 G54 D2

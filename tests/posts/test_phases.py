@@ -25,6 +25,8 @@ from tests.posts.planned_jobs import (
 )
 from tests.programs import build
 
+pytestmark = pytest.mark.any_version
+
 FASTER = 1.05  # more than the coarsest steps of a text explain, of a hundredth of VJ
 
 

@@ -12,6 +12,8 @@ import pytest
 
 from tests.posts.planned_jobs import SETUPS, SIDES, WAYS, _bead, wanted_speeds, written
 
+pytestmark = pytest.mark.any_version
+
 MACHINES = Path(__file__).parents[2] / "freecad_am" / "machines"
 # mm off the bead: its chords and digits; mm by which the digits of both ends of a move, and half a millisecond, change its
 # length; and the share of a bead's speed that chords explain

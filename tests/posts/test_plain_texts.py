@@ -14,6 +14,8 @@ import pytest
 from tests.posts.planned_jobs import PROCESS, PULSES, SETUPS, SIDES, WAYS, wanted_speeds, written
 from tests.posts.test_plain_reading import ENDS, MACHINES, SLOW, pose, turned
 
+pytestmark = pytest.mark.any_version
+
 NUMBER = r"(-?[\d.]+)"
 LEAN, AXIS = (
     0.03,

@@ -24,6 +24,8 @@ from tests.posts.planned_jobs import (
 )
 from tests.programs import build
 
+pytestmark = pytest.mark.any_version
+
 RAMPS = (5.0, 4.0)  # mm after the start and before the end
 STEP = 0.1  # of the faster speed, that a step changes it by at most
 USUAL = ("fanuc cartesian time fanuc tool-on-robot", "linuxcnc joint path table")

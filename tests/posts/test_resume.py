@@ -27,6 +27,8 @@ from tests.posts.planned_jobs import (
 from tests.posts.test_contract import DEEP, bodies_of
 from tests.programs import build
 
+pytestmark = pytest.mark.any_version
+
 ONE_OF_EACH = {
     way[0]: way for way in WAYS if way[3].endswith(("tool-on-robot", "table"))
 }.values()  # post

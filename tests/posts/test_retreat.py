@@ -9,6 +9,8 @@ from freecad_am.posts import catalogue
 from freecad_am.verify import verify
 from tests.posts.planned_jobs import CHORD_ERROR, ONE_OF_EACH, WAYS, planned, written
 
+pytestmark = pytest.mark.any_version
+
 BACK = 5.5  # mm; longer than what differs at the ends of the beads
 
 

@@ -19,6 +19,8 @@ from freecad_am.verify import verify
 from tests.posts.planned_jobs import CHORD_ERROR, PROCESS, planned
 from tests.programs import build
 
+pytestmark = pytest.mark.any_version
+
 ONE_EACH = (
     ("fanuc", "joint", "time", "fanuc tool-on-robot"),
     ("fanuc", "cartesian", "time", "fanuc tool-on-robot"),

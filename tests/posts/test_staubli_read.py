@@ -11,6 +11,8 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.program import DepositOff, DepositOn, Moves
 from freecad_am.posts.staubli import post as staubli
 
+pytestmark = pytest.mark.any_version
+
 HEAD = '\ufeff<?xml version="1.0" encoding="utf-8"?>\n'
 SPACE = "http://www.staubli.com/robotics/VAL3/"
 XSI = 'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'

@@ -22,6 +22,8 @@ from tests.posts.planned_jobs import CHORD_ERROR, PROCESS, planned
 from tests.posts.test_yaskawa import GOLDENS, faults
 from tests.programs import build
 
+pytestmark = pytest.mark.any_version
+
 SETUPS = {"fanuc": "fanuc tool-on-robot", "yaskawa": "yaskawa tool-on-robot"}
 BEGINS = {"fanuc": r"Weave Sine\[(\d+)\]", "yaskawa": r"WVON WEV#\((\d+)\)"}
 ENDS = {"fanuc": r"Weave End", "yaskawa": r"WVOF"}

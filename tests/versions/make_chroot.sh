@@ -7,7 +7,8 @@ set -eu
 suite=$1
 folder=$2
 packages='ca-certificates freecad freecad-python3 python3-pykdl python3-numpy python3-scipy python3-yaml'
-packages="$packages python3-matplotlib python3-shapely xvfb xauth libgl1-mesa-dri python3-pytest python3-venv xdotool locales"
+packages="$packages python3-matplotlib python3-shapely xvfb xauth libgl1-mesa-dri python3-pytest python3-pytest-xdist"
+packages="$packages python3-pytest-timeout python3-venv xdotool locales"
 stamp=etc/freecad-am-packages
 
 made() {
