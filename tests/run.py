@@ -108,7 +108,7 @@ def run_pytest(name: str, arguments: Sequence[str], workers: Sequence[str], nice
     long = "--long" in arguments or any("::" in word for word in arguments)
     limit = LONG_TEST_LIMIT_S if long else TEST_LIMIT_S
     options = [*PLUGINS, f"--timeout={limit}", "--timeout-method=thread", "--durations=10"]
-    command = ["nice", "-n", str(nice), sys.executable, "-m", "pytest", *options]
+    command = ["nice", "-n", str(nice), sys.executable, "-u", "-m", "pytest", *options]
     with tempfile.TemporaryDirectory() as folder:
         env = private_home(Path(folder))
         if env.get("FREECAD_AM_VERSION"):  # hundreds of lines about that version's own modules

@@ -49,6 +49,8 @@ def private_home(folder: Path) -> dict[str, str]:
         "QT_QPA_PLATFORM": "xcb",
         "PYTHONDONTWRITEBYTECODE": "1",
         "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
+        # otherwise each new home makes its own list of fonts
+        "MPLCONFIGDIR": os.environ.get("MPLCONFIGDIR", os.path.expanduser("~/.cache/matplotlib")),
         # several workers run at the same time, and their threads would wait for each other's cores
         "OPENBLAS_NUM_THREADS": os.environ.get("OPENBLAS_NUM_THREADS", "1"),
     }
