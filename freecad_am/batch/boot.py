@@ -23,9 +23,7 @@ SCRIPTS = {
     "test": os.path.join("tests", "run.py"),
     "bench": os.path.join("bench", "run.py"),
     "docs": os.path.join("docs", "reference", "build.py"),
-    "rows": os.path.join(
-        "freecad_am", "batch", "row_host.py"
-    ),  # asked for by workers of a cluster, not by users
+    "row": os.path.join("freecad_am", "batch", "cluster_row.py"),  # for workers of a cluster
 }
 
 

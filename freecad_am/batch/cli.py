@@ -18,17 +18,17 @@ SHAPES = ("plan", "export", "inspect", "place")  # commands that read shapes
 def main(argv: list[str]) -> int:
     """Run one command; the exit status. Messages go to stderr, results to stdout.
 
-    A command that reads shapes runs in a fork, which may crash.
+    A command that reads shapes runs in a child process, which may crash.
     """
     from freecad_am.batch import console
 
     if argv[1:] and argv[0] in SHAPES:
-        from freecad_am.batch import supervised
+        from freecad_am.batch import child
 
         def say(line: str) -> None:
             print(console.escaped(line), file=sys.stderr)
 
-        return supervised.supervised(lambda: _main(argv), os.path.basename(argv[1]) or argv[1], say)
+        return child.run_in_child(lambda: _main(argv), os.path.basename(argv[1]) or argv[1], say)
     return _main(argv)
 
 

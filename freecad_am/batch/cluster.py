@@ -70,9 +70,10 @@ class Cluster:
         since = time.monotonic()
         try:
             while waiting or running:
-                while waiting and len(running) < AHEAD * max(1, self._threads()):
-                    row = waiting.pop()
-                    running[self._submitted(row, dry)] = row
+                count = AHEAD * max(1, self._threads()) - len(running)
+                if waiting and count > 0:
+                    next_rows, waiting = waiting[-count:][::-1], waiting[:-count]
+                    running.update(self._submit(next_rows, dry))
                 finished = [future for future in _first_done(list(running)) if future in running]
                 for future in finished:
                     row = running.pop(future)
@@ -85,28 +86,20 @@ class Cluster:
             with contextlib.suppress(Exception):
                 self._client.cancel(list(running), force=True)
 
-    def _submitted(self, row: Row, dry: bool) -> Any:
-        names = [name for name in sorted(row.files) if os.path.isfile(name)]
-        links = [(name, os.path.realpath(name)) for name in names if os.path.realpath(name) != name]
-        named = sorted({os.path.realpath(name) for name in names})
-        order = {
-            "label": row.label,
-            "values": row.tree().values,
-            "path": os.path.abspath(row.path),
-            "dry": dry,
-            "files": named,
-            "links": links,
-        }
-        return self._client.submit(
-            self._module.planned,
-            self._token,
-            self._settings,
-            order,
-            self._package,
-            *map(self._file, named),
+    def _submit(self, rows: list[Row], dry: bool) -> dict[Any, Row]:
+        """The rows by their futures."""
+        orders = [_order(row, dry) for row in rows]
+        contents = [[self._package, *map(self._file, order["files"])] for order in orders]
+        futures = self._client.map(
+            self._module.plan_row,
+            orders,
+            contents,
+            key=[f"freecad-am-row-{row.number}-{self._token}" for row in rows],
             pure=False,
-            key=f"freecad-am-row-{row.number}-{self._token}",
+            token=self._token,
+            settings=self._settings,
         )
+        return dict(zip(futures, rows, strict=True))
 
     def _file(self, path: str) -> Any:
         """A local file on the cluster, sent once for all rows."""
@@ -142,7 +135,7 @@ class Cluster:
             )
         futures = {
             worker: self._client.submit(
-                self._module.ready,
+                self._module.check_worker,
                 self._token,
                 self._settings,
                 self._package,
@@ -306,6 +299,20 @@ def _sent_module(client: Any) -> Any:
         sys.modules[WORKER] = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(sys.modules[WORKER])
     return sys.modules[WORKER]
+
+
+def _order(row: Row, dry: bool) -> dict[str, Any]:
+    """What a worker needs to plan a row: the job, and the files and links that it names."""
+    names = [name for name in sorted(row.files) if os.path.isfile(name)]
+    links = [(name, os.path.realpath(name)) for name in names if os.path.realpath(name) != name]
+    return {
+        "label": row.label,
+        "values": row.tree().values,
+        "path": os.path.abspath(row.path),
+        "dry": dry,
+        "files": sorted({os.path.realpath(name) for name in names}),
+        "links": links,
+    }
 
 
 def _settings() -> dict[str, Any]:

@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from ..core.issues import ERROR, Issue, summarised
-from .supervised import tell_stopping
+from .child import report_stopping
 
 DEBOUNCE_S = 1.0  # s within which a second Ctrl-C is the first: a terminal sends it, and the process that waits for us
 LEADING_CODES = ("REMEDY", "NO_REMEDY")  # codes of remedies, listed first
@@ -127,7 +127,7 @@ class Session:
         if self.interrupted and now - self._when < DEBOUNCE_S:
             return
         self.interrupted, self._when = True, now
-        tell_stopping()
+        report_stopping()
         raise KeyboardInterrupt
 
 

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The work of a Dask worker for a batch. The file is sent to workers separately and imports nothing
-of the package.
+"""What a Dask worker does for a batch. The file is sent to workers separately and imports nothing of
+the package.
 
 Our code comes as an archive, which is unpacked in the worker's own folder, next to the files of the
-jobs. Rows are planned by a process of `row_host.py`, found by the launcher: a worker's Python needs
-neither FreeCAD nor numpy. There are as many such processes as the worker has rows at the same time,
-and they end with it.
+jobs. The launcher in the archive plans each row as a command of its own: a worker's Python needs
+neither FreeCAD nor numpy.
 """
 
 from __future__ import annotations
@@ -14,7 +13,6 @@ import contextlib
 import io
 import json
 import os
-import queue
 import shutil
 import subprocess
 import tempfile
@@ -25,171 +23,175 @@ from typing import Any
 
 MAX_MESSAGE_LENGTH = 2000  # characters of the message of a process that does not start
 ENDED = "the batch has ended"
-_ATTRIBUTE = "_freecad_am_batches"  # of the worker: this module may be sent again, by another batch
+_ATTRIBUTE = "_freecad_am_batches"  # of the worker: another batch may send this module again
 
 
 class Batch:
     """The folder and the processes of one batch on one worker."""
 
-    def __init__(self, folder: str, settings: dict[str, Any]) -> None:
-        self.path = tempfile.mkdtemp(prefix="freecad-am-", dir=folder)
-        self.settings = {
-            **settings,
-            "copies": os.path.join(self.path, "copies"),
-            "folder": self.path,
-        }
-        self.versions: dict[str, str] = {}
-        self._idle: queue.SimpleQueue[subprocess.Popen[str]] = queue.SimpleQueue()
-        self._all: list[subprocess.Popen[str]] = []
+    def __init__(self, folder: str) -> None:
+        self.path = os.path.realpath(tempfile.mkdtemp(prefix="freecad-am-", dir=folder))
+        self.code, self.copies, self._temporary = (
+            os.path.join(self.path, name) for name in ("code", "copies", "temporary")
+        )
+        os.makedirs(self._temporary)
+        self._running: set[subprocess.Popen[str]] = set()
         self._lock = threading.Lock()
         self._stopped = False
 
-    def unpacked(
+    def unpack(
         self, package: bytes, files: list[tuple[str, bytes]], links: list[tuple[str, str]]
     ) -> None:
         """Write missing code and files to their places."""
         with self._lock:
-            if not os.path.isdir(os.path.join(self.path, "code")):
+            if not os.path.isdir(self.code):
                 with zipfile.ZipFile(io.BytesIO(package)) as archive:
                     archive.extractall(os.path.join(self.path, "unpacking"))
-                os.replace(os.path.join(self.path, "unpacking"), os.path.join(self.path, "code"))
+                os.replace(os.path.join(self.path, "unpacking"), self.code)
             for name, content in files:
-                target = self.settings["copies"] + name
+                target = self.copies + name
                 if not os.path.exists(target):
                     os.makedirs(os.path.dirname(target), exist_ok=True)
                     with open(target, "wb") as stream:
                         stream.write(content)
             for name, link_target in links:
-                target = self.settings["copies"] + name
+                target = self.copies + name
                 if not os.path.lexists(target):
                     os.makedirs(os.path.dirname(target), exist_ok=True)
-                    os.symlink(self.settings["copies"] + link_target, target)
+                    os.symlink(self.copies + link_target, target)
 
-    def ask(self, order: dict[str, Any]) -> dict[str, Any]:
-        """The answer of a process. RuntimeError, with its message, if no process starts."""
-        process = self._process()
-        answer = _exchanged(process, order)
-        if answer is None:
-            raise RuntimeError(_last_words(process))
-        self._idle.put(process)
-        return answer
+    def run(self, settings: dict[str, Any], order: dict[str, Any] | None) -> dict[str, Any]:
+        """Return the versions of the software and, for an order, its result.
+
+        Raises RuntimeError, with the message of the process, if it ends without an answer.
+        """
+        process = self._start(settings)
+        try:
+            assert process.stdin is not None and process.stdout is not None
+            with contextlib.suppress(OSError):  # the process has ended
+                process.stdin.write(json.dumps({"folder": self.path, "order": order}) + "\n")
+                process.stdin.flush()
+            answer = process.stdout.read()
+            process.wait()
+        finally:
+            process.kill()
+            with self._lock:
+                self._running.discard(process)
+        if answer.endswith("\n"):
+            result: dict[str, Any] = json.loads(answer)
+            return result
+        raise RuntimeError(_message(process))
 
     def stop(self) -> None:
-        """End the process, even during work, and remove its folder."""
+        """End the processes, even during work, and remove the folder."""
         with self._lock:
-            self._stopped = True
-            for process in self._all:
-                with contextlib.suppress(OSError):
-                    process.terminate()
-            for process in self._all:
-                with contextlib.suppress(subprocess.TimeoutExpired):
-                    process.wait(10.0)
-                if process.poll() is None:
-                    process.kill()
+            self._stopped, running = True, list(self._running)
+        for process in running:
+            with contextlib.suppress(OSError):
+                process.terminate()
+        for process in running:
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.wait(10.0)
+            process.kill()
         until = time.monotonic() + 5.0
-        while (
-            os.path.exists(self.path) and time.monotonic() < until
-        ):  # a row that is being stopped may still write there
-            shutil.rmtree(self.path, ignore_errors=True)
+        while os.path.exists(self.path) and time.monotonic() < until:
+            shutil.rmtree(self.path, ignore_errors=True)  # a row that ends may still write there
 
-    def _process(self) -> subprocess.Popen[str]:
-        with contextlib.suppress(queue.Empty):
-            return self._idle.get_nowait()
+    def _start(self, settings: dict[str, Any]) -> subprocess.Popen[str]:
+        relocation = {
+            "copies": self.copies,
+            "local": [self.code, self.path],
+            "home": settings["home"],
+            "machines": settings["machines"],
+        }
         with self._lock:
             if self._stopped:
                 raise RuntimeError(ENDED)
             process = subprocess.Popen(
-                ["/bin/sh", os.path.join(self.path, "code", "freecad-am"), "rows"],
+                ["/bin/sh", os.path.join(self.code, "freecad-am"), "row"],
                 text=True,
                 cwd=self.path,
+                env={
+                    **os.environ,
+                    "TMPDIR": self._temporary,
+                    "FREECAD_AM_FILES": json.dumps(relocation),
+                },
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 start_new_session=True,
             )
-            self._all.append(process)
-        answer = _exchanged(process, self.settings)
-        if answer is None:
-            raise RuntimeError(_last_words(process))
-        self.versions = answer
-        return process
+            self._running.add(process)
+            return process
 
 
 def keep_content(content: bytes) -> bytes:
-    """The content: a file of a batch as a result of its own, which Dask makes again where it is lost with a worker."""
+    """Return the content: a file of a batch as a result, which Dask recreates if it is lost."""
     return content
 
 
-def ready(token: str, settings: dict[str, Any], package: bytes) -> dict[str, str]:
-    """The versions of the software on the worker; RuntimeError if FreeCAD is missing."""
-    batch = _batch(token, settings)
-    batch.unpacked(package, [], [])
-    return dict(batch.ask({"versions": True}))
+def check_worker(token: str, settings: dict[str, Any], package: bytes) -> dict[str, str]:
+    """Return the versions of the software on the worker; RuntimeError if FreeCAD is missing."""
+    batch = _batch(token)
+    batch.unpack(package, [], [])
+    versions: dict[str, str] = batch.run(settings, None)["versions"]
+    return versions
 
 
-def planned(
-    token: str, settings: dict[str, Any], order: dict[str, Any], package: bytes, *contents: bytes
+def plan_row(
+    order: dict[str, Any], contents: list[bytes], token: str, settings: dict[str, Any]
 ) -> dict[str, Any]:
-    """The result of a row, with its outputs as `files`, the worker's address and its versions."""
+    """Return the result of a row, with its outputs as `files`, the worker's address and versions.
+
+    contents: the archive of our code, then each file that the order names.
+    """
     from distributed import get_worker
 
-    batch = _batch(token, settings)
-    request = dict(order)
-    batch.unpacked(
-        package, list(zip(request.pop("files"), contents, strict=True)), request.pop("links")
-    )
+    batch = _batch(token)
+    order = dict(order)
+    names, links = order.pop("files"), order.pop("links")
+    batch.unpack(contents[0], list(zip(names, contents[1:], strict=True)), links)
     with tempfile.TemporaryDirectory(dir=batch.path) as folder:
-        result = batch.ask({**request, "folder": os.path.join(folder, "row")})
-        result["files"] = dict(_files(os.path.join(folder, "row")))
-    return {**result, "worker": get_worker().address, "versions": batch.versions}
+        outputs = os.path.join(folder, "row")
+        answer = batch.run(settings, {**order, "folder": outputs})
+        files = dict(_files(outputs))
+    return {
+        **answer["result"],
+        "files": files,
+        "worker": get_worker().address,
+        "versions": answer["versions"],
+    }
 
 
 def stop(token: str, dask_worker: Any) -> None:
-    """End what this worker does for a batch. `dask_worker` is put in by Dask."""
-    with _making:
+    """End what this worker does for a batch. Dask passes `dask_worker`."""
+    with _lock:
         batches: dict[str, Batch | None] = dask_worker.__dict__.setdefault(_ATTRIBUTE, {})
-        batch, batches[token] = (
-            batches.get(token),
-            None,
-        )  # rows that were given out may still begin here
+        batch, batches[token] = batches.get(token), None  # submitted rows may still begin
     if batch is not None:
         batch.stop()
 
 
-_making = threading.Lock()
+_lock = threading.Lock()
 
 
-def _batch(token: str, settings: dict[str, Any]) -> Batch:
+def _batch(token: str) -> Batch:
     from distributed import get_worker
 
     worker = get_worker()
-    with _making:
+    with _lock:
         batches: dict[str, Batch | None] = worker.__dict__.setdefault(_ATTRIBUTE, {})
         if token not in batches:
-            batches[token] = Batch(worker.local_directory, settings)
+            batches[token] = Batch(worker.local_directory)
         batch = batches[token]
     if batch is None:
         raise RuntimeError(ENDED)
     return batch
 
 
-def _exchanged(process: subprocess.Popen[str], request: dict[str, Any]) -> Any:
-    """The answer of a process to a line; None if it ends."""
-    assert process.stdin is not None and process.stdout is not None
-    try:
-        process.stdin.write(json.dumps(request) + "\n")
-        process.stdin.flush()
-        line = process.stdout.readline()
-    except OSError:
-        return None
-    return json.loads(line) if line.endswith("\n") else None
-
-
-def _last_words(process: subprocess.Popen[str]) -> str:
+def _message(process: subprocess.Popen[str]) -> str:
+    """Return the error message of a process that has ended."""
     assert process.stderr is not None
-    with contextlib.suppress(subprocess.TimeoutExpired):
-        process.wait(10.0)
-    process.kill()
     message = " ".join(process.stderr.read().split())
     return (
         message[-MAX_MESSAGE_LENGTH:]

@@ -8,6 +8,7 @@ import os
 
 import FreeCAD as App
 
+from ..core.geometry import located
 from ..core.geometry.located import is_there
 from ..core.issues import InputError
 from ..core.kinematics.machines import calibration, machine
@@ -17,21 +18,11 @@ from .fields import preferences
 FOLDER = os.path.join("RoboticAM", "machines")
 
 
-_travelled: tuple[str, ...] | None = None  # folders of the machine that a job has come from
-
-
-def use_folders(named: tuple[str, ...]) -> None:
-    """Make `folders` return the folders of another computer, whose files are copies
-    (`core.geometry.located`).
-    """
-    global _travelled
-    _travelled = named
-
-
 def folders() -> tuple[str, ...]:
-    """Existing folders with the user's machine files."""
-    if _travelled is not None:
-        return _travelled
+    """Existing folders with the user's machine files; for a job of another machine, those there."""
+    relocation = located.relocation()
+    if relocation is not None:
+        return relocation.machines
     own_folder = os.path.join(App.getUserAppDataDir(), FOLDER)
     return tuple(
         folder

@@ -300,14 +300,22 @@ def test_a_result_that_was_lost_with_its_worker_is_waited_for(monkeypatch):
 def test_rows_that_begin_after_the_end_leave_nothing(monkeypatch, tmp_path):
     worker = types.SimpleNamespace(local_directory=str(tmp_path), address="here")
     monkeypatch.setattr("distributed.get_worker", lambda: worker)
-    freecad_am_row_worker._batch("one", {})
+    freecad_am_row_worker._batch("one")
     assert len(list(tmp_path.iterdir())) == 1
     freecad_am_row_worker.stop("one", worker)
     freecad_am_row_worker.stop("two", worker)  # before any row of it
     for token in ("one", "two"):
         with pytest.raises(RuntimeError, match="the batch has ended"):
-            freecad_am_row_worker.planned(token, {}, {"files": [], "links": []}, b"")
+            freecad_am_row_worker.plan_row({"files": [], "links": []}, [b""], token, {})
     assert not list(tmp_path.iterdir())
+
+
+NOWHERE = {"machines": [], "home": "/nowhere"}
+
+
+def order(row):
+    """The job of a row, as a worker is asked to plan it."""
+    return {"label": row.label, "values": row.tree().values, "path": row.path, "dry": False}
 
 
 def test_without_dask_that_is_told(workshop, monkeypatch):
@@ -353,19 +361,11 @@ def test_files_travel_with_a_job(workshop, tmp_path):
     files = [(name, Path(name).read_bytes()) for name in row.files if os.path.isfile(name)]
     apart = tmp_path.with_name(f"{tmp_path.name}-worker")
     apart.mkdir()
-    worker = freecad_am_row_worker.Batch(str(apart), {"machines": [], "home": "/nowhere"})
+    worker = freecad_am_row_worker.Batch(str(apart))
     workshop.folder.rename(apart / "away")
     try:
-        worker.unpacked(versions.package(), files, [])
-        result = worker.ask(
-            {
-                "label": row.label,
-                "values": row.tree().values,
-                "path": row.path,
-                "dry": False,
-                "folder": str(apart / "row"),
-            }
-        )
+        worker.unpack(versions.package(), files, [])
+        result = worker.run(NOWHERE, {**order(row), "folder": str(apart / "row")})["result"]
         assert result["exit"] == 0, result
         found = {
             str(path.relative_to(apart / "row")): path.read_bytes()
@@ -382,14 +382,20 @@ def test_files_travel_with_a_job(workshop, tmp_path):
     assert not os.path.exists(worker.path)
 
 
-def test_what_a_lost_worker_leaves_removes_itself(tmp_path):
-    """Its process of rows ends as its stdin does, with the folder of the batch."""
-    worker = freecad_am_row_worker.Batch(str(tmp_path), {"machines": [], "home": "/nowhere"})
-    worker.unpacked(versions.package(), [], [])
-    assert worker.ask({"versions": True})["FreeCAD"]
-    (process,) = worker._all
+def test_what_a_lost_worker_leaves_removes_itself(workshop, tmp_path_factory):
+    """The process of a row ends as its stdin does, with the folder of the batch."""
+    folder = tmp_path_factory.mktemp("worker")
+    write_rows(workshop, (20,))
+    _, (row,) = table.read(str(workshop.folder / "rows.csv"), str(workshop.job))
+    worker = freecad_am_row_worker.Batch(str(folder))
+    worker.unpack(versions.package(), [], [])
+    assert worker.run(NOWHERE, None)["versions"]["FreeCAD"]
+    process = worker._start(NOWHERE)
+    request = {**order(row), "folder": str(folder / "row")}
+    process.stdin.write(json.dumps({"folder": worker.path, "order": request}) + "\n")
     process.stdin.close()
-    assert process.wait(60) == 0 and not list(tmp_path.iterdir())
+    assert process.wait(60) != 0 and process.stdout.read() == ""
+    assert not list(folder.iterdir())
 
 
 def test_what_has_changed_is_planned_again(workshop):

@@ -15,8 +15,7 @@ import pytest
 from freecad_am import api
 from freecad_am.batch.job.part_source import PartSource
 from freecad_am.batch.job.shapes import bring
-from freecad_am.brep.files import apart
-from freecad_am.core import copies
+from freecad_am.brep.kernel.process import SANDBOXED
 from freecad_am.core.issues import InputError
 from freecad_am.objects.shapes.part_file import file_issues
 
@@ -131,8 +130,7 @@ def test_a_value_set_after_threads_of_the_kernel_started(documents, monkeypatch)
     def fork(*_):
         raise AssertionError("a process with threads was forked")
 
-    monkeypatch.setattr(apart, "_has_kernel_threads", lambda: True)
-    monkeypatch.setattr(copies, "fork", fork)
+    monkeypatch.setattr(os, "fork", fork)
     wide = volume(documents / "hall.FCStd", "Cut", ("Cylinder", "Radius", "3 mm"))
     assert wide == (pytest.approx(1000 - HOLE * 9 / 4), pytest.approx(50), [])
 
@@ -234,8 +232,7 @@ class Gear:
 
 def test_a_value_of_an_object_whose_add_on_is_missing(tmp_path, monkeypatch):
     """The shape stayed as it was saved, without a message."""
-    # the add-on is loaded in this process alone, and its box needs no threads
-    monkeypatch.setattr(apart, "_has_kernel_threads", lambda: False)
+    monkeypatch.setenv(SANDBOXED, "1")  # the add-on is loaded in this process alone
     (tmp_path / "gear_add_on.py").write_text(ADD_ON)
     monkeypatch.syspath_prepend(str(tmp_path))
     module = importlib.import_module("gear_add_on")

@@ -109,10 +109,9 @@ def is_gone(pid):
 @pytest.fixture(autouse=True)
 def fresh():
     """No process from before, none left behind."""
-    assert not kernel_process._unable
+    assert not kernel_process.kernel_workers.unable
     yield
-    while kernel_process._idle:
-        kernel_process._idle.pop().end()
+    kernel_process.kernel_workers.end()
 
 
 @pytest.fixture
@@ -138,7 +137,7 @@ def test_both_come_to_the_same_numbers(name, monkeypatch):
         assert len(here) == len(elsewhere)
         for one, other in zip(here, elsewhere, strict=True):
             assert np.array_equal(one, other) and np.asarray(one).dtype == np.asarray(other).dtype
-    assert len(kernel_process._idle) == 1  # it was asked each time
+    assert len(kernel_process.kernel_workers.idle) == 1  # it was asked each time
 
 
 def test_one_process_serves_one_call_after_the_other_and_none_the_main_thread(slow_part):
@@ -172,13 +171,13 @@ def test_another_thread_may_take_the_process_that_was_free(slow_part, monkeypatc
         def __bool__(self):  # there was one when it was asked
             return True
 
-    monkeypatch.setattr(kernel_process, "_idle", Taken())
+    monkeypatch.setattr(kernel_process.kernel_workers, "idle", Taken())
     assert in_thread(kernel_process.in_kernel_process, pid_of, slow_part) != os.getpid()
 
 
 def test_a_process_that_has_left_is_replaced(slow_part):
     first = in_thread(kernel_process.in_kernel_process, pid_of, slow_part)
-    (process,) = kernel_process._idle
+    (process,) = kernel_process.kernel_workers.idle
     process.popen.terminate()
     process.popen.wait(20)
     assert in_thread(kernel_process.in_kernel_process, pid_of, slow_part) not in (
@@ -200,11 +199,11 @@ def test_a_process_that_has_left_does_not_take_freecad_along():
             "signal.signal(signal.SIGPIPE, signal.SIG_DFL)",
             "box = Part.makeBox(1, 2, 3)",
             "first = in_thread(kernel_process.in_kernel_process, pid_of, box)",
-            "(process,) = kernel_process._idle",
+            "(process,) = kernel_process.kernel_workers.idle",
             "process.popen.terminate()",
             "process.popen.wait(20)",
             "second = in_thread(kernel_process.in_kernel_process, pid_of, box)",
-            "(process,) = kernel_process._idle",
+            "(process,) = kernel_process.kernel_workers.idle",
             "process.popen.terminate()",
             "process.popen.wait(20)",
             "process.end()",
@@ -233,9 +232,9 @@ def test_errors_come_back(slow_part):
 
 def test_without_another_python_the_call_is_made_here(slow_part, monkeypatch):
     monkeypatch.setattr(kernel_process, "_pythons", lambda: ["/nowhere/python3"])
-    monkeypatch.setattr(kernel_process, "_unable", False)
+    monkeypatch.setattr(kernel_process.kernel_workers, "unable", False)
     assert in_thread(kernel_process.in_kernel_process, pid_of, slow_part) == os.getpid()
-    assert kernel_process._unable
+    assert kernel_process.kernel_workers.unable
 
 
 def test_a_thread_that_is_ended_takes_its_process_with_it(slow_part, tmp_path):
@@ -257,14 +256,14 @@ def test_a_thread_that_is_ended_takes_its_process_with_it(slow_part, tmp_path):
         ctypes.c_ulong(thread.ident), ctypes.py_object(Ended)
     )
     thread.join(20)
-    assert ended and not thread.is_alive() and not kernel_process._idle
+    assert ended and not thread.is_alive() and not kernel_process.kernel_workers.idle
     with pytest.raises(ProcessLookupError):
         os.kill(int(told.read_text(encoding="utf-8")), 0)
 
 
 @pytest.mark.parametrize("when", ["before it is listened to", "once it is made", "as it is asked"])
 def test_a_thread_that_is_ended_while_a_process_starts_leaves_none(slow_part, monkeypatch, when):
-    pids, popen, made, start = [], subprocess.Popen, kernel_process._Process, threading.Thread.start
+    pids, popen, made, start = [], subprocess.Popen, kernel_process.Worker, threading.Thread.start
 
     def begun(*arguments, **options):
         process = popen(*arguments, **options)
@@ -286,7 +285,7 @@ def test_a_thread_that_is_ended_while_a_process_starts_leaves_none(slow_part, mo
             raise Ended
 
     monkeypatch.setattr(subprocess, "Popen", begun)
-    monkeypatch.setattr(kernel_process, "_Process", Made)
+    monkeypatch.setattr(kernel_process, "Worker", Made)
     if when == "before it is listened to":
         monkeypatch.setattr(threading.Thread, "start", listened)
     ended = []
@@ -301,12 +300,12 @@ def test_a_thread_that_is_ended_while_a_process_starts_leaves_none(slow_part, mo
     thread.start()
     thread.join(20)
     assert ended and len(pids) == 1 and is_gone(pids[0])
-    assert not kernel_process._idle and not kernel_process._unable
+    assert not kernel_process.kernel_workers.idle and not kernel_process.kernel_workers.unable
 
 
 def test_a_process_that_nobody_holds_any_more_is_ended(slow_part):
     in_thread(kernel_process.in_kernel_process, pid_of, slow_part)
-    pid = kernel_process._idle.pop().popen.pid
+    pid = kernel_process.kernel_workers.idle.pop().popen.pid
     assert is_gone(pid)
 
 

@@ -7,8 +7,9 @@ import FreeCAD
 import Part
 import pytest
 
-from freecad_am.brep.files import apart, read
+from freecad_am.brep.files import read
 from freecad_am.brep.files.read import read_shape, shape_content
+from freecad_am.brep.kernel.process import SANDBOXED
 from freecad_am.core.issues import InputError
 
 TETRA = """#9020=COORDINATES_LIST('',4,((0.,0.,0.),(10.,0.,0.),(0.,10.,0.),(0.,0.,10.)));
@@ -96,7 +97,7 @@ def test_faces_that_the_kernel_reads_without_surfaces_are_refused(tmp_path, monk
     class Read:
         Faces = (Bare(), Part.makeBox(1, 1, 1).Faces[0])
 
-    monkeypatch.setattr(apart, "_is_apart", True)  # the replaced function is in this process alone
+    monkeypatch.setenv(SANDBOXED, "1")  # the replaced function is in this process alone
     monkeypatch.setattr(read, "_read_shape", lambda *_: Read())
     assert "1 of its 2 faces" in refused(tmp_path, "any", "UNSUPPORTED_FILE", "bare.brep")
 
@@ -138,7 +139,7 @@ def test_a_solid_that_is_read_as_faces_alone_is_warned_about(tmp_path, monkeypat
     """A real file does so; here the kernel's answer is replaced."""
     box = Part.makeBox(1, 1, 1)
     text = step_text(tmp_path, box)
-    monkeypatch.setattr(apart, "_is_apart", True)  # the replaced function is in this process alone
+    monkeypatch.setenv(SANDBOXED, "1")  # the replaced function is in this process alone
     monkeypatch.setattr(read, "_read_shape", lambda *_: box.Shells[0])
     (tmp_path / "shell.step").write_text(text)
     _, (issue,) = shape_content(tmp_path / "shell.step")

@@ -11,7 +11,7 @@ import FreeCAD as App
 import pytest
 
 from freecad_am import api
-from freecad_am.brep.files import apart
+from freecad_am.brep.files import sandbox
 from freecad_am.brep.files.read import read_shape
 from freecad_am.brep.kernel import process as kernel_process
 from freecad_am.core.issues import InputError
@@ -54,8 +54,7 @@ def growing(path):
 @pytest.fixture(autouse=True)
 def processes():
     yield
-    while kernel_process._readers:
-        kernel_process._readers.pop().end()
+    kernel_process.file_workers.end()
 
 
 @pytest.fixture
@@ -165,11 +164,11 @@ def test_what_is_opened_in_the_window_is_what_the_commands_read(person, tmp_path
     (growing, "more than 100 MB of memory"), (waiting, "more than 1 s of processor time"),
 ])  # fmt: skip
 def test_limits_are_told_in_the_window_too(person, monkeypatch, tmp_path, read, says):
-    monkeypatch.setattr(apart, "SECONDS", 1.0)
-    monkeypatch.setattr(apart, "MEMORY", 100.0)
-    monkeypatch.setattr(apart, "WALL_CLOCK_FACTOR", 2.0 if read is waiting else 100.0)
+    monkeypatch.setattr(sandbox, "SECONDS", 1.0)
+    monkeypatch.setattr(sandbox, "MEMORY", 100.0)
+    monkeypatch.setattr(sandbox, "WALL_CLOCK_FACTOR", 2.0 if read is waiting else 100.0)
     with pytest.raises(InputError) as told:
-        apart.read_apart(read, tmp_path / "part.step")
+        sandbox.read_in_sandbox(read, tmp_path / "part.step")
     assert (told.value.code, told.value.where) == (
         "BAD_FILE",
         "part.step",

@@ -144,7 +144,7 @@ def test_a_document_closed_while_a_preview_is_with_the_kernel(person, monkeypatc
         "the work to end",
         20,
     )
-    assert len(kernel_process._idle) <= 1 and not kernel_process._unable
+    assert len(kernel_process.kernel_workers.idle) <= 1 and not kernel_process.kernel_workers.unable
 
 
 def test_the_window_finds_a_python_for_the_kernel(person, monkeypatch):
@@ -154,8 +154,8 @@ def test_the_window_finds_a_python_for_the_kernel(person, monkeypatch):
     pipe = api.open_part(doc, str(EXAMPLES / "pipe.step"))
     tube = api.open_part(doc, str(EXAMPLES / "tube-on-pipe.step"))
     feature = api.make_surface_feature(doc, tube, ["Face1"], pipe)
-    assert feature.Status == "up to date" and not kernel_process._unable
-    assert [process.popen.poll() for process in kernel_process._idle] == [None]
+    assert feature.Status == "up to date" and not kernel_process.kernel_workers.unable
+    assert [process.popen.poll() for process in kernel_process.kernel_workers.idle] == [None]
 
 
 def test_a_preview_after_the_kernel_process_has_left(person, monkeypatch):
@@ -178,7 +178,9 @@ def test_a_preview_after_the_kernel_process_has_left(person, monkeypatch):
         person.press("Cancel")
         person.panel_closed()
         return person.until(
-            lambda: [process.popen for process in kernel_process._idle], "the kernel to be free", 20
+            lambda: [process.popen for process in kernel_process.kernel_workers.idle],
+            "the kernel to be free",
+            20,
         )
 
     before = previewed()

@@ -15,7 +15,7 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.brep.files import apart, three_mf
+from freecad_am.brep.files import sandbox, three_mf
 from freecad_am.brep.files.read import read_mesh, read_shape
 from freecad_am.core.issues import InputError
 from freecad_am.objects.shapes import linked_files
@@ -202,15 +202,20 @@ def waiting(_):
     time.sleep(1000.0)
 
 
+def wait_with_note(note):
+    note.write_text(str(os.getpid()))
+    time.sleep(1000.0)
+
+
 @pytest.mark.parametrize(("read", "says"), [
     (crashing, "crashes"), (endless, "more than 1 s of processor time"), (growing, "more than 100 MB of memory"),
     (waiting, "more than 1 s of processor time"),
 ])  # fmt: skip
 def test_limits_are_told(monkeypatch, tmp_path, read, says):
-    monkeypatch.setattr(apart, "SECONDS", 1.0)
-    monkeypatch.setattr(apart, "MEMORY", 100.0)
-    monkeypatch.setattr(apart, "WALL_CLOCK_FACTOR", 2.0 if read is waiting else 100.0)
-    error = refused(apart.read_apart, read, tmp_path / "part.step")
+    monkeypatch.setattr(sandbox, "SECONDS", 1.0)
+    monkeypatch.setattr(sandbox, "MEMORY", 100.0)
+    monkeypatch.setattr(sandbox, "WALL_CLOCK_FACTOR", 2.0 if read is waiting else 100.0)
+    error = refused(sandbox.read_in_sandbox, read, tmp_path / "part.step")
     assert (error.code, error.where) == ("BAD_FILE", "part.step") and says in error.message
     assert "export it again" in error.message
 
@@ -242,12 +247,7 @@ def test_nobody_waits_for_a_copy_whose_process_was_killed(tmp_path):
     """A run that is killed while it reads leaves no process."""
     pid = os.fork()
     if not pid:
-
-        def read(_):
-            (tmp_path / "pid").write_text(str(os.getpid()))
-            time.sleep(1000.0)
-
-        apart.read_apart(read, "any")
+        sandbox.read_in_sandbox(wait_with_note, tmp_path / "pid")
         os._exit(0)
     until = time.monotonic() + 20.0
     while not (tmp_path / "pid").exists() or not (tmp_path / "pid").read_text():

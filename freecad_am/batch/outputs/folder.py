@@ -12,7 +12,7 @@ from typing import Any
 
 from ...core.issues import InputError, Text
 from ...posts import earlier as earlier_posts
-from .. import supervised
+from .. import child
 from . import staging
 
 WAYPOINTS, REPORT, PAGE, PROGRAMS, WIRES = (
@@ -49,7 +49,7 @@ class Outputs:
         except BaseException:  # Ctrl-C
             self._remove_made()
             raise
-        supervised.tell_outputs(self.folder, self._made)
+        child.report_outputs(self.folder, self._made)
         if self._staging.others and session is not None:
             session.say(
                 f"note[BUSY] {self.folder}: another run writes into this folder too; what ends last stays; give one "

@@ -14,6 +14,7 @@ from typing import Any
 
 from .. import run as planning
 from .. import versions
+from ..child import Child
 from ..console import Session, escaped
 from . import table
 
@@ -107,37 +108,35 @@ def _planned_here(
     rows: list[table.Row], folder: str, how: How, session: Session, journal: table.Journal
 ) -> Iterator[tuple[table.Row, dict[str, Any]]]:
     waiting = list(reversed(rows))
-    running: dict[Any, tuple[table.Row, Any]] = {}
+    running: dict[Any, tuple[table.Row, Child]] = {}
     try:
         while waiting or running:
             while waiting and len(running) < how.processes:
                 row = waiting.pop()
-                receiver, process = table.start_row(
-                    table.Order(
-                        row.label,
-                        row.tree().values,
-                        row.path,
-                        os.path.join(folder, row.folder),
-                        how.dry,
-                    )
+                order = table.Order(
+                    row.label,
+                    row.tree().values,
+                    row.path,
+                    os.path.join(folder, row.folder),
+                    how.dry,
                 )
-                running[receiver] = (row, process)
+                child = table.start_row(order)
+                running[child.receiver] = (row, child)
             for receiver in multiprocessing.connection.wait(list(running)):
-                row, process = running[receiver]
-                result = table.received(receiver, process)
-                journal.keep(row, how.dry, result)
-                del running[receiver]
-                yield row, result
+                row, child = running[receiver]
+                if child.poll(0.0):
+                    result = table.row_result(child)
+                    journal.keep(row, how.dry, result)
+                    del running[receiver]
+                    yield row, result
             session.check()
     finally:
-        for _, process in running.values():
-            table.ask_to_stop(process)
-        for receiver, (row, process) in running.items():
-            table.stop(process)
-            if (
-                last_outcome := table.last_result(receiver)
-            ) is not None:  # it was done in this moment
-                journal.keep(row, how.dry, last_outcome)
+        for _, child in running.values():
+            child.interrupt()
+        for row, child in running.values():
+            child.stop()
+            if child.is_done:
+                journal.keep(row, how.dry, child.result)
 
 
 def _progress(finished: int, rows: int, now: int, seconds: float) -> str:

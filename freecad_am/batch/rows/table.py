@@ -9,26 +9,22 @@ import csv
 import hashlib
 import io
 import json
-import multiprocessing
 import os
 import signal
-import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from ...core import copies
 from ...core.geometry import located
 from ...core.issues import AmError, InputError, Issue, Text, has_errors
 from ...sections import tree
-from .. import run, supervised
+from .. import run
 from .. import run as planning
+from ..child import Child, crash
 from ..console import Session
 from ..job import job
-from ..outputs import staging
 from ..outputs.folder import REPORT
 
-GRACE = 1.0  # s that a process has to end on request
 CHECKED = "checked"  # status of a row that was not planned
 
 
@@ -45,67 +41,22 @@ class Order:
     dry: bool
 
 
-def start_row(order: Order) -> tuple[Any, Any]:
-    """Start the process of a row; return the receiving end of the pipe for its result, and the
-    process.
-    """
-    context: Any = multiprocessing.get_context(
-        "fork" if sys.platform.startswith("linux") else "spawn"
-    )
-    receiver, sender = context.Pipe(duplex=False)
-    process = context.Process(target=_carry_out, args=(order, sender))
-    process.outputs = order.folder
-    process.start()
-    sender.close()
-    return receiver, process
+def start_row(order: Order) -> Child:
+    """Start the process of a row."""
+    return Child(plan_row, order)
 
 
-def received(receiver: Any, process: Any) -> dict[str, Any]:
-    """The result of a row whose process has ended: exit, message, output lines, and `figures`."""
-    try:
-        result: dict[str, Any] = receiver.recv()
-    except EOFError:
-        process.join()
-        error = supervised.crash("row", process.exitcode)
-        result = {"exit": error.exit_status, "message": error.message, "lines": [error.line()]}
-    receiver.close()
-    process.join()
-    return result
+def row_result(child: Child) -> dict[str, Any]:
+    """Return the result of a row whose process has ended: exit, message, lines, and `figures`."""
+    if child.is_done:
+        result: dict[str, Any] = child.result
+        return result
+    error = crash("row", child.exitcode)
+    return {"exit": error.exit_status, "message": error.message, "lines": [error.line()]}
 
 
-def last_result(receiver: Any) -> dict[str, Any] | None:
-    """The result of a process that has been stopped; None if it had none yet."""
-    try:
-        return receiver.recv() if not receiver.closed and receiver.poll() else None
-    except EOFError:
-        return None
-    finally:
-        receiver.close()
-
-
-def ask_to_stop(process: Any) -> None:
-    """Ask a process to end, without waiting."""
-    if process.is_alive():
-        os.kill(process.pid, signal.SIGINT)
-
-
-def stop(process: Any) -> None:
-    """End a process and remove its unfinished files, if the geometry kernel keeps it from doing so."""
-    ask_to_stop(process)
-    process.join(GRACE)
-    if process.is_alive():
-        process.kill()
-        process.join()
-        if os.path.isdir(process.outputs):
-            with contextlib.suppress(OSError):
-                staging.clear(process.outputs)
-
-
-def _carry_out(order: Order, sender: Any) -> None:
-    """The work of the process."""
-    made_by = multiprocessing.parent_process()
-    assert made_by is not None and made_by.pid is not None
-    copies.end_with(made_by.pid)
+def plan_row(order: Order) -> dict[str, Any]:
+    """In the process of a row: plan it and return its result."""
     quiet = _Quiet()
     status, message, result = 1, "", {}
     try:
@@ -120,9 +71,7 @@ def _carry_out(order: Order, sender: Any) -> None:
         quiet.say(
             f"error[INTERNAL] {' '.join(message.split())}; this is our fault, please report it"
         )
-    sender.send({"exit": status, "message": message or quiet.first, "lines": quiet.lines, **result})
-    sender.close()
-    os._exit(0)
+    return {"exit": status, "message": message or quiet.first, "lines": quiet.lines, **result}
 
 
 def _planned(order: Order, quiet: Session) -> tuple[int, dict[str, Any]]:

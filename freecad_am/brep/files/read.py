@@ -20,8 +20,8 @@ from ...core.geometry.located import locate
 from ...core.geometry.mesh.file_unit import HEAD, MESHES, unit_issues
 from ...core.issues import InputError, Issue
 from ...core.types import Array, Index, Integers
-from . import apart
-from .apart import read_apart
+from . import sandbox
+from .sandbox import read_in_sandbox
 
 STEP, IGES = (".step", ".stp"), (".iges", ".igs")
 READABLE = (*STEP, *IGES, ".brep", ".brp")
@@ -78,7 +78,7 @@ def shape_content(path: str | os.PathLike[str]) -> FileContent:
         ) from error
     if size == 0:
         raise InputError("EMPTY_FILE", where, "the file is empty; export the part again")
-    return FileContent(*apart.read_apart(_shape, file, where))
+    return FileContent(*sandbox.read_in_sandbox(_shape, file, where))
 
 
 def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
@@ -97,7 +97,7 @@ def mesh_content(path: str | os.PathLike[str], scale: float = 1.0) -> FileConten
         raise InputError("NO_FILE", where, "the file does not exist; check its name and folder")
     if file.stat().st_size == 0:
         raise InputError("EMPTY_FILE", where, "the file is empty; export the part again")
-    return FileContent(*apart.read_apart(_mesh, file, where, scale))
+    return FileContent(*sandbox.read_in_sandbox(_mesh, file, where, scale))
 
 
 def placed_mesh(mesh: Any, matrix: Any) -> Any:
@@ -275,7 +275,7 @@ def triangles(path: Path) -> tuple[Array, Integers]:
 
 @lru_cache(maxsize=64)
 def _known(path: Path, changed: int, size: int) -> tuple[Array, Integers]:
-    arrays = read_apart(_triangles, path)
+    arrays = read_in_sandbox(_triangles, path)
     for array in arrays:
         array.flags.writeable = False
     return arrays

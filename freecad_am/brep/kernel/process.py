@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Long calls of the geometry kernel, made in a process of their own where a window would have to wait for them.
+"""Sandboxed workers: Pythons with a FreeCAD of their own that may crash, hang or be ended.
 
-Python's other threads, the window's included, are blocked while the kernel makes the triangles of a
-shape, and nothing can end such a call. So worker threads of a window use a separate process; the
-main thread, which blocks no other thread, calls the kernel directly. Both come to the same numbers,
-bit by bit: shapes travel in the kernel's own binary form.
+They serve two purposes. `in_kernel_process` makes long calls of the geometry kernel: while the
+kernel triangulates a shape, all other threads of Python wait, the window included, and nothing can
+end the call. `run_limited` reads files from outside within limits of time and memory. The numbers
+are the same, bit by bit, as in this process.
 
-Protocol: pickles both ways. First the module search path is sent, and the version of FreeCAD comes back. Then
-(module, function, file of the shape or '', further arguments) gives (True, value) or (False, error).
+Protocol: pickles in both directions. First the worker receives the module search path and returns
+the version of FreeCAD. Then each question is (module, function, folder, arguments, limits); folder
+and arguments are those of `transfer.dump_value`. The answer is (True, value) or (False, error).
 """
 
 from __future__ import annotations
@@ -25,106 +26,80 @@ import threading
 import weakref
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import FreeCAD
 import Part
 
 from ...core.one_thread import ENVIRONMENT
+from . import transfer
 
 T = TypeVar("T")
 
 HOST = Path(__file__).with_name("host.py")
-LOOK_EVERY = 0.05  # s; how soon a thread that waits is ended
-FAILED = 1  # of one that ends of itself, but not as it should
-ENDED_BY_LIMIT = -24  # of SIGXCPU
-ENDED_BY_SYSTEM = -9  # Popen's code for SIGKILL, which Linux sends when memory runs out
-START = 60.0  # s that a process may take to be there
+SANDBOXED = "FREECAD_AM_SANDBOXED"  # environment variable that marks a worker
+POLL_S = 0.05  # s between checks whether the waiting thread is ended
+FAILED = 1  # status of a worker that ended by itself without an answer
+ENDED_BY_LIMIT = -24  # status by SIGXCPU, at the limit of processor time
+ENDED_BY_SYSTEM = -9  # status by SIGKILL, which Linux sends when memory runs out
+START_TIMEOUT_S = 60.0
 ANALYTIC_SURFACES = ("Part::GeomPlane", "Part::GeomCylinder", "Part::GeomCone")
-MAX_FACES = 24  # shapes of up to this many such faces are meshed faster than sent
+MAX_FACES = 24  # shapes with at most this many such faces are meshed faster than sent
 
-_idle: list[_Process] = []
-_readers: list[_Process] = []  # processes that have read files from outside
-_unable = False
+
+class Outcome(NamedTuple):
+    """How a worker ended a call. status: as Popen gives it, 0 for an answer. memory: MB that the
+    call took. sound, value: the answer of the worker.
+    """
+
+    status: int
+    memory: float
+    sound: bool = False
+    value: Any = None
+
+
+def in_sandbox() -> bool:
+    """Return whether this process is a sandboxed worker."""
+    return SANDBOXED in os.environ
 
 
 def in_kernel_process(function: Callable[..., T], shape: Any, *arguments: Any) -> T:
-    """What `function(shape, *arguments)` returns or raises; it must be a function of a module, and
-    return no shapes.
+    """Return what `function(shape, *arguments)` returns, or raise what it raises.
 
-    Raises RuntimeError where the kernel crashes on the shape, MemoryError where the system ends it for lack of memory.
+    A worker runs the call unless this is the main thread, which blocks no other one, or the shape
+    is meshed quickly. `function` belongs to a module. Raises RuntimeError if the kernel crashes on
+    the shape, MemoryError if the system ends the worker for lack of memory.
     """
-    if _unable or threading.current_thread() is threading.main_thread() or _is_quick(shape):
+    is_main = threading.current_thread() is threading.main_thread()
+    if is_main or kernel_workers.unable or _is_quick(shape):
         return function(shape, *arguments)
-    with _shape_file(shape) as path:
-        for _ in range(2):
-            process = _free(_idle) or _start_process()
-            if process is None:
-                return function(shape, *arguments)
-            try:
-                process.ask((function.__module__, function.__qualname__, path, arguments))
-                sound, answer = process.answer()
-            except _Left:  # it had nothing to do for long
-                process.end()
-                continue
-            except BaseException:  # its answer would have no receiver
-                process.end()
-                raise
-            if _idle:
-                process.end()
-            else:
-                _idle.append(process)
-            if sound:
-                result: T = answer
-                return result
-            raise answer
-    return function(shape, *arguments)
+    with tempfile.TemporaryDirectory(prefix="shape_") as folder:
+        outcome = kernel_workers.run(function, (shape, *arguments), folder)
+        if outcome is None:
+            return function(shape, *arguments)
+        if outcome.status == ENDED_BY_SYSTEM:
+            raise MemoryError
+        if outcome.status:
+            raise RuntimeError("it crashed")
+        if not outcome.sound:
+            raise outcome.value
+        result: T = transfer.load_value(outcome.value, folder)
+        return result
 
 
-def limited(
-    function: Callable[..., None], arguments: tuple[Any, ...], longest: float
-) -> tuple[int, float] | None:
-    """The exit code, as Popen gives it, of the process in which `function(*arguments)` ran within
-    its own limits (0 for success), and the memory, MB, that it took. None if no process can be
-    started.
+def run_limited(
+    function: Callable[..., Any],
+    arguments: tuple[Any, ...],
+    folder: str,
+    limits: tuple[float, float],
+    timeout: float,
+) -> Outcome | None:
+    """Return how a worker ended `function(*arguments)`, or None if no worker can be started.
 
-    longest: wall-clock limit, s, after which the process is ended, as at the limit of processor
-    time.
+    folder: where shapes of arguments and answer are stored. limits: processor time, s, and memory,
+    MB. timeout: wall-clock limit, s, which counts as the limit of processor time.
     """
-    while True:
-        used = _free(_readers)
-        process = used or _start_process()
-        if process is None:
-            return None
-        try:
-            process.ask((function.__module__, function.__qualname__, "", arguments))
-            sound, answer = process.answer(longest)
-        except _Left:
-            process.end()
-            if used is None:
-                return FAILED, process.most
-            continue  # it had nothing to do for long
-        except queue.Empty:
-            process.end()
-            return ENDED_BY_LIMIT, process.most
-        except (_Crashed, MemoryError):
-            return process.popen.wait(), process.most
-        except BaseException:  # who asked is cancelled
-            process.end()
-            raise
-        if isinstance(answer, MemoryError):
-            process.end()
-            return ENDED_BY_SYSTEM, math.inf
-        _readers.append(process)
-        return 0 if sound else FAILED, process.most
-
-
-def _free(idle: list[_Process]) -> _Process | None:
-    """An idle process, or None."""
-    try:
-        return idle.pop()
-    except IndexError:  # asked beforehand, another thread might take the last one in between
-        return None
+    return file_workers.run(function, arguments, folder, limits, timeout)
 
 
 def _is_quick(shape: Any) -> bool:
@@ -134,32 +109,107 @@ def _is_quick(shape: Any) -> bool:
     )
 
 
-@contextlib.contextmanager
-def _shape_file(shape: Any) -> Iterator[str]:
-    """The path of a temporary file of the shape."""
-    handle, path = tempfile.mkstemp(suffix=".bin", prefix="shape_")
-    os.close(handle)
-    try:
-        shape.exportBinary(path)
-        yield path
-    finally:
-        with contextlib.suppress(OSError):
-            os.remove(path)
+class WorkerPool:
+    """Workers that wait for their next call. unable: whether no worker could be started.
+
+    In a fork they belong to the parent.
+    """
+
+    def __init__(self) -> None:
+        self.idle: list[Worker] = []
+        self.unable = False
+        self._of_parent: list[Worker] = []
+        if hasattr(os, "register_at_fork"):
+            os.register_at_fork(after_in_child=self._forget)
+
+    def run(
+        self,
+        function: Callable[..., Any],
+        arguments: tuple[Any, ...],
+        folder: str,
+        limits: tuple[float, float] | None = None,
+        timeout: float = math.inf,
+    ) -> Outcome | None:
+        """See `run_limited`."""
+        data = transfer.dump_value(arguments, folder)
+        question = (function.__module__, function.__qualname__, folder, data, limits)
+        while True:
+            worker = self._idle_worker()
+            is_new = worker is None
+            if worker is None and not self.unable:
+                worker = self._start_worker()
+            if worker is None:
+                return None
+            try:
+                worker.ask(question)
+                outcome = worker.outcome(timeout)
+            except WorkerLeft:
+                worker.end()
+                if is_new:
+                    return Outcome(FAILED, worker.memory)
+                continue  # an idle worker has ended
+            except BaseException:  # nobody waits for the answer
+                worker.end()
+                raise
+            if outcome.status or self.idle:
+                worker.end()
+            else:
+                self.idle.append(worker)
+            return outcome
+
+    def end(self) -> None:
+        """End all idle workers."""
+        while (worker := self._idle_worker()) is not None:
+            worker.end()
+
+    def _idle_worker(self) -> Worker | None:
+        try:
+            return self.idle.pop()
+        except IndexError:  # another thread may take the last worker at any moment
+            return None
+
+    def _start_worker(self) -> Worker | None:
+        """Return a worker that is ready for questions, or None if none starts."""
+        for python in _pythons():
+            worker = None
+            try:
+                worker = Worker(python)
+                worker.ask(_search_path())
+                if worker.answer(START_TIMEOUT_S) == tuple(FreeCAD.Version()[:3]):
+                    started, worker = worker, None
+                    return started
+            except (OSError, WorkerLeft, WorkerEnded, queue.Empty):
+                continue
+            finally:  # also if the thread is being ended
+                if worker is not None:
+                    worker.end()
+        self.unable = True
+        return None
+
+    def _forget(self) -> None:
+        """In a fork: leave the workers to the parent."""
+        while (worker := self._idle_worker()) is not None:
+            worker.leave_to_parent()
+            self._of_parent.append(worker)
 
 
-class _Crashed(RuntimeError):
-    """The process has gone while it was at work."""
+class WorkerEnded(RuntimeError):
+    """The worker ended during a call, with a status as Popen gives it."""
+
+    def __init__(self, status: int) -> None:
+        super().__init__(status)
+        self.status = status
 
 
-class _Left(Exception):
-    """The process has gone while it was idle."""
+class WorkerLeft(Exception):
+    """The worker was gone before the call."""
 
 
-class _Process:
-    """A Python that runs `kernel.host`; another thread listens to it, so that a waiting caller can
-    be ended at any moment.
+class Worker:
+    """A Python that runs `host`. A thread listens to it, so that a waiting caller can be ended at
+    any moment.
 
-    It ends at the latest when the last reference is gone: a thread that is ended may lose it
+    It ends at the latest when its last reference is gone: a thread that is ended may lose it
     between any two steps.
     """
 
@@ -169,12 +219,12 @@ class _Process:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            env={**os.environ, **ENVIRONMENT},
+            env={**os.environ, **ENVIRONMENT, SANDBOXED: "1"},
             creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
         )
         self.kill = weakref.finalize(self, _kill, self.popen)
         self.answers: queue.Queue[Any] = queue.Queue()
-        self.most = 0.0  # MB that the last question took, as far as it was seen
+        self.memory = 0.0  # MB that the last call took, as far as it was seen
         threading.Thread(
             target=_listen,
             args=(self.popen.stdout, self.answers),
@@ -183,35 +233,48 @@ class _Process:
         ).start()
 
     def ask(self, question: Any) -> None:
-        """Send a question. Raises _Left if the process is gone."""
+        """Send a question. Raises WorkerLeft if the worker is gone."""
         data = memoryview(pickle.dumps(question, protocol=pickle.HIGHEST_PROTOCOL))
         try:
             with _block_sigpipe():
-                while data:  # past Python's buffer, which would be written at exit too, after the receiver is gone
+                while data:  # without Python's buffer, which would be written at exit too
                     data = data[os.write(self.popen.stdin.fileno(), data) :]
         except OSError:
-            raise _Left from None
+            raise WorkerLeft from None
 
-    def answer(self, longest: float = float("inf")) -> Any:
-        """Wait for its answer. Raises _Left where it went before it was asked, RuntimeError where it crashed, MemoryError
-        where the system ended it; queue.Empty after `longest` s."""
-        waited, start_memory, self.most = 0.0, _memory_of(self.popen.pid), 0.0
-        while waited < longest:
+    def answer(self, timeout: float = math.inf) -> Any:
+        """Return the answer to the question.
+
+        Raises WorkerLeft if the worker had ended before, WorkerEnded if it ends during the call,
+        queue.Empty after `timeout` s.
+        """
+        waited, start_memory, self.memory = 0.0, _memory_of(self.popen.pid), 0.0
+        while waited < timeout:
             try:
-                answer = self.answers.get(timeout=LOOK_EVERY)
+                answer = self.answers.get(timeout=POLL_S)
             except queue.Empty:
-                waited += LOOK_EVERY
-                self.most = max(self.most, _memory_of(self.popen.pid) - start_memory)
+                waited += POLL_S
+                self.memory = max(self.memory, _memory_of(self.popen.pid) - start_memory)
                 continue
             if answer is not None:
                 return answer[0]
-            code = self.popen.wait()
-            if code == 0:
-                raise _Left
-            if code == ENDED_BY_SYSTEM:
-                raise MemoryError
-            raise _Crashed("it crashed")
+            status = self.popen.wait()
+            if status == 0:
+                raise WorkerLeft
+            raise WorkerEnded(status)
         raise queue.Empty
+
+    def outcome(self, timeout: float) -> Outcome:
+        """Return how the call ends. Raises WorkerLeft if the worker had ended before."""
+        try:
+            sound, value = self.answer(timeout)
+        except queue.Empty:
+            return Outcome(ENDED_BY_LIMIT, self.memory)
+        except WorkerEnded as end:
+            return Outcome(end.status, self.memory)
+        if isinstance(value, MemoryError):
+            return Outcome(ENDED_BY_SYSTEM, math.inf)
+        return Outcome(0, self.memory, sound, value)
 
     def end(self) -> None:
         """End the process even while it works."""
@@ -220,16 +283,29 @@ class _Process:
             with contextlib.suppress(OSError, ValueError):
                 stream.close()
 
+    def leave_to_parent(self) -> None:
+        """In a fork: let go of the process, which ends with the parent.
+
+        Its answers stay open: a lock that the listening thread holds in the parent guards them.
+        """
+        self.kill.detach()
+        self.popen.stdin.close()
+
+
+kernel_workers = WorkerPool()
+file_workers = WorkerPool()  # workers that read damaged files triangulate nothing
+
 
 @contextlib.contextmanager
 def _block_sigpipe() -> Iterator[None]:
-    """Block SIGPIPE in this thread, so that writing to a process that has gone raises an OSError
-    and nothing else.
+    """Block SIGPIPE in this thread, so that writing to a process that is gone raises only an
+    OSError.
 
-    Python ignores the signal that comes with it. FreeCAD 1.0 and later start Python without its handlers: there it ends
-    FreeCAD, with all documents. It comes to the thread that writes, so it is held back in that one and taken away.
+    Plain Python ignores the signal. FreeCAD 1.0 and later start Python without its signal handlers,
+    where the signal would end FreeCAD and all documents. The signal goes to the thread that writes,
+    so this thread holds it back and removes it.
     """
-    if not hasattr(signal, "pthread_sigmask"):  # Windows knows no such signal
+    if not hasattr(signal, "pthread_sigmask"):  # Windows has no such signal
         yield
         return
     old_mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGPIPE})
@@ -243,7 +319,7 @@ def _block_sigpipe() -> Iterator[None]:
 
 
 def _memory_of(pid: int) -> float:
-    """Memory of a process, MB, or 0 if unknown."""
+    """Return the memory of a process, MB, or 0 if unknown."""
     try:
         with open(f"/proc/{pid}/statm", encoding="ascii") as stream:
             return int(stream.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
@@ -261,34 +337,12 @@ def _listen(stream: Any, answers: queue.Queue[Any]) -> None:
     try:
         while True:
             answers.put((pickle.load(stream),))
-    except Exception:  # it has ended, in the midst of an answer or between two
+    except Exception:  # the process has ended, during an answer or between two
         answers.put(None)
 
 
-def _start_process() -> _Process | None:
-    """A process that is ready for questions, or None if none can be started; a failure is not tried
-    again.
-    """
-    global _unable
-    for python in _pythons():
-        process = None
-        try:
-            process = _Process(python)
-            process.ask(_search_path())
-            if process.answer(START) == tuple(FreeCAD.Version()[:3]):
-                started, process = process, None
-                return started
-        except (OSError, _Left, RuntimeError, queue.Empty):
-            continue
-        finally:  # also where the thread is being ended
-            if process is not None:
-                process.end()
-    _unable = True
-    return None
-
-
 def _pythons() -> list[str]:
-    """Paths that may be a plain Python of the current version, as FreeCAD's own program is not one."""
+    """Return paths that may be a plain Python of this version; FreeCAD's own program is none."""
     version = "{}.{}".format(*sys.version_info)
     home = FreeCAD.getHomePath()
     candidates = [sys.executable or ""]
@@ -305,7 +359,7 @@ def _pythons() -> list[str]:
 
 
 def _search_path() -> list[str]:
-    """Where the modules that this FreeCAD has loaded, and ours, are found."""
+    """Return where the modules of this FreeCAD and of this package are."""
     home = FreeCAD.getHomePath()
     part_folder = os.path.dirname(os.path.abspath(Part.__file__))
     return [

@@ -1,38 +1,60 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Paths of the files of a job: the stated path or, for a job moved to another machine, a
-folder of copies.
+"""Paths of the files of a job: the stated path or, for a job of another machine, the path of a copy.
 
-All code that opens a file of a job, or checks that it exists, asks here. Stored and
-reported names are those of the job, so planning gives the same result on every machine.
+All code that opens a file of a job, or checks that it exists, asks here. Stored and reported names
+are those of the job, so planning gives the same result on every machine.
 """
 
 from __future__ import annotations
 
 import contextlib
+import functools
+import json
 import os
 from collections.abc import Iterator
+from contextvars import ContextVar
 from pathlib import Path
+from typing import NamedTuple
 
-_copies: str = ""  # the folder of copies, absolute; empty where a job is at home
-_own: tuple[str, ...] = ()  # folders of this machine nevertheless
-_home: str = ""  # of the user whose job it is
-_asked: set[str] | None = None
+# JSON of a Relocation; also the processes that this one starts find it there
+ENVIRONMENT_VARIABLE = "FREECAD_AM_FILES"
+
+_recorded_names: ContextVar[set[str] | None] = ContextVar("recorded_names", default=None)
+
+
+class Relocation(NamedTuple):
+    """Where the files of a job of another machine are. All paths are absolute.
+
+    copies: a folder with copies, below their names there. local: folders whose files keep their
+    paths. home: home folder there of the user whose job it is. machines: folders there with the
+    user's machine files.
+    """
+
+    copies: str
+    local: tuple[str, ...]
+    home: str
+    machines: tuple[str, ...]
+
+
+def relocation() -> Relocation | None:
+    """Return where the files of a job of another machine are; None for a job of this machine."""
+    return _parse_relocation(os.environ.get(ENVIRONMENT_VARIABLE, ""))
 
 
 def locate(path: str | os.PathLike[str]) -> Path:
     """Return the path of the file of this name on this machine, whether or not it exists."""
-    name = (
-        os.path.abspath(os.path.expanduser(os.fspath(path)))
-        if _copies or _asked is not None
-        else ""
-    )
-    if _asked is not None:
-        _asked.add(name)
-    if not _copies or any(
-        name == folder or name.startswith(folder + os.sep) for folder in (*_own, _copies)
+    moved, names = relocation(), _recorded_names.get()
+    if moved is None and names is None:
+        return Path(path)
+    name = os.path.abspath(os.path.expanduser(os.fspath(path)))
+    if names is not None:
+        names.add(name)
+    if moved is None or any(
+        name == folder or name.startswith(folder + os.sep)
+        for folder in (*moved.local, moved.copies)
     ):
         return Path(path)
-    return Path(_copies + name)
+    return Path(moved.copies + name)
 
 
 def is_there(path: str | os.PathLike[str]) -> bool:
@@ -42,21 +64,10 @@ def is_there(path: str | os.PathLike[str]) -> bool:
 
 def expanded(name: str) -> str:
     """A name with the home folder of the user whose job it is instead of `~`."""
-    return (
-        _home + name[1:]
-        if _home and (name == "~" or name.startswith("~/"))
-        else os.path.expanduser(name)
-    )
-
-
-def use_copies(copies: str, local_folders: tuple[str, ...], home: str) -> None:
-    """From now on, look for files in the folder `copies`, below their absolute names.
-
-    Files in the folders `local_folders` keep their paths. home: home folder of the user whose
-    job it is. All are absolute.
-    """
-    global _copies, _own, _home
-    _copies, _own, _home = copies, local_folders, home
+    moved = relocation()
+    if moved is not None and (name == "~" or name.startswith("~/")):
+        return moved.home + name[1:]
+    return os.path.expanduser(name)
 
 
 @contextlib.contextmanager
@@ -64,9 +75,19 @@ def record_names() -> Iterator[set[str]]:
     """Collect the absolute names of the files that are requested meanwhile, whether or not they
     exist.
     """
-    global _asked
-    previous, _asked = _asked, set()
+    names: set[str] = set()
+    token = _recorded_names.set(names)
     try:
-        yield _asked
+        yield names
     finally:
-        _asked = previous
+        _recorded_names.reset(token)
+
+
+@functools.lru_cache(maxsize=1)
+def _parse_relocation(text: str) -> Relocation | None:
+    if not text:
+        return None
+    values = json.loads(text)
+    return Relocation(
+        values["copies"], tuple(values["local"]), values["home"], tuple(values["machines"])
+    )

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from ...brep.files import read
-from ...brep.files.apart import MAX_FILE_MB
 from ...brep.files.read import read_mesh, read_shape
+from ...brep.files.sandbox import MAX_FILE_MB
 from ...brep.shapes.tessellate import body
 from ...core.collision.scene import depositing, scene
 from ...core.geometry import frames

@@ -14,7 +14,7 @@ from xml.parsers import expat
 
 import FreeCAD as App
 
-from ...brep.files.apart import read_apart
+from ...brep.files.sandbox import read_in_sandbox
 from ...core.issues import InputError, Text
 from ..stage import deferred
 from .file_links import linked_files, missing_files
@@ -30,7 +30,7 @@ def opened(path: str, where: str) -> Any:
     Without a window it has been opened before in a process of its own, with limits of time and memory.
     """
     refuse(path, where)
-    read_apart(_try, path, where)
+    read_in_sandbox(_try, path, where)
     return open_here(path, where)
 
 

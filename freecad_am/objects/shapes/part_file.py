@@ -11,8 +11,8 @@ from typing import Any
 import FreeCAD as App
 import Part
 
-from ...brep.files.apart import read_apart
 from ...brep.files.read import READABLE, mesh_content, placed_mesh, shape_content
+from ...brep.files.sandbox import read_in_sandbox
 from ...core.geometry.curves.bead_curves import POINT_FILES
 from ...core.geometry.located import is_there, locate
 from ...core.geometry.mesh.file_unit import MESHES, refuse_scale
@@ -103,7 +103,7 @@ def _document_content(path: str, object_name: str, stem: str) -> tuple[Any, str,
             )  # open already: it is the user's, and stays open
     return _decoded(
         hooks.carry_out(
-            lambda: read_apart(_shape_of_file, str(locate(path)), object_name), stem, READING
+            lambda: read_in_sandbox(_shape_of_file, str(locate(path)), object_name), stem, READING
         )
     )
 
@@ -119,7 +119,9 @@ def changed_part(
     """
     resolved_path = str(locate(path))
     return _decoded(
-        read_apart(_shape_of_file, resolved_path, object_name, change, where, patience=patience)
+        read_in_sandbox(
+            _shape_of_file, resolved_path, object_name, change, where, patience=patience
+        )
     )
 
 

@@ -10,17 +10,17 @@ import time
 
 import pytest
 
-from freecad_am.batch import supervised
+from freecad_am.batch import child
 from freecad_am.batch.outputs import folder as outputs
 from tests.robust.test_kills import OLD, files, publish
 
 SCRIPT = """
 import os, signal, sys, time
 sys.path.insert(0, {root!r})
-from freecad_am.batch import supervised
+from freecad_am.batch import child
 def work():
     {work}
-status = supervised.supervised(work, "part.step", lambda line: print(line, file=sys.stderr))
+status = child.run_in_child(work, "part.step", lambda line: print(line, file=sys.stderr))
 print("status", status)
 """
 
@@ -118,7 +118,7 @@ def test_a_crash_leaves_the_outputs_as_they_were(tmp_path, before):
         return 0
 
     lines = []
-    assert supervised.supervised(work, "cup.yaml", lines.append) == 2
+    assert child.run_in_child(work, "cup.yaml", lines.append) == 2
     assert len(lines) == 1 and lines[0].startswith("error[CRASHED] cup.yaml: ")
     assert files(tmp_path) == {f"new/out/{name}": data for name, data in before.items()}
     assert (tmp_path / "new").exists() == bool(before) and not list(

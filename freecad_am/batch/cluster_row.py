@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The command that plans a row for a worker of a cluster: the word `row` of the launcher.
+
+It reads a line of JSON from stdin: the folder of the batch and the order, if any. It writes a line
+of JSON to stdout: the versions of the software and the result. Its environment says where the files
+of the job are (`core.geometry.located`). It ends at SIGTERM, and when stdin ends, because then the
+worker is lost and cannot remove the folder of the batch.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import sys
+import threading
+from typing import Any
+
+from freecad_am.batch import run as planning
+from freecad_am.batch import versions
+from freecad_am.batch.rows import table
+
+
+def main() -> None:
+    """Answer one request."""
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    null_device = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null_device, 1)  # FreeCAD and OpenCASCADE write there as well
+    request = json.loads(sys.stdin.readline())
+    planning.import_all()
+    os.dup2(null_device, 2)  # errors until now are the message of the worker
+    answer = {"versions": versions.found_versions()}
+    if request["order"] is not None:
+        answer["result"] = _plan(request["folder"], table.Order(**request["order"]))
+    answers.write(json.dumps(answer) + "\n")
+    answers.flush()
+
+
+def _plan(folder: str, order: table.Order) -> dict[str, Any]:
+    """Return the result of an order. folder: of the batch."""
+    child = table.start_row(order)
+
+    def end(*_: Any) -> None:
+        child.stop()
+        os._exit(1)
+
+    def end_with_worker() -> None:
+        sys.stdin.read()
+        worker_is_lost.set()
+        child.kill()
+
+    worker_is_lost = threading.Event()
+    signal.signal(signal.SIGTERM, end)
+    threading.Thread(target=end_with_worker, daemon=True).start()
+    while not child.poll(60.0):
+        pass
+    if worker_is_lost.is_set():
+        shutil.rmtree(folder, ignore_errors=True)
+        os._exit(1)
+    return table.row_result(child)
+
+
+if __name__ == "__main__":
+    main()
