@@ -171,7 +171,7 @@ FOREIGN = {
     "gui": {"numpy", "FreeCAD", "FreeCADGui", "PySide", "pivy"},
 }
 # single files that may use more
-ALONE = {"core/geometry/regions/region": {"shapely"}}
+ALONE = {"core/geometry/regions/region": {"shapely"}, "core/one_thread": {"threadpoolctl"}}
 
 
 def modules():

@@ -6,7 +6,6 @@ Python and in freecadcmd, which imports a script as a module, may run it twice a
 then: nothing is let out of here.
 """
 
-import gc
 import os
 import runpy
 import sys
@@ -106,7 +105,6 @@ def main():
     """Run and end the process with the status; FreeCAD's own clean-up at exit is not waited for."""
     status = 1
     open_streams()
-    gc.set_threshold(300_000, 50, 50)
     try:
         status = run(arguments())
     except SystemExit as end:

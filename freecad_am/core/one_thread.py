@@ -4,7 +4,8 @@
 With more threads OpenBLAS rounds differently, even for six equations, and our small matrices take
 many times as long: docs/decisions/0016-one-thread.md. A process of our own gets the limit by
 `ENVIRONMENT`, before it loads numpy. In FreeCAD numpy may be loaded already and other code uses it
-too, so the limit is set for our work and then reset.
+too, so the limit is set for our work and then reset. threadpoolctl finds the libraries if it is
+installed.
 """
 
 from __future__ import annotations
@@ -13,10 +14,8 @@ import contextlib
 import ctypes
 import functools
 import glob
-import importlib.machinery
 import importlib.util
 import os
-import sys
 import threading
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
@@ -33,18 +32,17 @@ ENVIRONMENT = dict.fromkeys(
     ),
     "1",
 )
-# functions that get and set the number; the wheels of numpy and scipy have their own names for
-# those in OpenBLAS
-_NUMBERS = (
+# functions that get and set the number in OpenBLAS (wheels of numpy and scipy rename them), MKL
+# and OpenMP, where the number is one of the calling thread
+_FUNCTIONS = (
     *(
         (f"{before}openblas_get_num_threads{after}", f"{before}openblas_set_num_threads{after}")
         for before in ("", "scipy_")
         for after in ("", "64_")
     ),
     ("MKL_Get_Max_Threads", "MKL_Set_Num_Threads"),
-    ("bli_thread_get_num_threads", "bli_thread_set_num_threads"),
+    ("omp_get_max_threads", "omp_set_num_threads"),
 )
-_OPENMP = ("omp_get_max_threads", "omp_set_num_threads")  # the number for the calling thread only
 
 
 class _Number(NamedTuple):
@@ -54,14 +52,35 @@ class _Number(NamedTuple):
     set: Callable[[int], None]
 
 
-_lock = threading.Lock()
-_holders = 0
-_before: list[int] = []
+class _Limit:
+    """The limit of this process, and who holds it."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._holders = 0
+        self._before: list[int] = []
+
+    def hold(self) -> None:
+        with self._lock:
+            if not self._holders:
+                self._before = [number.get() for number in _numbers()]
+            self._holders += 1
+            limit_calling_thread()
+
+    def release(self) -> None:
+        with self._lock:
+            self._holders -= 1
+            if not self._holders:
+                for number, before in zip(_numbers(), self._before):
+                    number.set(before)
+
+
+_limit = _Limit()
 
 
 @contextlib.contextmanager
 def one_thread() -> Iterator[None]:
-    """Within it, and within `hold` and `release`, linear algebra runs in one thread; afterwards in as many as before."""
+    """Run linear algebra in one thread within this context."""
     hold()
     try:
         yield
@@ -70,69 +89,57 @@ def one_thread() -> Iterator[None]:
 
 
 def hold() -> None:
-    """From now on one thread, until `release` was called as many times as this."""
-    global _holders, _before
-    with _lock:
-        if not _holders:
-            _before = [number.get() for number in _numbers()]
-        _holders += 1
-        limit_calling_thread()
+    """Run linear algebra in one thread until `release` was called as many times as this."""
+    _limit.hold()
 
 
 def release() -> None:
-    """The other end of `hold`."""
-    global _holders
-    with _lock:
-        _holders -= 1
-        if not _holders:
-            for number, before in zip(_numbers(), _before):
-                number.set(before)
+    """End one `hold`; the last one restores the numbers of threads."""
+    _limit.release()
 
 
 def limit_calling_thread() -> None:
-    """One thread also for what the calling thread asks for: a library with OpenMP has a number for each."""
+    """Set one thread for the calling thread too: OpenMP has a number for each thread."""
     for number in _numbers():
         number.set(1)
 
 
 @functools.cache
 def _numbers() -> tuple[_Number, ...]:
-    """Return the thread limits of the libraries below numpy and scipy; empty if they only have one
-    thread.
+    """Return the thread limits of the libraries below numpy and scipy."""
+    try:
+        from threadpoolctl import ThreadpoolController
+    except ImportError:
+        return _search_numbers()
+    import scipy.linalg  # noqa: F401  threadpoolctl sees only libraries that are loaded
+
+    return tuple(
+        _Number(library.get_num_threads, library.set_num_threads)
+        for library in ThreadpoolController().lib_controllers
+    )
+
+
+def _search_numbers() -> tuple[_Number, ...]:
+    """Return the thread limits without threadpoolctl, where the linker looks up functions in the
+    dependencies of a module (not on Windows).
     """
-    found: dict[int, _Number] = {}
-    for file in _files():
-        try:
+    numbers: dict[int, _Number] = {}
+    for file in _linked_modules():
+        with contextlib.suppress(OSError):
             library = ctypes.CDLL(file)
-        except OSError:
-            continue
-        for names in (*_NUMBERS, _OPENMP):
-            # the linker looks through what the file itself depends on, too
-            if all(hasattr(library, name) for name in names):
-                get, set_to = (getattr(library, name) for name in names)
-                found[ctypes.cast(set_to, ctypes.c_void_p).value or 0] = _Number(get, set_to)
-    return tuple(found.values())
+            for names in _FUNCTIONS:
+                if all(hasattr(library, name) for name in names):
+                    get, set_to = (getattr(library, name) for name in names)
+                    address = ctypes.cast(set_to, ctypes.c_void_p).value or 0
+                    numbers[address] = _Number(get, set_to)
+    return tuple(numbers.values())
 
 
-def _files() -> list[str]:
-    """The modules of numpy and scipy that are linked with linear algebra, and the libraries themselves where the linker does
-    not look through dependencies (Windows). scipy is not imported for it: most jobs never need its half."""
+def _linked_modules() -> list[str]:
+    """Return the modules of numpy and scipy that use linear algebra, without importing scipy."""
     files = []
     for package, module in (("numpy", "_umath_linalg"), ("scipy", "_fblas")):
         spec = importlib.util.find_spec(package)
         for folder in (spec.submodule_search_locations or ()) if spec else ():
-            files += [
-                os.path.join(folder, "linalg", module + ending)
-                for ending in importlib.machinery.EXTENSION_SUFFIXES
-            ]
-            if os.name == "nt":
-                files += glob.glob(os.path.join(glob.escape(f"{folder}.libs"), "*openblas*.dll"))
-    if os.name == "nt":
-        for place in {
-            os.path.dirname(sys.executable),
-            os.path.join(sys.prefix, "bin"),
-            os.path.join(sys.prefix, "Library", "bin"),
-        }:
-            for name in ("*openblas*.dll", "mkl_rt*.dll"):
-                files += glob.glob(os.path.join(glob.escape(place), name))
-    return [file for file in files if os.path.exists(file)]
+            files += glob.glob(os.path.join(glob.escape(folder), "linalg", f"{module}.*"))
+    return files

@@ -17,113 +17,7 @@ import numpy as np
 from ..types import Array, ArrayLike
 from .chain import Chain
 
-# fewer matrices than this are done faster one at a time
-BATCH_THRESHOLD = 400
-ITERATIONS = 60
-TOLERANCE = 1e-10
-
-
-def extremes(matrices: Array) -> tuple[Array, Array]:
-    """The smallest and largest eigenvalues (n,) of positive semidefinite matrices (k, k, n), to about 1e-15 of the
-    largest."""
-    if matrices.shape[2] < BATCH_THRESHOLD:
-        values = np.linalg.eigvalsh(matrices.transpose(2, 0, 1))
-        return np.asarray(values[:, 0]), np.asarray(values[:, -1])
-    diagonal, squares = _tridiagonal(matrices)
-    trace = diagonal.sum(axis=0)
-    scale = 1.0 / np.where(trace > 0.0, trace, 1.0)
-    diagonal *= scale
-    squares *= scale * scale
-    roots = np.zeros((2, matrices.shape[2]))
-    roots[1] = 1.0
-    _iterate(diagonal, squares, roots)
-    roots /= scale
-    return roots[0], roots[1]
-
-
-def _iterate(diagonal: Array, squares: Array, roots: Array) -> None:
-    """Laguerre's iteration from starts outside all roots (2, n) to the nearest ones, in place."""
-    size = len(diagonal)
-    current, columns = roots.copy(), np.arange(roots.shape[1])
-    for _ in range(ITERATIONS):
-        value, slope, curve = _polynomial(diagonal, squares, current)
-        radicand = ((size - 1) ** 2 * slope) * slope
-        radicand -= (size * (size - 1) * value) * curve
-        slope += np.copysign(np.sqrt(np.maximum(radicand, 0.0)), slope)
-        step = size * value / np.where(slope == 0.0, 1.0, slope)
-        current -= step
-        going = (np.abs(step) > TOLERANCE).any(axis=0)
-        remaining = np.count_nonzero(going)
-        if 2 * remaining < len(columns):
-            # most have converged: continue with the others
-            roots[:, columns] = current
-            if not remaining:
-                return
-            current, columns = current[:, going], columns[going]
-            diagonal, squares = diagonal[:, going], squares[:, going]
-    roots[:, columns] = current
-
-
-def _tridiagonal(matrices: Array) -> tuple[Array, Array]:
-    """Diagonal (k, n) and squares of the subdiagonal (k - 1, n) of similar tridiagonal matrices."""
-    size, _, count = matrices.shape
-    diagonal, squares = np.empty((size, count)), np.empty((size - 1, count))
-    block = matrices
-    for step in range(size - 2):
-        diagonal[step] = block[0, 0]
-        column = block[1:, 0].copy()
-        squares[step] = np.einsum("in,in->n", column, column)
-        head = column[0].copy()
-        column[0] += np.copysign(np.sqrt(squares[step]), head)
-        half = squares[step] + np.abs(head) * np.sqrt(squares[step])
-        inverse = np.where(half > 0.0, 1.0 / np.where(half > 0.0, half, 1.0), 0.0)
-        inner = block[1:, 1:]
-        product = np.einsum("ijn,jn->in", inner, column) * inverse
-        product -= (0.5 * inverse * np.einsum("in,in->n", product, column)) * column
-        update = column[:, None] * product
-        block = inner - update
-        block -= update.transpose(1, 0, 2)
-    diagonal[-2:] = block[0, 0], block[1, 1]
-    squares[-1] = np.square(block[1, 0])
-    return diagonal, squares
-
-
-def _polynomial(diagonal: Array, squares: Array, x: Array) -> tuple[Array, Array, Array]:
-    """The characteristic polynomial of tridiagonal matrices at `x` with its first and second derivative."""
-    # of degree 2, then up by the recurrence of the leading minors; half the second derivative saves a factor
-    previous, factor = diagonal[0] - x, diagonal[1] - x
-    value, slope, curve = factor * previous - squares[0], -factor - previous, np.ones_like(x)
-    slope_before, curve_before, spare = np.full_like(x, -1.0), np.zeros_like(x), np.empty_like(x)
-    for row in range(2, len(diagonal)):
-        np.subtract(diagonal[row], x, out=factor)
-        square = squares[row - 1]
-        # the new minor takes the place of the one before the last
-        for older, current, lower in (
-            (curve_before, curve, slope),
-            (slope_before, slope, value),
-            (previous, value, None),
-        ):
-            older *= square
-            np.multiply(factor, current, out=spare)
-            np.subtract(spare, older, out=older)
-            if lower is not None:
-                older -= lower
-        value, previous, slope, slope_before, curve, curve_before = (
-            previous,
-            value,
-            slope_before,
-            slope,
-            curve_before,
-            curve,
-        )
-    curve *= 2.0
-    return value, slope, curve
-
-
-# number of poses per batch: their data fits the processor's cache, and the call overhead stays small
-PIECE = 4096
-# the same of poses whose eigenvalues are found together: in other company they have other last bits
-MATRICES_PER_BATCH = 1024
+BATCH_SIZE = 4096  # poses: limits the memory of intermediate arrays
 
 
 def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
@@ -136,8 +30,8 @@ def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
     count = len(angles)
     points = np.ascontiguousarray(np.broadcast_to(np.asarray(point, float), (count, 3)).T)
     result = np.empty((6, chain.axes, count))
-    for start in range(0, count, PIECE):
-        rows_now = slice(start, start + PIECE)
+    for start in range(0, count, BATCH_SIZE):
+        rows_now = slice(start, start + BATCH_SIZE)
         direction, origin = chain.axes_at(angles[rows_now])
         arm = np.subtract(points[:, rows_now], origin, out=origin)
         for row, (following, column_2) in enumerate(((1, 2), (2, 0), (0, 1))):
@@ -156,8 +50,9 @@ def condition(jacobians: ArrayLike, length: float) -> Array:
     """
 
     def compute_batch(scaled: Array) -> Array:
-        low, high = extremes(np.einsum("ikn,jkn->ijn", scaled, scaled))
-        result: Array = np.sqrt(np.maximum(low, 0.0) / high)
+        products = np.einsum("ikn,jkn->ijn", scaled, scaled)
+        values = np.linalg.eigvalsh(products.transpose(2, 0, 1))
+        result: Array = np.sqrt(np.maximum(values[:, 0], 0.0) / values[:, -1])
         return result
 
     return _in_pieces(compute_batch, jacobians, length)
@@ -169,7 +64,7 @@ def condition_bound(jacobians: ArrayLike, length: float) -> Array:
     The condition is at most 6 times the bound, for arms of the usual proportions 1 to 2.5 times. 0 where the last
     three axes have no common inverse: at the wrist's singularity.
     """
-    return _in_pieces(_frobenius, jacobians, length, PIECE)
+    return _in_pieces(_frobenius, jacobians, length)
 
 
 def condition_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Array:
@@ -239,16 +134,13 @@ def _in_pieces(
     function: Callable[..., Array],
     jacobians: ArrayLike,
     length: float,
-    size: int = MATRICES_PER_BATCH,
     with_slice: bool = False,
 ) -> Array:
-    """Return `function` of scaled Jacobians (6, axes, m), in batches of `size` that fit the
-    processor's cache.
-    """
+    """Return `function` of scaled Jacobians (6, axes, m), in batches."""
     matrices = np.moveaxis(np.asarray(jacobians, float), 0, -1)
     result = np.empty(matrices.shape[2])
-    for start in range(0, len(result), size):
-        rows = slice(start, min(start + size, len(result)))
+    for start in range(0, len(result), BATCH_SIZE):
+        rows = slice(start, min(start + BATCH_SIZE, len(result)))
         scaled = np.array(matrices[:, :, rows], order="C")
         scaled[:3] *= 1.0 / length
         unknown = np.isnan(scaled).any(axis=(0, 1)) if np.isnan(scaled.max()) else None

@@ -14,7 +14,7 @@ import numpy as np
 from ...core.issues import Text
 from ...core.read_moves import ARC, Event, ReadMoves
 from ...core.types import Array
-from ..alike import Lines, floats
+from ..read_lines import Lines, floats
 from .modules import Frames, Module, ProcessData, rotation_of_quaternions, unreadable
 
 _DECIMALS = re.compile(r"\.(\d+)")

@@ -13,7 +13,6 @@ import numpy as np
 
 from ...core.issues import Text
 from ...core.types import Array, Index, Mask
-from .. import alike
 from .records import Records, records_of, unreadable
 
 _NO_LISTING = "it is not a listing with /PROG, /MN, /POS and /END in this order"
@@ -114,23 +113,18 @@ def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instr
     )
     moving, other_rows = np.zeros(count, dtype=bool), []
     options: dict[int, str] = {}  # of moves, by their rows
-    for shape, rows_of_shape in alike.shapes(lines).items():
-        move = _MOTION.match(shape)
+    for row, line in enumerate(lines):
+        move = _MOTION.match(line)
         if move is None:
-            other_rows += rows_of_shape
+            other_rows.append(row)
             continue
-        moving[rows_of_shape] = True
-        spans = [move.span(group) for group in (2, 3, 6) if move[group]]
-        values = alike.numbers([lines[row] for row in rows_of_shape], shape, spans)
-        moves.point[rows_of_shape], moves.value[rows_of_shape] = values[:, 0], values[:, 1]
-        moves.unit[rows_of_shape], moves.straight[rows_of_shape] = (
-            UNITS.index(move[4]),
-            move[1] == "L",
-        )
+        moving[row] = True
+        moves.point[row], moves.value[row] = int(move[2]), float(move[3])
+        moves.unit[row], moves.straight[row] = UNITS.index(move[4]), move[1] == "L"
         if move[6]:
-            moves.corner[rows_of_shape] = values[:, 2]
+            moves.corner[row] = float(move[6])
         if move[7]:
-            options.update((row, lines[row][slice(*move.span(7))]) for row in rows_of_shape)
+            options[row] = move[7]
     moves_before = np.cumsum(moving)  # how many moves there are up to a line
     instructions, moves_done = [], 0
     for row in [*sorted([*options, *(row for row in other_rows if lines[row].strip())]), count]:

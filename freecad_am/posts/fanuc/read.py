@@ -17,7 +17,7 @@ import numpy as np
 from ...core.issues import Text
 from ...core.read_moves import ARC, Configuration, Event, ReadMoves
 from ...core.types import Array, Index
-from ..alike import Lines, floats
+from ..read_lines import Lines, floats
 from .parsed import UNITS, Listing, listing_of, name_of
 from .records import unreadable
 

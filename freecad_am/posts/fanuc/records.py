@@ -11,7 +11,6 @@ import numpy as np
 
 from ...core.issues import InputError, Text
 from ...core.types import Array, Index
-from .. import alike
 
 _RECORD_START = re.compile(r"^P\[(\d+)", re.MULTILINE)
 _FRAMES = r"P\[(\d+)[^\]]*\]\{\s*GP1:\s*UF : (\d+|F), UT : (\d+|F),\s*"
@@ -26,14 +25,6 @@ def _values(names: str, units: str) -> str:
 
 
 _JOINTS = re.compile(_FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"\s*\};")
-# one record, from the end of the line before to its own end, with the digits of its names as
-# numbers too
-_ONE = re.compile(
-    r"\s*\n"
-    + (_FRAMES + _values(" ".join([r"J(\d)"] * 6), "deg " * 6)).replace("GP1", r"GP(\d)")
-    + r"\s*"
-)
-_NUMBERED, _GROUP, _FRAMES_OF, _NAMES, _VALUES = 1, 2, (3, 4), range(5, 17, 2), range(6, 17, 2)
 # the same with a track, and the axes of another motion group, in the same frames
 _FULL_RECORD = re.compile(
     _FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"(?:,\s*E1 ?= *(-?\d*\.\d+) *mm)?"
@@ -76,7 +67,7 @@ def records_of(file: str, lines: list[str], text: str, positions: int) -> Record
     records = (
         _joint_records_of_groups(file, text, positions)
         if has_more
-        else _joint_records(text) or _any_records(file, text, positions)
+        else _any_records(file, text, positions)
     )
     _check_groups(file, lines, records)
     if (np.diff(records.point) > 0).all():
@@ -190,35 +181,6 @@ def _joint_records_of_groups(file: str, text: str, positions: int) -> Records:
         number,
         track_values,
     )
-
-
-def _joint_records(text: str) -> Records | None:
-    """The positions of a text with nothing but joint positions; None if it has other content."""
-    *records, trailing = f"\n{text}".split("};")
-    if not records or trailing.strip():
-        return None
-    point, values, decimals = np.zeros(len(records), dtype=np.intp), np.zeros((len(records), 6)), 99
-    frames = [("", "")] * len(records)
-    for shape, rows in alike.shapes(records, "};").items():
-        match = _ONE.fullmatch(shape)
-        if match is None:
-            return None
-        shape_records = [records[row] for row in rows]
-        stated = [group for group in _FRAMES_OF if shape[slice(*match.span(group))] != "F"]
-        groups = (_NUMBERED, _GROUP, *_NAMES, *_VALUES, *stated)
-        numbers = alike.numbers(shape_records, shape, [match.span(group) for group in groups])
-        if (numbers[:, 1:8] != [1, 1, 2, 3, 4, 5, 6]).any():
-            return None
-        point[rows], values[rows] = numbers[:, 0], numbers[:, 8:14]
-        decimals = min(decimals, *(len(match[group].partition(".")[2]) for group in _VALUES))
-        (a, b), (c, d) = (match.span(group) for group in _FRAMES_OF)
-        alone = (numbers[:, 14:] == numbers[0, 14:]).all()  # in the same frames
-        frame_texts = [
-            (record[a:b], record[c:d]) for record in (shape_records[:1] if alone else shape_records)
-        ]
-        for row, of_record in zip(rows, frame_texts * len(shape_records) if alone else frame_texts):
-            frames[row] = of_record
-    return Records(point, values, [()] * len(records), frames, 0.5 * 10.0**-decimals, False)
 
 
 def _any_records(file: str, text: str, positions: int) -> Records:

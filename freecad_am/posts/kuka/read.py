@@ -16,7 +16,7 @@ import numpy as np
 from ...core.issues import InputError, Text
 from ...core.read_moves import ARC, Event, ReadMoves
 from ...core.types import Array
-from ..alike import Lines, floats
+from ..read_lines import Lines, floats
 from .read_arc import ArcMove, is_arc_line
 
 

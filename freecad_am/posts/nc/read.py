@@ -13,7 +13,7 @@ import numpy as np
 from ...core.issues import InputError
 from ...core.read_moves import Event, ReadMoves
 from ...core.types import Array, Mask, NDArray
-from ..alike import Lines
+from ..read_lines import Lines
 
 # feed as the time of the move; as the speed of the linear axes; as the speed of the linear axes, or
 # of the rotary ones if only these move; and as the speed of the tip in part coordinates

@@ -17,7 +17,7 @@ import numpy as np
 from ...core.issues import Text, Word
 from ...core.read_moves import Event, ReadMoves
 from ...core.types import Array, Integers
-from ..alike import Lines
+from ..read_lines import Lines
 from .files import (
     AXES,
     POSE,

@@ -18,7 +18,7 @@ import numpy as np
 from ...core.issues import InputError, Text
 from ...core.read_moves import Event, ReadMoves
 from ...core.types import Array
-from ..alike import Lines
+from ..read_lines import Lines
 
 INSTRUCTIONS = frozenset(
     [

@@ -17,7 +17,7 @@ import numpy as np
 from ...core.issues import InputError, Text
 from ...core.read_moves import ARC, Event, ReadMoves
 from ...core.types import Array
-from ..alike import Lines
+from ..read_lines import Lines
 
 _NAME = re.compile(r"//NAME ([A-Z][A-Z0-9_]{0,31})$")
 _COUNT = re.compile(r"///NPOS (\d+),(\d+),(\d+),0,0,0$")
