@@ -51,13 +51,11 @@ def _in_vain(stages: Any, is_chosen: bool) -> str:
 
 def _curved(job: Job, stages: Any) -> bool:
     """Whether curved layers were chosen for a feature that leaves layers open."""
-    from freecad_am.core.parameters.filled import GEODESIC
-
     feature_pairs = zip(job.features, stages.job.features, strict=True)
     return any(
         job_feature.sections is not None
         and "layers" not in job_feature.sections["strategy"]
-        and getattr(chosen_feature.strategy, "layers", "") == GEODESIC
+        and chosen_feature.strategy.has_curved_layers
         for job_feature, chosen_feature in feature_pairs
     )
 
@@ -79,13 +77,13 @@ def _with(feature: JobFeature, alone: bool) -> JobFeature:
     """A feature changed to clear its nozzle: a wall gets one direction, curved layers (of a single
     feature) become plane ones.
     """
-    from freecad_am.core.parameters.filled import GEODESIC, OFFSET, PLANES
+    from freecad_am.core.parameters.filled import PLANES
 
     if leans(feature, feature.strategy):
         return dataclasses.replace(
             feature, build_direction=dataclasses.replace(feature.build_direction, mode=UPRIGHT)
         )
-    if alone and getattr(feature.strategy, "layers", "") in (GEODESIC, OFFSET):
+    if alone and feature.strategy.has_curved_layers:
         return dataclasses.replace(
             feature, strategy=dataclasses.replace(feature.strategy, layers=PLANES)
         )

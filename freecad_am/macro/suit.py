@@ -163,7 +163,7 @@ def _is_above(cell: Any, features: Sequence[Any]) -> bool:
     if (
         len(features) > 1
         or family is None
-        or not family.has_plane_layers
+        or not family.stacks_layers
         or settings.platform_diameter <= 0.0
     ):
         return False

@@ -86,8 +86,7 @@ class SolidFeature(FeatureStage):
         guide = _select_elements(
             obj,
             "Guide",
-            strategy,
-            ("along",),
+            strategy.follows_guide,
             (
                 Text(
                     "layers: {} do not use a guide; use layers: along, or remove the guide",
@@ -98,8 +97,7 @@ class SolidFeature(FeatureStage):
         start = _select_elements(
             obj,
             "StartFaces",
-            strategy,
-            ("geodesic", "offset"),
+            strategy.has_curved_layers,
             (
                 Text(
                     "layers: {} do not use start faces; use layers: geodesic or offset, or "
@@ -122,7 +120,7 @@ class SolidFeature(FeatureStage):
                 )
                 solid += bodies_found.bodies
                 issues += bodies_found.issues
-            if strategy.layers == "along":
+            if strategy.follows_guide:
                 edges = None if guide is None else edges_of(*guide)
                 solids = prepare_guided(solid, edges, strategy, label, issues)
             else:
@@ -171,15 +169,15 @@ class SolidFeature(FeatureStage):
 
 
 def _select_elements(
-    obj: Any, name: str, strategy: SolidParameters, layers: tuple[str, ...], refusal: str
+    obj: Any, name: str, is_used: bool, refusal: str
 ) -> tuple[Any, tuple[str, ...], str] | None:
     """The linked shape of a feature, the names of its faces or edges (empty for all), and its
-    label; None if nothing is chosen. layers: kinds that use the link; others are rejected.
+    label; None if nothing is chosen. is_used: whether the layers use the link; it is rejected otherwise.
     InputError NOT_FOR_FAMILY, NO_SHAPE.
     """
     if not getattr(obj, name, None):
         return None
-    if strategy.layers not in layers:
+    if not is_used:
         raise InputError("NOT_FOR_FAMILY", f"{obj.Label}.{name}", refusal)
     owner = getattr(obj, name)[0]
     if is_mesh(owner):

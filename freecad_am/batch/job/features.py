@@ -141,7 +141,7 @@ def one_feature(values: dict[str, Any], name: str) -> JobFeature:
     refuse_direction(strategy, build_direction)
     source = part_of({key: value for key, value in part_section.items() if key != "fuse"})
     guide = guide_of((values.get("strategy") or {}).get("guide"), part_section)
-    if guide is not None and getattr(strategy, "layers", "") != "along":
+    if guide is not None and not strategy.follows_guide:
         raise InputError(
             "NOT_FOR_FAMILY",
             "strategy.guide",
@@ -150,7 +150,7 @@ def one_feature(values: dict[str, Any], name: str) -> JobFeature:
     start_faces = faces_of(
         (values.get("strategy") or {}).get("start_faces"), "strategy.start_faces"
     )
-    if start_faces and getattr(strategy, "layers", "") not in ("geodesic", "offset"):
+    if start_faces and not strategy.has_curved_layers:
         raise InputError(
             "NOT_FOR_FAMILY",
             "strategy.start_faces",

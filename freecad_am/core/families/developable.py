@@ -8,10 +8,7 @@ from .family import Family
 
 
 class Developable(Family):
-    """Solids filled in layers around a hub.
-
-    Toolpaths of solids in curved layers and in layers along a guide have this family too.
-    """
+    """Solids filled in layers around a hub."""
 
     kind = "developable"
     parameters = DevelopableParameters

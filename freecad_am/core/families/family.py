@@ -17,49 +17,54 @@ class Family:
     The attributes are facts that other modules use in place of the kind. Planning is in
     `core.strategies`; `objects.families` and `gui.families` have the side of documents and of the
     window, in files of the same name.
-
-    What a job may contain: `kind`, the value of `strategy.kind`; `parameters`, the dataclass of
-    `strategy`; `substrate`: NEEDED (or edges to start from, or edges on the platform), OPTIONAL or
-    NONE; `takes_meshes`, `takes_faces`, `takes_start_edges`, `takes_curves`: whether the part may
-    be a mesh, some faces, may name edges to start from, may be edges or a table of points;
-    `selections`: keys of `strategy` that select elements of the part; `fuses_solids`: whether
-    `part.fuse` joins solids that touch; `chooses_layers`: whether `strategy.layers` names a kind of
-    layers; `modes`: the `build_direction` modes, and `mode_refusal`, the reason against the others.
-
-    What is deposited: `is_filled`: beads fill solids or layers on faces and have a spacing,
-    otherwise each is a wall of one bead; `has_axis`: the part has one axis of revolution, about
-    which layers, directions and spirals turn, and grows from the plane z = 0 of its frame;
-    `mount`: the frame on the platform for `cell.mount: auto`; `follows_wall`: build directions
-    follow a wall and could be a single one; `is_open_wall`: the visible side of a bead is the one
-    away from the middle of its layer; `compares_spacings`: the report compares the spacings of
-    `strategy.compare`; `starts_on_base`: the first layer starts on its base by construction;
-    `starts_anywhere`: every layer may start on the ground; `has_plane_layers`: layers are planes
-    square to the Z of the frame, and what is below the plane of the platform counts as on it;
-    `cuts_into_substrate`: parts may reach into the part that they grow on.
     """
 
+    # ---- what a job may contain
+
+    # the value of `strategy.kind`
     kind: ClassVar[str]
+    # the dataclass of `strategy`
     parameters: ClassVar[type[LayerParameters]] = LayerParameters
+    # NEEDED (or edges to start from, or edges on the platform), OPTIONAL or NONE
     substrate: ClassVar[str] = OPTIONAL
+    # whether the part may be a mesh, or some faces, may name edges to start from, or may be edges or
+    # a table of points
     takes_meshes: ClassVar[bool] = False
     takes_faces: ClassVar[bool] = True
     takes_start_edges: ClassVar[bool] = False
     takes_curves: ClassVar[bool] = False
+    # keys of `strategy` that select elements of the part
     selections: ClassVar[tuple[str, ...]] = ()
+    # whether `part.fuse` joins solids that touch
     fuses_solids: ClassVar[bool] = False
+    # whether `strategy.layers` names a kind of layers
     chooses_layers: ClassVar[bool] = False
+    # the modes of `build_direction`, and the reason against the others
     modes: ClassVar[tuple[str, ...]] = ("local",)
     mode_refusal: ClassVar[str] = ""
 
+    # ---- what is deposited
+
+    # beads fill solids or layers on faces and have a spacing; otherwise each is a wall of one bead
     is_filled: ClassVar[bool] = False
+    # layers, directions and spirals turn about one axis, from the plane z = 0 of the feature's frame
     has_axis: ClassVar[bool] = False
+    # the frame on the platform for `cell.mount: auto`
     mount: ClassVar[str] = ON_PART
+    # build directions follow a wall and could be a single one
     follows_wall: ClassVar[bool] = False
+    # the visible side of a bead is the one away from the middle of its layer
     is_open_wall: ClassVar[bool] = False
+    # the report compares the spacings of `strategy.compare`
     compares_spacings: ClassVar[bool] = False
+    # the first layer starts on its base by construction
     starts_on_base: ClassVar[bool] = False
+    # every layer may start on the ground
     starts_anywhere: ClassVar[bool] = False
-    has_plane_layers: ClassVar[bool] = False
+    # layers are stacked along the Z of the feature's frame, as planes unless the job names others;
+    # what is below the plane of the platform counts as on it
+    stacks_layers: ClassVar[bool] = False
+    # layers begin at the surface of the part below, so that the parts may overlap
     cuts_into_substrate: ClassVar[bool] = False
 
     def kind_in_layers(self, layers: Any) -> str:

@@ -11,7 +11,7 @@ from .family import Family
 
 
 class Solid(Family):
-    """Solids in layers of any kind; a toolpath of this family has plane ones."""
+    """Solids on a plane, in layers of any kind but those around a hub."""
 
     kind = "solid"
     parameters = SolidParameters
@@ -24,7 +24,7 @@ class Solid(Family):
     mode_refusal = "{} is for walls; plane layers grow along their normal: use local or fixed"
 
     is_filled = True
-    has_plane_layers = True
+    stacks_layers = True
 
     def kind_in_layers(self, layers: Any) -> str:
         """Return the kind of solids on a hub for the layers of that name."""

@@ -269,7 +269,7 @@ def max_moves(record: Fitted, layers: Index) -> Array:
 
 def ways_of(toolpath: Toolpath) -> Ways:
     """Directions (n, 3) in which layers grow at points of a bead."""
-    if toolpath.traits.has_plane_layers:
+    if toolpath.traits.stacks_layers:
         up = toolpath.frame[:3, 2]
         return lambda bead: np.tile(up, (len(bead), 1))
     return lambda bead: bead.build
@@ -320,13 +320,13 @@ class _Above:
         self, toolpath: Toolpath, planned: Sequence[Scanned], directions_of: Ways, scan: Scan
     ) -> None:
         self.first = planned
-        self.has_plane_layers, self.scan = toolpath.traits.has_plane_layers, scan
+        self.is_stacked, self.scan = toolpath.traits.stacks_layers, scan
         points, off = zip(*(scanned_bead.samples() for scanned_bead in planned), strict=True)
         self.off, self.tree = np.concatenate(off), cKDTree(np.concatenate(points))
         self.plane = planned[0].bead.points[0]
 
     def __call__(self, points: Array, directions: Array) -> Array:
-        if not self.has_plane_layers:
+        if not self.is_stacked:
             return np.asarray(self.off[self.tree.query(points)[1]])
         feet = points - ((points - self.plane) * directions).sum(axis=1)[:, None] * directions
         heights = self.scan.heights(feet, directions)

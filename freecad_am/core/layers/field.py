@@ -42,7 +42,7 @@ def stacks(solids: SolidsOnHub, strategy: FilledParameters) -> Iterator[Stack]:
                 yield Stack(body.name, rotary.slices(group.base, body, strategy), number, solid)
             continue
         assert isinstance(strategy, SolidParameters)
-        if strategy.layers in ("geodesic", "offset"):
+        if strategy.has_curved_layers:
             yield Stack(group.bodies[0].name, curved.slices(solids, group, strategy), number, 0)
             continue
         for solid, bodies in enumerate(

@@ -12,7 +12,7 @@ from .strategy import LAYER_TIME, MEND, LayerParameters
 
 LEAST_BEAD = 2.0  # mm, as short as a bead of usual width is worth a start
 PLANES, GEODESIC = "planes", "geodesic"  # layers proposed automatically
-OFFSET = "offset"
+OFFSET, ALONG = "offset", "along"
 
 
 @dataclass(frozen=True)
@@ -267,6 +267,11 @@ class FilledParameters(LayerParameters):
         return self.fill in ("contours", "connected", "spiral") or self.rounds == math.inf
 
     @property
+    def share_of_cut(self) -> float:
+        """How many layer heights above the surface of a layer the part is cut."""
+        return 0.0
+
+    @property
     def thick(self) -> int:
         """Return how many layers above and below decide which regions count as solid; 0 to fill all
         regions.
@@ -301,7 +306,7 @@ class SolidParameters(FilledParameters):
         "measured through the part, so that no support material is needed (geodesic); surfaces "
         "at equal straight distances from it (offset); or planes normal to a guide curve "
         "(along).",
-        choices=(PLANES, GEODESIC, OFFSET, "along"),
+        choices=(PLANES, GEODESIC, OFFSET, ALONG),
     )
     direction: str = f.parameter(
         "0 0 1",
@@ -352,6 +357,21 @@ class SolidParameters(FilledParameters):
         return f.direction_of(
             self.direction, "strategy.direction", "give three numbers such as [0, 0, 1], or auto"
         )
+
+    @property
+    def has_plane_layers(self) -> bool:
+        """Return whether layers are parallel planes."""
+        return self.layers == PLANES
+
+    @property
+    def has_curved_layers(self) -> bool:
+        """Return whether layers are surfaces at equal distances from the support or from faces."""
+        return self.layers in (GEODESIC, OFFSET)
+
+    @property
+    def follows_guide(self) -> bool:
+        """Return whether layers are planes normal to a guide curve."""
+        return self.layers == ALONG
 
     @property
     def share_of_cut(self) -> float:

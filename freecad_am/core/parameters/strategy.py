@@ -65,6 +65,16 @@ class LayerParameters:
         high=10.0,
     )
 
+    @property
+    def has_curved_layers(self) -> bool:
+        """Return whether layers are surfaces at equal distances from the support or from faces."""
+        return False
+
+    @property
+    def follows_guide(self) -> bool:
+        """Return whether layers are planes normal to a guide curve."""
+        return False
+
 
 @dataclass(frozen=True)
 class RevolutionParameters(LayerParameters):

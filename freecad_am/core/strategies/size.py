@@ -20,7 +20,7 @@ from ..geometry.mesh.solid import SolidMesh
 from ..geometry.on_hub import SolidsOnHub
 from ..issues import NOTE, InputError, Issue, Text, Word
 from ..layers.curved.field import step_of
-from ..parameters.filled import GEODESIC, OFFSET, CladdingParameters, FilledParameters
+from ..parameters.filled import CladdingParameters, FilledParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import (
     MOST_LAYERS,
@@ -205,7 +205,7 @@ def solids_size(
         layers += (
             sum(heights) if strategy.order == "feature" else max(heights, default=0.0)
         ) / strategy.layer_height
-        if getattr(strategy, "layers", "") in (GEODESIC, OFFSET):
+        if strategy.has_curved_layers:
             nodes += volume / step_of(volume, strategy.layer_height) ** 3
     return Size(layers, points, squares, nodes)
 

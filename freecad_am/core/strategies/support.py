@@ -138,7 +138,7 @@ def _beyond_edge(toolpath: Toolpath, first_pieces: Pieces, frame: Array, diamete
     """
     local = (first_pieces.middle - frame[:3, 3]) @ frame[:3, :3]
     on_plane = (
-        local[:, 2] if toolpath.traits.has_plane_layers else np.abs(local[:, 2])
+        local[:, 2] if toolpath.traits.stacks_layers else np.abs(local[:, 2])
     ) <= CONTACT_HEIGHTS * toolpath.layer_height
     return np.where(on_plane, np.hypot(local[:, 0], local[:, 1]) - 0.5 * diameter, -np.inf)
 

@@ -116,7 +116,7 @@ def _filled(feature: Any) -> tuple[SolidsOnHub | None, float]:
     if not isinstance(stage, SolidFeature) or not feature.Key:
         return None, 0.5
     strategy = stage.parameters(feature, SolidParameters)
-    return (stage.value(feature) if strategy.layers == "planes" else None), strategy.share_of_cut
+    return (stage.value(feature) if strategy.has_plane_layers else None), strategy.share_of_cut
 
 
 _writing: list[Background] = []  # Python must keep them as long as they write

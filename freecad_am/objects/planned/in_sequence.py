@@ -161,7 +161,7 @@ def _judge_feature(
     bases = bases_of(entry.inputs)
     if feature_part.traits.has_axis and (plates or _lowest(toolpath, feature_part)):
         planes = (stands if plates else feature_part.frame,)
-    if feature_part.traits.has_plane_layers and not _lowest(toolpath, feature_part):
+    if feature_part.traits.stacks_layers and not _lowest(toolpath, feature_part):
         bases = []
     ground = (*entry.inputs.wall.surroundings, *plates)
     lengths, support_issues = support.feature_support(toolpath, number, planes, ground, bases)

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ...core.issues import ERROR, NOTE, AmError, Issue, Text, has_errors
-from ...core.parameters.filled import GEODESIC, OFFSET, PLANES
+from ...core.parameters.filled import PLANES
 from ...core.strategies.clearance.look import CLEARANCE
 from ...core.toolpath import Toolpath
 from ..families.given import Given
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 def in_planes(inputs: Given, fit: Callable[[Toolpath], Toolpath] | None) -> Fixed | None:
     """A solid in curved layers that start at its base, planned in plane ones; None for others."""
-    if getattr(inputs.strategy, "layers", "") not in (GEODESIC, OFFSET) or any(
+    if not inputs.strategy.has_curved_layers or any(
         group.start is not None for group in inputs.wall.groups
     ):
         return None

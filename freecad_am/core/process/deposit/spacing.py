@@ -120,7 +120,7 @@ def is_plane(toolpath: Toolpath) -> bool:
 def _planes(toolpath: Toolpath) -> Array | None:
     """(layers,) mm along the Z of the frame, where layers are filled planes square to it; else None."""
     toolpath = toolpath.deposited
-    if not toolpath.traits.has_plane_layers:
+    if not toolpath.traits.stacks_layers:
         return None
     up = toolpath.frame[:3, 2]
     ends = np.array(

@@ -279,7 +279,7 @@ def volumes(
 def slab_volumes(solids: SolidsOnHub, strategy: FilledParameters) -> Array | None:
     """mm3 (k,) that solids in plane layers have between the planes of each; None for other layers."""
     group = group_of(solids)
-    if group is None or getattr(strategy, "layers", "planes") != "planes":
+    if group is None or strategy.has_curved_layers or strategy.follows_guide:
         return None  # curved layers may begin on a plane too
     return slabs(group, strategy.layer_height, np.zeros((0, 3)), np.zeros(0)).part_volume
 

@@ -55,7 +55,7 @@ def uncut(
     """Uncut pieces of which beads, of a width in mm, leave more than LEAST_SHARE. Curved layers are not checked: they reach
     everything connected with their start.
     """
-    if getattr(strategy, "layers", "planes") in ("geodesic", "offset"):
+    if strategy.has_curved_layers:
         return []
     missed = []
     for number, group in enumerate(solids.groups):
@@ -127,8 +127,8 @@ def _levels(group: Group, points: Array) -> Array:
 def _is_cut(low: float, high: float, strategy: FilledParameters) -> bool:
     """Whether a layer is cut between two levels, mm; a cut in a face of a solid is moved aside as `planes.field` does it."""
     aside = CLEARANCE_SHARE * strategy.chord_error
-    share = getattr(strategy, "share_of_cut", 0.0)
-    if getattr(strategy, "cut_at", "bottom") == "top":
+    share = strategy.share_of_cut
+    if share == 1.0:  # at the top
         low, high = low + 2.0 * aside, high + 2.0 * aside
     first_layer = max(0, int(np.ceil((low - aside) / strategy.layer_height - share - EXACT)))
     return (first_layer + share) * strategy.layer_height < high - aside

@@ -338,7 +338,7 @@ def _numbered(issue: Issue, stack: Stack, course: Course) -> Issue:
 
 
 def _refuse_mode(planes: bool, strategy: FilledParameters, build: BuildDirectionParameters) -> None:
-    if getattr(strategy, "layers", "planes") != "planes" and build.mode != "local":
+    if (strategy.has_curved_layers or strategy.follows_guide) and build.mode != "local":
         raise InputError(
             "NOT_FOR_FAMILY",
             "build_direction.mode",

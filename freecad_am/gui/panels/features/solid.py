@@ -192,7 +192,7 @@ class SolidPanel(PickPanel):
         draft.check()
         cached, work = self.cached, draft.prepare()
         strategy: SolidParameters = draft.stage.parameters(draft.obj, SolidParameters)
-        guided = strategy.layers == "along"
+        guided = strategy.follows_guide
         key = (self._inputs(), strategy.direction if guided else None, guided)
 
         def compute() -> tuple[Outcome, tuple[Drawing, Leaning, int]]:
