@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from freecad_am.core.families.registry import AUTO, FAMILIES
+from freecad_am.core.parameters.fills import FILLS
 
 PACKAGE = Path(__file__).resolve().parent.parent / "freecad_am"
 KINDS = {family.kind for family in FAMILIES}
@@ -19,9 +20,13 @@ WALL_CLASSES = {"RevolvedWall", "PatchWall", "SurfaceWall", "SolidsOnHub", "Clad
 # comparisons with a kind, and tests of the class of parameters, features and walls; only goes down
 MAX_SWITCHES = 16
 MAX_FILES_OF_A_FAMILY = 12  # that have its kind as a string
+LAYERS = {"planes", "geodesic", "offset", "along", "PLANES", "GEODESIC", "OFFSET"}
+MAX_LAYER_SWITCHES = 9  # comparisons with a kind of layers
+MAX_FILL_SWITCHES = 12  # comparisons with a fill, most where it is made; three are other words
 OTHER_WORDS = {  # files in which a word is no kind
     "brep/files/stl_check.py",
     "brep/files/three_mf.py",
+    "core/geometry/curves/gcode.py",
     "core/geometry/curves/gcode_roles.py",
 }
 
@@ -67,6 +72,38 @@ def is_switch(node):
     if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "isinstance":
         return bool(identifiers(node.args[1]) & (FEATURE_CLASSES | WALL_CLASSES))
     return False
+
+
+def compares(node, words):
+    """Whether a node compares with one of some words or constants."""
+    if not isinstance(node, ast.Compare):
+        return False
+    compared = [node.left, *node.comparators]
+    texts = {
+        part.value
+        for side in compared
+        for part in ast.walk(side)
+        if isinstance(part, ast.Constant) and isinstance(part.value, str)
+    }
+    constants = {name for name in set().union(*map(identifiers, compared)) if name.isupper()}
+    return bool(words & (texts | constants))
+
+
+@pytest.mark.parametrize(
+    ("words", "most"), [(LAYERS, MAX_LAYER_SWITCHES), (set(FILLS), MAX_FILL_SWITCHES)]
+)
+def test_comparisons_with_layers_and_fills_are_few(words, most):
+    found = [
+        f"{name}:{node.lineno}"
+        for name, tree in modules()
+        for node in ast.walk(tree)
+        if compares(node, words)
+    ]
+    assert 0 < len(found) <= most, found
+
+
+def test_fills_that_replace_others_are_fills():
+    assert all(not fill.all_round or fill.all_round in FILLS for fill in FILLS.values())
 
 
 def test_switches_on_the_kind_of_a_feature_are_few():

@@ -24,7 +24,7 @@ OURS = {
     "core/parameters": {"core/issues", "core/geometry"},
     "core/geometry": {"core/issues"},
     "core/families": {"core/parameters"},
-    "core/filling": {"core/issues", "core/geometry"},
+    "core/filling": {"core/issues", "core/parameters", "core/geometry"},
     "core/toolpath": {"core/families", "core/issues", "core/geometry"},
     "core/slicing": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
     "core/layers": {

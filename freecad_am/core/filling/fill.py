@@ -14,6 +14,7 @@ from ..geometry.regions.region import Region
 from ..geometry.regions.several import grow_regions, halves
 from ..geometry.regions.strip import Strip
 from ..issues import InfeasibleError, InputError
+from ..parameters.fills import FILLS
 from ..types import Array
 from .centre import (
     FINE,
@@ -134,22 +135,7 @@ def _ring(region: Region, beads: Beads) -> Array | None:
     return inside(float(brentq(lacking, 0.0, beads.inset, xtol=EXACT * beads.inset)))
 
 
-PATTERNS = (
-    "contours",
-    "connected",
-    "lines",
-    "spiral",
-    "zigzag",
-    "grid",
-    "triangles",
-    "honeycomb",
-    "gyroid",
-)
-CURVED = (
-    "contours",
-    "connected",
-    "spiral",
-)  # without walls: the border's parallel curves are all they have
+PATTERNS = tuple(FILLS)
 SOLID = Infill()
 LINK = 3.0  # of the spacing
 Gaps = list[tuple[Array, float]]  # a place (2,) in each, and how wide it is, mm
@@ -193,11 +179,11 @@ def fill(
             pattern,
             ", ".join(PATTERNS),
         )
-    if pattern not in CURVED and math.isinf(walls):
+    if not FILLS[pattern].follows_border and math.isinf(walls):
         pattern, infill = "contours", SOLID
     if isinstance(region, Strip):
         inner = region.grown(-beads.inset, beads.chord_error)
-        if pattern in CURVED or not inner:
+        if FILLS[pattern].follows_border or not inner:
             curves = strip_contours(region, inner, beads)
         else:
             upright = abs(math.sin(angle)) > abs(math.cos(angle))
@@ -206,7 +192,7 @@ def fill(
             )
         return tuple(long_enough(curves, beads.shortest))
     inner = region.grown(-beads.inset, beads.chord_error)
-    if pattern in CURVED and infill.density == 1.0:
+    if FILLS[pattern].follows_border and infill.density == 1.0:
         curves = {"contours": contours, "connected": connect_contours, "spiral": spiral}[pattern](
             region, inner, beads
         )

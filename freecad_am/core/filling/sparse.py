@@ -243,7 +243,6 @@ def levels_between(low: float, high: float, beads: Beads) -> Array:
     return clipped
 
 
-SPARSE = ("contours", "lines", "zigzag", "grid", "triangles", "honeycomb", "gyroid")
 LEAST_HEIGHT = 2.0  # spacings; where less is between tops and bottoms beads cover the whole
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from ..issues import InputError, Text
 from . import field as f
+from .fills import FILLS
 from .strategy import LAYER_TIME, MEND, LayerParameters
 
 LEAST_BEAD = 2.0  # mm, as short as a bead of usual width is worth a start
@@ -92,17 +93,7 @@ class FilledParameters(LayerParameters):
         f.CHOICE,
         "Parallel contours, parallel lines, or the two linked: connected, spiral, zigzag; below "
         "100 % also grid, triangles, honeycomb, gyroid.",
-        choices=(
-            "contours",
-            "connected",
-            "lines",
-            "spiral",
-            "zigzag",
-            "grid",
-            "triangles",
-            "honeycomb",
-            "gyroid",
-        ),
+        choices=tuple(FILLS),
     )
     spacing_range: tuple[float, float] = f.parameter(
         (1.0, 1.0),
@@ -239,7 +230,7 @@ class FilledParameters(LayerParameters):
                 "{} excludes 100 %, the usual width; include it",
                 ends,
             )
-        if self.fill in ("connected", "spiral") and self.fill_density < 1.0:
+        if self.fill_density < 1.0 and not FILLS[self.fill].can_be_sparse:
             raise InputError(
                 "BAD_VALUE",
                 "strategy.fill_density",
@@ -264,7 +255,7 @@ class FilledParameters(LayerParameters):
     @property
     def rounds_alone(self) -> bool:
         """Whether contours, of whatever kind, are all there is."""
-        return self.fill in ("contours", "connected", "spiral") or self.rounds == math.inf
+        return FILLS[self.fill].follows_border or self.rounds == math.inf
 
     @property
     def share_of_cut(self) -> float:

@@ -23,6 +23,7 @@ from ...issues import NOTE, WARNING, InfeasibleError, InputError, Issue, Text, W
 from ...layers.margins import ARCS
 from ...layers.surface import Slice
 from ...parameters.filled import FilledParameters
+from ...parameters.fills import FILLS
 from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
 from ...process.model.wire import model_wire_feed
@@ -38,15 +39,6 @@ USUAL_SPACING = (
 )
 OVERLAP_SHARE = 0.03  # of a region, deposited over its other beads
 FULL_RANGE = (1.0, 1.0)  # widths that all beads have
-INSTEAD = {  # round a hub
-    "spiral": "contours",
-    "connected": "contours",
-    "zigzag": "lines",
-    "grid": "lines",
-    "triangles": "lines",
-    "honeycomb": "lines",
-    "gyroid": "lines",
-}
 
 
 class Bare(NamedTuple):
@@ -178,7 +170,8 @@ class Pictures:
                 )
             )
         issues += _standing_out(layer, curves, beads)
-        if strategy.fill in INSTEAD and all_round:
+        replacement = FILLS[strategy.fill].all_round
+        if replacement and all_round:
             issues.append(
                 Issue(
                     NOTE,
@@ -186,7 +179,7 @@ class Pictures:
                     Text(
                         "a layer all around the hub is filled with {}; strategy.fill = {} needs "
                         "regions with an end",
-                        INSTEAD[strategy.fill],
+                        replacement,
                         strategy.fill,
                     ),
                     layer.number,
