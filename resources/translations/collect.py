@@ -26,33 +26,24 @@ from sources import ROOT, Code, Module, called, calls_in, files, walked  # noqa:
 from templates import Templates  # noqa: E402
 
 from freecad_am.core import issues  # noqa: E402
+from freecad_am.core.families.registry import KINDS  # noqa: E402
 from freecad_am.core.parameters import field  # noqa: E402
 from freecad_am.core.parameters.place import PlaceParameters  # noqa: E402
 from freecad_am.objects import staleness  # noqa: E402
 from freecad_am.objects.cell import Cell  # noqa: E402
-from freecad_am.objects.cladding_feature import CladdingFeature  # noqa: E402
-from freecad_am.objects.curves_feature import CurvesFeature  # noqa: E402
-from freecad_am.objects.developable_feature import DevelopableFeature  # noqa: E402
-from freecad_am.objects.feature import RevolutionFeature  # noqa: E402
 from freecad_am.objects.fields import preferences, properties  # noqa: E402
 from freecad_am.objects.fields.rows import Row, group_of, rows  # noqa: E402
 from freecad_am.objects.inspection import Inspection  # noqa: E402
 from freecad_am.objects.joint_path import JointPath  # noqa: E402
+from freecad_am.objects.planned.feature_kinds import proxy_of  # noqa: E402
 from freecad_am.objects.program import Program  # noqa: E402
-from freecad_am.objects.solid_feature import SolidFeature  # noqa: E402
-from freecad_am.objects.surface_feature import SurfaceFeature  # noqa: E402
 from freecad_am.objects.toolpath import Toolpath  # noqa: E402
 
 LANGUAGES = ("fr",)
 WINDOW, PROPERTY, COMMAND = "RoboticAM", "App::Property", "RoboticAM_{}"
 STAGES = (
     Cell,
-    RevolutionFeature,
-    SurfaceFeature,
-    DevelopableFeature,
-    SolidFeature,
-    CladdingFeature,
-    CurvesFeature,
+    *map(proxy_of, KINDS),
     Toolpath,
     JointPath,
     Program,
