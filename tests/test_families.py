@@ -18,7 +18,7 @@ FEATURE_CLASSES = {family.parameters.__name__ for family in FAMILIES} | {
 }
 WALL_CLASSES = {"RevolvedWall", "PatchWall", "SurfaceWall", "SolidsOnHub", "CladFaces"}
 # comparisons with a kind, and tests of the class of parameters, features and walls; only goes down
-MAX_SWITCHES = 16
+MAX_SWITCHES = 14
 MAX_FILES_OF_A_FAMILY = 12  # that have its kind as a string
 LAYERS = {"planes", "geodesic", "offset", "along", "PLANES", "GEODESIC", "OFFSET"}
 MAX_LAYER_SWITCHES = 9  # comparisons with a kind of layers

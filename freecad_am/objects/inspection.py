@@ -10,7 +10,6 @@ from collections.abc import Callable
 from typing import Any
 
 from ..brep.shapes.distance import skin
-from ..core.geometry.curves.profile import RevolvedWall
 from ..core.geometry.file_content import digest
 from ..core.geometry.located import is_there
 from ..core.inspection import inspect, point_file, surfaces, table
@@ -19,6 +18,7 @@ from ..core.issues import InputError, Text
 from ..core.parameters.inspection import InspectionParameters
 from ..core.parameters.process import ProcessParameters
 from .current import check_current
+from .families.registry import stage_family
 from .fields.properties import HIDDEN, OUTPUT
 from .results.fingerprints import fingerprint
 from .shapes.bodies import snapshot_of
@@ -181,8 +181,9 @@ def _digest(path: str, where: str) -> str:
 def _stage_surface(target: Any) -> Callable[[], Planned]:
     value, label = target.Proxy.value(target), target.Label
     feature = getattr(target, "Feature", None)
-    wall = None if feature is None else feature.Proxy.value(feature)
-    if isinstance(wall, RevolvedWall):  # circles of its beads are given along its meridian
+    family = None if feature is None else stage_family(feature.Proxy)
+    if family is not None and family.has_axis:  # circles of its beads are given along its meridian
+        wall = feature.Proxy.value(feature)
         return lambda: dataclasses.replace(surfaces.planned(value, label), wall=wall)
     return lambda: surfaces.planned(value, label)
 

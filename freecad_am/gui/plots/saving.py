@@ -15,7 +15,6 @@ from PySide import QtGui
 from ...core.geometry.on_hub import SolidsOnHub
 from ...core.kinematics import cell as cells
 from ...core.motion import Motion
-from ...core.parameters.filled import SolidParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.program import ProgramParameters
 from ...core.planning.program import build as programs
@@ -23,7 +22,7 @@ from ...core.simulation import timeline
 from ...core.simulation.achievable_feed import spread_to_deposit_rows
 from ...objects import user_machines
 from ...objects.current import is_stale
-from ...objects.solid_feature import SolidFeature
+from ...objects.families.registry import stage_family
 from ...objects.stage import stage_of
 from ...plots.chart import Picture
 from ...plots.source import Source
@@ -113,9 +112,10 @@ def _filled(feature: Any) -> tuple[SolidsOnHub | None, float]:
     """Return the solids in plane layers, None for other features, and the share of a layer height
     at which layers are cut."""
     stage = stage_of(feature)
-    if not isinstance(stage, SolidFeature) or not feature.Key:
+    family = None if stage is None else stage_family(stage)
+    if stage is None or family is None or not family.stacks_layers or not feature.Key:
         return None, 0.5
-    strategy = stage.parameters(feature, SolidParameters)
+    strategy: Any = stage.parameters(feature, family.parameters)
     return (stage.value(feature) if strategy.has_plane_layers else None), strategy.share_of_cut
 
 
