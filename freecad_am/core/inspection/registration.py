@@ -15,10 +15,29 @@ from itertools import permutations, product
 import numpy as np
 from scipy.linalg import expm
 
+from ..geometry.formatting import place
 from ..geometry.frames import pose, rotation_about
 from ..issues import InfeasibleError, InputError
 from ..types import Array, Mask
-from .formatting import motion_text
+
+# ---- Small rigid motions in words
+
+NO_TURN = 1e-6  # rad per mm of shift: no turn
+
+
+def motion_text(turn: Array, shift: Array, middle: Array) -> str:
+    """A motion by its turn (3,) rad and the shift (3,) mm of the point `middle` (3,): a turn about an axis, or a shift."""
+    angle, distance = float(np.linalg.norm(turn)), float(np.linalg.norm(shift))
+    if angle <= NO_TURN * distance:
+        return f"a shift along {place(_upward(shift / distance))}"
+    axis = turn / angle
+    return f"a turn about the axis through {place(middle + np.cross(axis, shift) / angle)} along {place(_upward(axis))}"
+
+
+def _upward(direction: Array) -> Array:
+    """The direction or its opposite, so that its largest part is positive."""
+    return np.asarray(direction * np.sign(direction[np.argmax(np.abs(direction))]))
+
 
 # distance (n,) of points (n, 3), outside with a plus, and unit vectors (n, 3) along which it grows
 Surface = Callable[[Array], tuple[Array, Array]]

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.preflight import deposit
+from freecad_am.core.preflight import checks
 from freecad_am.core.process.deposit import on_part
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
@@ -29,5 +29,5 @@ def test_the_height_of_layers_about_a_cylinder_is_that_of_their_radii(aside):
     toolpath = Toolpath(layers, np.eye(4), HEIGHT, 0.1, family="cladding")
     heights = np.concatenate(on_part.over_layers(toolpath))
     assert np.abs(heights - ((RADIUS + HEIGHT) * np.cos(aside * step) - RADIUS)).max() < 1e-9
-    promise = deposit.layers(toolpath, ())
+    promise = checks.layers(toolpath, ())
     assert promise.ok and abs(promise.worst - HEIGHT) < 0.06

@@ -10,7 +10,7 @@ import pytest
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.bead_classes import BeadEnd, BeadStart
 from freecad_am.core.parameters.process import MaterialParameters, ProcessParameters, WireParameters
-from freecad_am.core.preflight import deposit
+from freecad_am.core.preflight import checks
 from freecad_am.core.process.model import wire
 from freecad_am.core.process.model.material import check_speeds
 from freecad_am.core.process.model.wire import set_wire_feed
@@ -92,7 +92,7 @@ def test_classes_at_speeds_of_their_own_are_held_against_the_wire():
     (issue,) = made.issues
     assert (issue.level, issue.code, issue.layer, issue.bead) == ("warning", "FEED_BALANCE", 1, 0)
     assert "feeds 48 mm3/s" in issue.message and "need contour 72 mm3/s" in issue.message
-    promise = deposit.wire_feed(made, of)
+    promise = checks.wire_feed(made, of)
     assert (
         promise.ok is False
         and promise.worst == pytest.approx(100.0 / 3.0)
@@ -101,7 +101,7 @@ def test_classes_at_speeds_of_their_own_are_held_against_the_wire():
     own = replace(process("auto"), classes="contour: travel_speed 9, schedule 3")
     made = set_wire_feed(path_of(), own, None)
     assert made.issues == ()
-    promise = deposit.wire_feed(made, own)  # what that schedule feeds nobody knows
+    promise = checks.wire_feed(made, own)  # what that schedule feeds nobody knows
     assert (
         promise.ok is None
         and promise.how.startswith("not checked")
@@ -110,7 +110,7 @@ def test_classes_at_speeds_of_their_own_are_held_against_the_wire():
     near = replace(process("auto"), classes="contour: travel_speed 6.5")
     bead = replace(BEAD, bead_class="contour", speed=np.full(2, 6.5))
     made = set_wire_feed(replace(PATH, layers=(Layer((bead,)),)), near, None)
-    assert made.issues == () and deposit.wire_feed(made, near).worst == pytest.approx(
+    assert made.issues == () and checks.wire_feed(made, near).worst == pytest.approx(
         100.0 * (1.0 - 6.0 / 6.5)
     )
 
@@ -164,7 +164,7 @@ def test_starts_and_ends_at_speeds_of_their_own_are_held_against_the_wire(planne
         )
     rates = {one.name: one.rate for one in wire.taken_of(made)}
     assert rates == pytest.approx(told | {"fill": 48.0})
-    assert deposit.wire_feed(made, of).worst == pytest.approx(
+    assert checks.wire_feed(made, of).worst == pytest.approx(
         100.0
     )  # twice as much where the torch is half as fast
 
@@ -174,9 +174,9 @@ def test_a_schedule_of_a_start_is_not_known_and_no_wire_is_not_checked():
     of = replace(process("auto"), schedule=2, start=BeadStart(20.0, 3.0, 4), classes=own)
     made = set_wire_feed(path_of((20.0, 3.0, 0.0, 0.0)), of, None)
     assert made.issues == ()
-    assert deposit.wire_feed(made, of).how.endswith("feed of contour, contour.start, fill.start")
+    assert checks.wire_feed(made, of).how.endswith("feed of contour, contour.start, fill.start")
     none = process(0.0)
-    promise = deposit.wire_feed(set_wire_feed(PATH, none, None), none)
+    promise = checks.wire_feed(set_wire_feed(PATH, none, None), none)
     assert promise.ok is None and promise.how.startswith("not checked")
 
 
@@ -186,11 +186,11 @@ def test_beads_of_other_widths_and_heights_at_speeds_that_follow_balance():
     path = set_wire_feed(
         replace(PATH, layers=(Layer((BEAD,)), Layer((bead,)))), ProcessParameters(), None
     )
-    assert deposit.wire_feed(path, ProcessParameters()).worst < 1e-9
+    assert checks.wire_feed(path, ProcessParameters()).worst < 1e-9
     one = replace(path, layer_height=2.0, wire_feed=2.0 * path.wire_feed)
     slow = replace(bead, speed=np.full(2, 7.5))
     two = replace(path, layers=(Layer((BEAD,)), Layer((slow,), feature=1)), features=(one, path))
-    assert tuple(deposit.wire_feed(two, ProcessParameters()).place) == (
+    assert tuple(checks.wire_feed(two, ProcessParameters()).place) == (
         1,
         0,
         None,

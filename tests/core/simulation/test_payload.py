@@ -16,7 +16,7 @@ from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning.external import remedies
-from freecad_am.core.preflight.payload import payload_promises
+from freecad_am.core.preflight.checks import payload_promises
 from freecad_am.core.simulation import payload, timeline
 from tests.core.planned_dome import planned_dome
 

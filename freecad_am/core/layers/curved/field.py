@@ -6,6 +6,7 @@ straight from there (offset).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,10 +15,42 @@ from ...geometry.on_hub import Group, SolidsOnHub
 from ...issues import NOTE, WARNING, InputError, Issue, Text
 from ...parameters.filled import SolidParameters
 from ...types import Array
-from ..charts.layer import ChartLayer
+from ..charts.chart import Charted, Place
 from ..surface import Slice
 from . import geodesic
 from .geodesic import GeodesicField
+
+# ---- A piece of a curved layer through a solid as a surface to fill
+
+CHORD = 1.0  # steps of the grid between tests of an edge
+
+
+@dataclass(frozen=True, eq=False)
+class ChartLayer(Charted):
+    """A layer on the chart of a piece, where the part was cut.
+
+    distance: mm through the part to its beads. Its stretch is at most
+    `geodesic.Piece.stretch`.
+    """
+
+    field: GeodesicField
+    distance: float
+
+    @property
+    def look(self) -> float:
+        """A step of the grid."""
+        return CHORD * self.field.grid.step
+
+    @property
+    def bends_freely(self) -> bool:
+        """It bends as ways through the part lead round corners."""
+        return True
+
+    def in_part(self, location: Place) -> tuple[Array, Array]:
+        """Map the chart onto the cut, and from there through the part to the position of the beads."""
+        cut = self.chart.to_part(location)
+        return self.field.onto(cut, self.distance), self.field.directions(cut)
+
 
 FINE, COARSE = 0.4, 0.8  # layer heights from node to node: as a rule, at most
 MAX_NODES = 2_000_000  # nodes, where that keeps below COARSE
