@@ -9,7 +9,7 @@ from typing import Any
 from ..core.geometry import frames
 from ..core.issues import InputError
 from ..core.kinematics.machines import machine
-from ..sections import quantity
+from ..sections import fields
 from . import paths
 
 
@@ -34,7 +34,7 @@ def chosen(maker: str | None, reach: str | None, payload: str | None, post: str 
 
     if post is not None:
         catalogue.load(post)
-    min_reach = 0.0 if reach is None else quantity.read(reach, field.LENGTH, "--reach")
+    min_reach = 0.0 if reach is None else fields.read(reach, field.LENGTH, "--reach")
     entries = machine_catalogue.select_machines(
         machine_catalogue.entries(user_machines.folders()),
         maker,

@@ -6,14 +6,159 @@ and the best pose.
 from __future__ import annotations
 
 import os
+from html import escape
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from ..core.issues import ERROR, NOTE, InputError, Issue, Text, Word, has_errors
 from ..core.one_thread import one_thread
+from ..core.placement.place import Placed, outer, ranked
+from ..core.types import Array
+from ..report.style import STYLE
+from ..report.svg import Plot
 from . import paths
 from .job.features import in_words_of_job
 from .job.job import SECTIONS, Job
 from .outputs import folder as outputs
+
+# ---- place.html: poses as maps, height by height, and the best ones as a table; one file without
+# scripts or links
+
+_BEST = 20  # poses in the table
+_MOST_MAPS = 60
+_COLOURS = ("#2b5fb3", "#2f9e8f", "#8bc34a", "#f3d13b")  # of margins from the least to the largest
+_OUT_OF_RANGE_COLOUR = "#b9bec8"
+
+
+def render(name: str, placement: Placed) -> str:
+    """The page of the poses of a job."""
+    title = f"{escape(name)}: where it can stand"
+    serve = sum(pose_result.feasible for pose_result in placement.judged)
+    what = placement.moves.replace("-", " ")
+    text = (
+        f"{serve} of {len(placement.poses)} poses of the {what} are feasible, as far as {placement.points} of {placement.of} points "
+        "show. Each square is the best of its rotations; its colour is the least share of a joint's "
+        "range that is left to a limit, grey where the pose is not feasible; the number is the share of points served."
+    )
+    html_parts = [f'<header><h1>{title}</h1></header><p class="sub">{text}</p>', _table(placement)]
+    heights = np.unique(placement.poses[:, 2])[:_MOST_MAPS]
+    low, high = _range(placement)
+    html_parts.append(
+        f'<p class="sub">margin from {100.0 * low:.3g} % {_key()} to {100.0 * high:.3g} %</p>'
+    )
+    html_parts.append('<div class="grid">')
+    html_parts += [f"<figure>{_map(placement, height, low, high)}</figure>" for height in heights]
+    return (
+        f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
+        f'<meta name="viewport" content="width=device-width,initial-scale=1"><style>{STYLE}</style></head>'
+        f"<body><main>{''.join(html_parts)}</div></main></body></html>\n"
+    )
+
+
+def _table(placement: Placed) -> str:
+    heads = (
+        "x, mm",
+        "y, mm",
+        "z, mm",
+        "RX, deg",
+        "RY, deg",
+        "RZ, deg",
+        "margin, %",
+        "time, s",
+        "clearance, mm",
+        "planned with",
+    )
+    rows = ["<tr>" + "".join(f"<th>{head}</th>" for head in heads) + "</tr>"]
+    proven = list(placement.proven)
+    best_number = [placement.best] if placement.best is not None else []
+    for number in dict.fromkeys([*best_number, *proven, *ranked(placement, "margin")[:_BEST]]):
+        pose_result = placement.result_of(number)
+        figures = [f"{value:.6g}" for value in outer(placement.pose(number))]
+        figures += [
+            _format(100.0 * pose_result.margin, ".3g"),
+            _format(pose_result.time, ".0f"),
+            _format(pose_result.clearance, ".3g"),
+        ]
+        how = "all points" if number in placement.proven else f"{placement.points} points"
+        cells = [*figures, how if pose_result.feasible else f"{how}: {pose_result.code}"]
+        rows.append("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>")
+    return f'<div class="table"><table>{"".join(rows)}</table></div>'
+
+
+def _format(value: float, form: str) -> str:
+    return format(value, form) if np.isfinite(value) else "–"
+
+
+def _range(placement: Placed) -> tuple[float, float]:
+    margins = [pose_result.margin for pose_result in placement.judged if pose_result.feasible]
+    return (min(margins), max(margins)) if margins else (0.0, 1.0)
+
+
+def _map(placement: Placed, height: float, low: float, high: float) -> str:
+    """The poses of one height, seen from above."""
+    rows = np.flatnonzero(placement.poses[:, 2] == height)
+    x, y = placement.poses[rows, 0], placement.poses[rows, 1]
+    across, up = (_step(values) for values in (x, y))
+    plot = Plot(
+        f"z = {height:g} mm",
+        (x.min() - across, x.max() + across),
+        (y.min() - up, y.max() + up),
+        "x, mm",
+        "y, mm",
+        height=330,
+    )
+    best_at: dict[tuple[float, float], int] = {}
+    for number in sorted(rows.tolist(), key=lambda k: _rank_key(placement, k)):
+        best_at[float(placement.poses[number, 0]), float(placement.poses[number, 1])] = (
+            number  # the best of them stays
+        )
+    for (place_x, place_y), number in best_at.items():
+        pose_result = placement.result_of(number)
+        x_left, right = plot.to_x(np.array([place_x - 0.48 * across, place_x + 0.48 * across]))
+        top, bottom = plot.to_y(np.array([place_y + 0.48 * up, place_y - 0.48 * up]))
+        share = (pose_result.margin - low) / (high - low) if high > low else 1.0
+        fill = (
+            _COLOURS[min(int(4.0 * max(share, 0.0)), 3)]
+            if pose_result.feasible
+            else _OUT_OF_RANGE_COLOUR
+        )
+        edge = ' stroke="#c0182b" stroke-width="3"' if number == placement.best else ""
+        plot.elements.append(
+            f'<rect x="{x_left:.1f}" y="{top:.1f}" width="{right - x_left:.1f}" height="{bottom - top:.1f}" '
+            f'fill="{fill}"{edge}><title>{escape(_pose_text(placement, number))}</title></rect>'
+            f'<text class="tick" x="{0.5 * (x_left + right):.1f}" y="{0.5 * (top + bottom) + 4.0:.1f}" '
+            f'text-anchor="middle">{100.0 * pose_result.share:.0f} %</text>'
+        )
+    return plot.text()
+
+
+def _rank_key(placement: Placed, number: int) -> tuple[float, float, float]:
+    pose_result = placement.result_of(number)
+    return (
+        float(pose_result.feasible),
+        pose_result.share,
+        float(np.nan_to_num(pose_result.margin, nan=-1.0)),
+    )
+
+
+def _pose_text(placement: Placed, number: int) -> str:
+    pose_result = placement.result_of(number)
+    values = [float(f"{value:.6g}") for value in outer(placement.pose(number))]
+    return (
+        f"{values}: {pose_result.code or 'feasible'}; margin {_format(100.0 * pose_result.margin, '.3g')} %, {_format(pose_result.time, '.0f')} s, "
+        f"arm {_format(pose_result.clearance, '.3g')} mm"
+    )
+
+
+def _step(values: Array) -> float:
+    gaps = np.diff(np.unique(values))
+    return float(gaps.min()) if len(gaps) else 1.0
+
+
+def _key() -> str:
+    return "".join(f'<span style="color:{colour}">&#9632;</span>' for colour in _COLOURS)
+
 
 TABLE, PAGE = "place.csv", "place.html"
 
@@ -62,15 +207,13 @@ def place(job: Job, folder: str | None, session: Any) -> Result:
 
 
 def _write_results(job: Job, stages: Any, files: outputs.Outputs, session: Any) -> Result:
-    from freecad_am.core.placement import table
+    from freecad_am.core.placement import place as table
     from freecad_am.objects.checks.placed import placing_of
-
-    from .outputs import place_page
 
     with stages.timed("place", session):
         placement = placing_of(stages.toolpath, stages.cell, job.joints).search_poses(job.place)
     files.write(TABLE, table.rows(placement))
-    files.write(PAGE, [place_page.render(job.name, placement)])
+    files.write(PAGE, [render(job.name, placement)])
     files.publish(
         {name for name in (TABLE, PAGE) if os.path.isfile(os.path.join(files.folder, name))}
     )

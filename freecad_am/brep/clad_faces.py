@@ -13,8 +13,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ..core.geometry.formatting import place
 from ..core.geometry.mesh.refined import Edges
-from ..core.geometry.walls.clad_faces import CladFaces
-from ..core.geometry.walls.patch_wall import PatchWall
+from ..core.geometry.walls.patch_wall import CladFaces, PatchWall
 from ..core.geometry.walls.surface import dot
 from ..core.issues import WARNING, InputError, Issue, Text, Word
 from ..core.types import Array, Index, Mask

@@ -7,10 +7,15 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import Part
 
 from ..core.issues import InputError
 from ..core.types import Array
+from .hub import SHARE
+from .kernel.process import in_kernel_process
+from .shapes.tessellate import fine
 from .walls.start_edges import sampled
+from .walls.wall import faces_by_name
 
 MIN_EDGE_MM = 1e-3  # mm; shorter edges are none
 
@@ -44,3 +49,19 @@ def _nodes(edge: Any) -> tuple[Array, Array]:
     points, tangents = sampled(edge, max(edge.Length / 16.0, 0.1))
     distinct = np.r_[True, np.linalg.norm(np.diff(points, axis=0), axis=1) > 1e-9]
     return points[distinct], tangents[distinct]
+
+
+# ---- Faces below the first layer of a solid, as triangles
+
+
+def triangles_of_faces(shape: Any, names: Sequence[str], label: str, chord_error: float) -> Array:
+    """Triangles (k, 3, 3) of faces of a shape, all where none are named, with the chord error of
+    solids. InputError NO_WALL, UNKNOWN_FACE.
+    """
+    faces_of_names = faces_by_name(shape, names, label)
+    selection = Part.makeCompound(
+        [faces_of_names[name].copy(False) for name in dict.fromkeys(names or faces_of_names)]
+    )
+    tessellation = in_kernel_process(fine, selection, SHARE * chord_error)
+    corners: Array = tessellation[0][tessellation[1]]
+    return corners

@@ -17,7 +17,8 @@ from ..objects import user_machines
 from ..objects.current import check_current, check_recomputed
 from ..objects.stage import stage_of
 from ..objects.work import hooks
-from . import cell_file, dxf, neighbour, robot_trajectory, step_wires
+from . import cell_file, neighbour, robot_trajectory, step_wires
+from . import lines as dxf
 from .lines import Line, lines_of_motion, lines_of_toolpath
 
 DEPOSIT_ON, DEPOSIT_OFF = "(deposit on)", "(deposit off)"

@@ -204,11 +204,7 @@ def make_scan(
     their positions on the object, as in an inspection; they replace any other fit. Raises
     InputError SCAN_UNIT, SCAN_OTHER, SCAN_AMBIGUOUS.
     """
-    from ..core.inspection import (
-        planned,  # what few jobs need
-        point_file,
-        scan_checks,
-    )
+    from ..core.inspection import planned, point_file, scan_heights
     from ..objects.inspection import Inspection
     from ..objects.shapes.bodies import snapshot_of
 
@@ -221,21 +217,21 @@ def make_scan(
     InspectionParameters(unit=unit)
     body = snapshot_of(checked_object(substrate, "substrate", doc)).body()
     measured = point_file.read(file, unit)
-    scan_checks.refuse_size(measured.points, measured.label, body)
+    scan_heights.refuse_size(measured.points, measured.label, body)
     is_fitted = fit == BEST or (
         fit == AUTO
-        and scan_checks.share_near(measured.points, body, within) < scan_checks.LEAST_ON_PART
+        and scan_heights.share_near(measured.points, body, within) < scan_heights.LEAST_ON_PART
     )
     if is_fitted and not pairs:
         motion = planned.align_scan(measured.points, body, measured.label)
-        pairs = planned.as_pairs(motion, scan_checks.extent(body.vertices))
+        pairs = planned.as_pairs(motion, scan_heights.extent(body.vertices))
     values = {"fit": NONE, "unit": unit, "pairs": pairs}
     with one_step(doc, f"Make {label}"):
         inspection = make_stage(
             doc, Inspection, "Inspection", label, {"Planned": substrate, "File": file}, [], values
         )
         try:
-            scan_checks.refuse_other(
+            scan_heights.refuse_other(
                 inspection.Proxy.value(inspection).points, measured.label, body, within
             )
         except InputError:

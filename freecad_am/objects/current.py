@@ -9,7 +9,7 @@ import FreeCAD as App
 
 from ..core.issues import AmError, InputError, Text
 from .results.findings import message_of, reason_of
-from .results.keys import is_of_earlier_version
+from .results.fingerprints import is_of_earlier_version
 from .shapes.containers import containers_of, members_of
 from .stage import stage_of
 from .staleness import FAILED, INFEASIBLE, STALE, is_outdated

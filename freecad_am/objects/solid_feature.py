@@ -6,9 +6,8 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
-from ..brep.guide import edges_of
+from ..brep.guide import edges_of, triangles_of_faces
 from ..brep.hub import bodies_of
-from ..brep.start_faces import triangles_of_faces
 from ..core.geometry.obstacles import Body
 from ..core.issues import InputError, Issue, Text
 from ..core.layers.along.centre_line import prepare_guided

@@ -24,9 +24,9 @@ from . import staleness
 from .fields import properties, rows
 from .fields.link_targets import broken_link, is_there
 from .fields.properties import HIDDEN, OUTPUT, READ_ONLY
-from .results import keys, store
+from .results import fingerprints, store
 from .results.findings import first_message, issues_of, reason_of, say, store_issues
-from .results.keys import SCHEMA_VERSION
+from .results.fingerprints import SCHEMA_VERSION
 from .results.store import Stored
 from .shapes.file_links import missing_files
 from .stage_parts import Link, Outcome, Section, Work
@@ -229,7 +229,7 @@ class Stage(Stored):
 
     def key(self, obj: Any) -> str:
         """Fingerprint of the inputs. Raises InputError for a missing or failed one."""
-        return keys.key_of_inputs(self, obj, keys.key_of_stage)
+        return fingerprints.key_of_inputs(self, obj, fingerprints.key_of_stage)
 
     def linked(self, obj: Any) -> dict[str, Any]:
         """The linked stages by property name (lists for links to many), checked for the right kind

@@ -24,7 +24,7 @@ from .fields import rows
 from .planned.in_sequence import member, planned_in_sequence
 from .planned.toolpaths import planned, seen_of
 from .planned.upright import in_planes, try_remedy
-from .results import keys
+from .results import fingerprints
 from .shapes.bodies import snapshot_of
 from .stage import Stage, stage_of
 from .stage_parts import Link, Outcome, Section, Work
@@ -98,7 +98,7 @@ class Toolpath(Stage):
         position and machine concern joint paths. A document of an earlier version that still fits
         keeps the key of any stage.
         """
-        key = keys.key_of_inputs(self, obj, _input_key)
+        key = fingerprints.key_of_inputs(self, obj, _input_key)
         fits_old_key = obj.Key not in ("", key) and obj.Key == super().key(obj)
         return str(obj.Key) if fits_old_key else key
 
@@ -323,7 +323,7 @@ def _input_key(link: str, linked: Any) -> str:
     return (
         repr(seen_of(linked.Proxy.value(linked)))
         if link == "Cell"
-        else keys.key_of_stage(link, linked)
+        else fingerprints.key_of_stage(link, linked)
     )
 
 

@@ -29,7 +29,7 @@ from ..core.process.deposit import balance as deposit_balance
 from ..core.process.deposit import spacing as layer_spacing
 from ..core.process.deposit.balance import Balance
 from ..core.process.model import notes
-from ..core.simulation import class_figures, totals
+from ..core.simulation import totals
 from ..core.simulation.timeline import timeline
 from ..core.toolpath import Toolpath
 from ..core.types import Array
@@ -131,7 +131,7 @@ def build(
         "spacing_comparison": [],
         "process": _process(process, toolpath),
         "beads": notes.beads(toolpath),
-        "classes": class_figures.figures(motion, process),
+        "classes": totals.figures_by_class(motion, process),
         "machine": None,
         "timing_s": {},
         "programs": [],

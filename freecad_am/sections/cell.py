@@ -28,7 +28,7 @@ from ..core.parameters.cell_records import (
     usual_name,
 )
 from ..core.parameters.records import NONE, Point, Pose
-from . import fields, paths, quantity, tree
+from . import fields, paths, tree
 
 PAPERS = "paper"  # limits
 
@@ -78,9 +78,7 @@ def _parse_section(section: Any) -> CellParameters:
     if section.get("touched") not in (None, []):
         section["touched"] = _touched(section["touched"])
     if isinstance(section.get("world_up"), list):
-        numbers = [
-            quantity.read(number, f.NUMBER, "cell.world_up") for number in section["world_up"]
-        ]
+        numbers = [fields.read(number, f.NUMBER, "cell.world_up") for number in section["world_up"]]
         section["world_up"] = " ".join(f"{number:.15g}" for number in numbers)
     cell = fields.build(CellParameters, section, "cell")
     arrangement.planned_of(cell.setup)
@@ -206,10 +204,8 @@ def _touched(value: Any) -> str | tuple[TouchedPoint, ...]:
 def _point(value: Any, key: str) -> Point:
     """Three lengths of a job file."""
     if not isinstance(value, list) or len(value) != 3:
-        raise InputError(
-            "BAD_VALUE", key, "{} is not a point; give [x, y, z]", quantity.quote(value)
-        )
-    x, y, z = (quantity.read(number, f.LENGTH, key) for number in value)
+        raise InputError("BAD_VALUE", key, "{} is not a point; give [x, y, z]", fields.quote(value))
+    x, y, z = (fields.read(number, f.LENGTH, key) for number in value)
     return x, y, z
 
 
@@ -219,11 +215,11 @@ def _pose(value: Any, key: str) -> Pose:
         return controller_pose
     if not isinstance(value, list) or len(value) != 6:
         raise InputError(
-            "BAD_VALUE", key, "{} is not a pose; give [x, y, z, RX, RY, RZ]", quantity.quote(value)
+            "BAD_VALUE", key, "{} is not a pose; give [x, y, z, RX, RY, RZ]", fields.quote(value)
         )
     kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3
     x, y, z, a, b, c = (
-        quantity.read(number, kind, key) for number, kind in zip(value, kinds, strict=True)
+        fields.read(number, kind, key) for number, kind in zip(value, kinds, strict=True)
     )
     return x, y, z, a, b, c
 
@@ -260,9 +256,9 @@ def _obstacle(value: Any, key: str, number: int) -> Obstacle:
                 "BAD_VALUE",
                 f"{key}.box",
                 "{} is not a box; give its edges along x, y and z such as [1200, 800, 30]",
-                quantity.quote(edges),
+                fields.quote(edges),
             )
-        width, depth, height = (quantity.read(edge, f.LENGTH, f"{key}.box") for edge in edges)
+        width, depth, height = (fields.read(edge, f.LENGTH, f"{key}.box") for edge in edges)
         size = (width, depth, height)
     name = section.get("name")
     called = usual_name(file, number) if name is None else fields.text(name, f"{key}.name").strip()

@@ -375,7 +375,7 @@ def coarse(monkeypatch):
 @pytest.fixture
 def rough_map(monkeypatch):
     """Of the map of the free rotation one row of six is looked at for the arm, and no more, where others stand beside it."""
-    from freecad_am.gui.redundancy_map import cells
+    from freecad_am.gui.redundancy_map import dock as cells
 
     monkeypatch.setattr(cells, "FINE_STRIDE", cells.ROUGH_STRIDE)
 

@@ -17,8 +17,8 @@ from freecad_am.core.kinematics.urdf.reference import Reference
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.cell_records import EXTERNAL
 from freecad_am.core.simulation.table_links import at_rest
-from freecad_am.gui.cell import proposing as cell_panel
 from freecad_am.gui.nodes.cell import resting_point
+from freecad_am.gui.panels import cell as cell_panel
 from freecad_am.kdl.chain import KdlArm
 from freecad_am.objects.work.progress import Cancelled
 from tests.core.kinematics import urdf_cells

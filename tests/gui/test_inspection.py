@@ -8,8 +8,8 @@ import pytest
 from freecad_am import api
 from freecad_am.core.inspection.bands import bands
 from freecad_am.gui.path import legend
+from freecad_am.gui.simulation.dock import _beads
 from freecad_am.gui.simulation.player import run_of
-from freecad_am.gui.simulation.scene import _beads
 
 PANEL = "RoboticAM_Inspection"
 

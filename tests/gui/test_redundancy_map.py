@@ -16,8 +16,7 @@ from freecad_am.core.planning.redundancy import map as spin_map
 from freecad_am.core.simulation.achievable_feed import speed_ratios
 from freecad_am.gui.path.colouring import BELOW_COLOUR, NONE
 from freecad_am.gui.redundancy_map import tool as docks
-from freecad_am.gui.redundancy_map.cells import FINE_STRIDE
-from freecad_am.gui.redundancy_map.dock import NAME
+from freecad_am.gui.redundancy_map.dock import FINE_STRIDE, NAME
 from freecad_am.gui.redundancy_map.drawn.painting import TURN
 from freecad_am.objects.staleness import UP_TO_DATE
 from tests.gui.positioner_jobs import on_positioner

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from freecad_am import api
-from freecad_am.objects.results import keys, store
+from freecad_am.objects.results import fingerprints, store
 
 # results stored as they were before: row by row, each number a float; and fingerprints of what was read of them then
 ROWS = Path(__file__).parent / "data" / "rows.FCStd"
@@ -229,7 +229,7 @@ def test_an_old_document_gets_what_it_lacks(job, tmp_path):
         assert again.Feature.MaxTilt.Value == 90 and again.Feature.WallFaces == []
         assert (
             again.Feature.Status == "up to date"
-            and again.Feature.SchemaVersion == keys.SCHEMA_VERSION
+            and again.Feature.SchemaVersion == fingerprints.SCHEMA_VERSION
         )
         api.recompute(again)
         assert [obj.Status for obj in api.stages_of(again)] == ["up to date"] * 5
@@ -287,7 +287,7 @@ def test_class_paths_are_those_of_the_file_format(job):
 def test_a_program_of_an_earlier_version_is_not_given_out_until_it_is_recomputed(job, monkeypatch):
     from freecad_am.objects.program import files_of
 
-    monkeypatch.setattr(keys, "SCHEMA_VERSION", keys.SCHEMA_VERSION - 1)
+    monkeypatch.setattr(fingerprints, "SCHEMA_VERSION", fingerprints.SCHEMA_VERSION - 1)
     for stage in job.stages:
         stage.Proxy.renew(stage, force=True)
     old = files_of(job.program)

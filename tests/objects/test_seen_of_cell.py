@@ -10,7 +10,7 @@ from freecad_am import api
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.strategies.solids import plan as solids_plan
 from freecad_am.objects.planned.toolpaths import seen_of
-from freecad_am.objects.results import keys
+from freecad_am.objects.results import fingerprints
 from freecad_am.objects.stage import Stage
 from freecad_am.objects.toolpath import Toolpath
 
@@ -74,7 +74,9 @@ def test_a_document_from_before_fits_until_its_cell_changes(stages, tmp_path, mo
     with monkeypatch.context() as before:
         before.setattr(Toolpath, "key", Stage.key)
         api.recompute(toolpath.Document, force=True)
-    assert toolpath.Key == keys.key_of_inputs(toolpath.Proxy, toolpath, keys.key_of_stage)
+    assert toolpath.Key == fingerprints.key_of_inputs(
+        toolpath.Proxy, toolpath, fingerprints.key_of_stage
+    )
     toolpath.Document.saveAs(str(tmp_path / "before.FCStd"))
     App.closeDocument(toolpath.Document.Name)
     again = App.openDocument(str(tmp_path / "before.FCStd"))

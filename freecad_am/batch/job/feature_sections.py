@@ -18,7 +18,7 @@ from ...core.parameters.process import ProcessParameters
 from ...core.parameters.records import NONE as NO_RECORDS
 from ...core.parameters.strategy import LayerParameters
 from ...core.process.model import wire
-from ...sections import fields, quantity
+from ...sections import fields
 from . import material
 from .part_source import PartSource, part_of
 
@@ -34,7 +34,7 @@ def with_classes(section: dict[str, Any]) -> dict[str, Any]:
             bead_classes.WHERE,
             "{} is not understood; write classes below it such as contour: {{travel_speed: "
             "8 mm/s, schedule: 3}}",
-            quantity.quote(classes),
+            fields.quote(classes),
         )
     fields.known_keys(classes, bead_classes.CLASSES, bead_classes.WHERE)
     records = [_bead_class(class_section, name) for name, class_section in classes.items()]
@@ -177,7 +177,7 @@ def direction_as_text(section: dict[str, Any]) -> dict[str, Any]:
     direction = section.get("direction")
     if not isinstance(direction, list):
         return section
-    numbers = [quantity.read(number, f.NUMBER, "strategy.direction") for number in direction]
+    numbers = [fields.read(number, f.NUMBER, "strategy.direction") for number in direction]
     return {**section, "direction": " ".join(f"{number:.15g}" for number in numbers)}
 
 
@@ -201,7 +201,7 @@ def _base_as_text(section: dict[str, Any]) -> dict[str, Any]:
         return section
     rows = base["axis"] if all(isinstance(row, list) for row in base["axis"]) else [base["axis"]]
     numbers = [
-        quantity.read(
+        fields.read(
             number, f.LENGTH if k == 0 and len(rows) == 2 else f.NUMBER, "strategy.base.axis"
         )
         for k, row in enumerate(rows)

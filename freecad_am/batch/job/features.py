@@ -19,7 +19,7 @@ from ...core.parameters.process import ProcessParameters
 from ...core.parameters.strategy import LayerParameters
 from ...core.process.model import wire
 from ...core.process.model.wire import model_wire_feed
-from ...sections import fields, quantity, tree
+from ...sections import fields, tree
 from .feature_sections import (
     direction_as_text,
     kept_clear,
@@ -61,9 +61,7 @@ def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, A
         height = float(model.heights(np.array([speed]), np.array([np.inf]))[0])
         section_with_numbers[HEIGHT] = f"{height!r} mm"
     if section_with_numbers.get(SPACING) == WORD:
-        height = quantity.read(
-            section_with_numbers.get(HEIGHT, 1.0), f.LENGTH, f"strategy.{HEIGHT}"
-        )
+        height = fields.read(section_with_numbers.get(HEIGHT, 1.0), f.LENGTH, f"strategy.{HEIGHT}")
         if not height > 0.0:
             raise InputError(
                 "BAD_VALUE",

@@ -21,7 +21,7 @@ from ...core.parameters.strategy import LayerParameters
 from ...core.strategies.sequence import BY_FEATURE, BY_HEIGHT
 from ...posts.catalogue import motion_written
 from ...sections import cell as job_cell
-from ...sections import fields, paths, quantity, tree
+from ...sections import fields, paths, tree
 from .feature_sections import process_of
 from .features import JobFeature, one_feature, several
 from .part_source import PartSource
@@ -148,7 +148,7 @@ def _checked(job: tree.Tree, path: str) -> Job:
             "BAD_VERSION",
             "version",
             "{} is not understood; write version: 1",
-            quantity.quote(version),
+            fields.quote(version),
         )
     name = _name(values.get("name"), path)
     if values.get("features") is None:
@@ -203,7 +203,7 @@ def _name(name: Any, path: str) -> str:
             "BAD_NAME",
             "name",
             "{} is used in file names; use no slash, control character or leading dot",
-            quantity.quote(name),
+            fields.quote(name),
         )
     if len(name.encode()) > _LONGEST_NAME:
         raise InputError(

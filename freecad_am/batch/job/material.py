@@ -15,7 +15,7 @@ from ...core.issues import InputError
 from ...core.parameters import bead_classes
 from ...core.parameters import field as f
 from ...core.process.model.wire import BUILT_IN, load
-from ...sections import fields, quantity, tree
+from ...sections import fields, tree
 from ...sections.paths import absolute, folder_of
 
 KEY = "process.material"
@@ -58,7 +58,7 @@ def _file(name: str) -> Path:
         "NO_FILE",
         KEY,
         "unknown material {}; use one of {}, or the path of a material file",
-        quantity.quote(name),
+        fields.quote(name),
         ", ".join(built_in()),
     )
 
@@ -103,9 +103,9 @@ def _range(value: Any) -> tuple[float | None, float | None]:
             "BAD_VALUE",
             "speed_range",
             "{} is not a range; give [slowest, fastest]",
-            quantity.quote(value),
+            fields.quote(value),
         )
-    low, high = (quantity.read(end, f.SPEED, "speed_range") for end in value)
+    low, high = (fields.read(end, f.SPEED, "speed_range") for end in value)
     if not 0.0 < low <= high < 1e9:
         raise InputError(
             "BAD_VALUE",
@@ -127,13 +127,13 @@ def _checked(
         ("stand_off", f.LENGTH),
         ("travel_speed", f.SPEED),
     ):
-        number = quantity.read(stated[key], kind, key) if key in stated else 1.0
+        number = fields.read(stated[key], kind, key) if key in stated else 1.0
         if key in ("density", "travel_speed") and not 0.0 < number < 1e9:
             raise InputError(
                 "BAD_VALUE",
                 key,
                 "{} is out of range; give more than 0",
-                quantity.quote(stated[key]),
+                fields.quote(stated[key]),
             )
         if (
             key == "travel_speed"
@@ -145,19 +145,19 @@ def _checked(
                 "BAD_VALUE",
                 key,
                 "{} is outside speed_range; change one of the two",
-                quantity.quote(stated[key]),
+                fields.quote(stated[key]),
             )
     if values.get("wire") in (None, {}):
         return {}
     wire = fields.mapping(values["wire"], "wire")
     fields.known_keys(wire, WIRE, "wire")
     for key, kind in zip(WIRE, (f.LENGTH, f.SPEED), strict=True):
-        if key in wire and not 0.0 < quantity.read(wire[key], kind, f"wire.{key}") < 1e9:
+        if key in wire and not 0.0 < fields.read(wire[key], kind, f"wire.{key}") < 1e9:
             raise InputError(
                 "BAD_VALUE",
                 f"wire.{key}",
                 "{} is out of range; give more than 0",
-                quantity.quote(wire[key]),
+                fields.quote(wire[key]),
             )
     return {"wire": dict(wire)}
 
@@ -176,7 +176,7 @@ def _schedules(value: Any) -> dict[str, Any]:
                 "BAD_VALUE",
                 f"schedules.{name}",
                 "{} is not a number of a schedule; give a whole number from 1 to {}",
-                quantity.quote(number),
+                fields.quote(number),
                 bead_classes.LARGEST_SCHEDULE,
             )
     classes = {name: {"schedule": number} for name, number in table.items() if name != ALL}
@@ -207,7 +207,7 @@ def _beads(values: dict[str, Any], file: Path, slowest: float | None, fastest: f
         )
     feed = (values.get("wire") or {}).get("feed")
     if feed not in (None, "auto"):
-        wire_feed = quantity.read(feed, f.SPEED, "wire.feed")
+        wire_feed = fields.read(feed, f.SPEED, "wire.feed")
         min_feed, max_feed = model.feeds or (model.wire_feed, model.wire_feed)
         if not 0.99 * min_feed <= wire_feed <= 1.01 * max_feed:
             raise InputError(

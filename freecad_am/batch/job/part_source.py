@@ -12,7 +12,7 @@ from ...core.geometry.located import is_there
 from ...core.geometry.mesh.file_unit import MESHES, refuse_scale
 from ...core.issues import InputError, Text
 from ...core.parameters import field as f
-from ...sections import fields, quantity
+from ...sections import fields
 
 _EDGE = re.compile(r"Edge[1-9]\d*", re.ASCII)
 _FACE = re.compile(r"Face[1-9]\d*", re.ASCII)
@@ -111,7 +111,7 @@ def guide_of(value: Any, part_section: dict[str, Any]) -> PartSource | None:
             key,
             "{} is not a guide; write {{edges: [Edge1]}}, {{object: Spine}}, {{file: spine.step}}, or "
             "auto",
-            quantity.quote(value),
+            fields.quote(value),
         )
     fields.known_keys(value, ("file", "object", "edges", "set"), key)
     guide_section = {name: value[name] for name in ("file", "object", "set") if name in value}
@@ -138,7 +138,7 @@ def _scale(value: Any, file: str, key: str) -> float:
     """mm of one unit of a file."""
     if value is None:
         return 1.0
-    scale = quantity.read(value, f.LENGTH, key)
+    scale = fields.read(value, f.LENGTH, key)
     refuse_scale(scale, file, key)
     return scale
 
@@ -154,7 +154,7 @@ def _names(value: Any, key: str, pattern: re.Pattern[str]) -> tuple[str, ...]:
             "BAD_VALUE",
             key,
             "{} names no {}s; write [{}1, {}2]",
-            quantity.quote(value),
+            fields.quote(value),
             kind.lower(),
             kind,
             kind,
@@ -171,6 +171,6 @@ def _settings(section: Any, key_of_part: str) -> list[tuple[str, str, str]]:
                     "BAD_VALUE", f"{key_of_part}.set.{name}.{key}", "give one value such as 45 mm"
                 )
             settings.append(
-                (name, key, quantity.quote(value) if isinstance(value, bool) else str(value))
+                (name, key, fields.quote(value) if isinstance(value, bool) else str(value))
             )
     return settings

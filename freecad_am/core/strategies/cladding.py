@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..filling.cover import Cover
-from ..geometry.walls.clad_faces import CladFaces
+from ..geometry.walls.patch_wall import CladFaces
 from ..issues import NOTE, InputError, Issue, Text
 from ..layers.curved.on_faces import FaceLayer, pieces, slices
 from ..parameters.build_direction import BuildDirectionParameters

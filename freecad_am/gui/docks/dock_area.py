@@ -11,8 +11,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-from ..texts.in_language import tr
-from ..texts.labels import escape_mnemonic
+from ..texts.in_language import escape_mnemonic, tr
 from ..widgets.present import present
 
 

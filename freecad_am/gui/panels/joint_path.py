@@ -4,32 +4,71 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from pivy import coin
 
 from ...core.issues import ERROR, InputError, Issue
 from ...core.kinematics import cell as cells
 from ...core.kinematics.machines import machine as machines
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.joints import LEVEL_METHOD
+from ...core.planning.joint_path import BeadPath
 from ...core.planning.joint_path import JointPath as JointsOfBeads
 from ...core.planning.plan import OF_ROBOTS, plan_joints
 from ...core.planning.rotation.headroom import Judgement, judge_paths
 from ...core.planning.sampled import Sampled, sample_toolpath
+from ...core.types import Array
 from ...objects import user_machines
 from ...objects.checks import controllers
 from ...objects.joint_path import Job, JointPath
 from ...objects.stage_parts import Outcome
 from ...objects.work import progress
-from ..nodes.joint_path import JointPathNodes
-from ..path.colouring import CONDITION, MARGIN, RATIO
+from ..nodes.lines import Lines, Points
+from ..nodes.wall import unpickable
+from ..path.colouring import CONDITION, MARGIN, RATIO, UNREACHABLE, by_machine
+from ..path.legend import Legend
 from ..picking import shape_inputs
 from ..texts.in_language import tr, translated
 from ..views.preview import Aside, Draft
 from .preview import PreviewPanel, stale_lines
+
+# ---- Planned beads in the 3D view, coloured by the distance to the machine's limits, with a
+# legend
+
+_NOTHING = np.zeros((0, 3))
+
+
+class JointPathNodes:
+    """Draws beads as lines, initially nothing. Clicks pass through."""
+
+    def __init__(self) -> None:
+        self.lines, self.lost, self.legend = Lines(3.0), Points(7.0, UNREACHABLE), Legend()
+        self.switch = coin.SoSwitch()
+        for node in (unpickable(), self.lines.node, self.lost.node, self.legend.node):
+            self.switch.addChild(node)
+        self.switch.whichChild = coin.SO_SWITCH_ALL
+
+    def clear(self) -> None:
+        """Draw nothing."""
+        self.lines.set(_NOTHING, [])
+        self.lines.paint(_NOTHING)
+        self.lost.set(_NOTHING)
+        self.legend.hide()
+
+    def set(self, paths: Sequence[BeadPath], values: Array, kind: str, unreachable: Array) -> None:
+        """The beads of paths in colours of the values (n,) of their points, of one of the kinds that `by_machine` knows;
+        dots where they are lost (n,)."""
+        points = np.concatenate([path.bead.points for path in paths])
+        colours, scale = by_machine(values, kind)
+        self.lines.set(points, [len(path.bead) for path in paths])
+        self.lines.paint(colours)
+        self.lost.set(points[unreachable])
+        self.legend.show(((), scale), 0)
+
 
 MAX_POINTS = 1000  # points that are planned for a preview, about: a second or two
 MOST_SHOWN = 3  # findings

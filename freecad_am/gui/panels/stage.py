@@ -29,8 +29,7 @@ from ..background.worker import Later
 from ..colours import INVALID, PLAIN
 from ..picking.pick_field import Input
 from ..signals import connect
-from ..texts.in_language import marked, tr, translated
-from ..texts.labels import escape_mnemonic
+from ..texts.in_language import escape_mnemonic, marked, tr, translated
 from ..widgets import fields, suggestions
 from ..widgets.fields import Field
 from ..widgets.fold import Fold, Messages

@@ -3,16 +3,415 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
+from PySide import QtCore, QtGui
 
 from ...core.issues import AmError
+from ...core.kinematics import cell as cells
+from ...core.parameters.place import SIDES, PlaceParameters
+from ...core.placement.place import Placed
+from ...core.placement.reach import Reach, reach
+from ...objects import user_machines
+from ...objects.checks.placed import Placing, change_parameters, placing_of
+from ...objects.fields.preferences import in_user_units
+from ...objects.fields.rows import flat, rows
 from ...objects.stage import stage_of
+from ...objects.work import progress
+from ...objects.work.progress import Cancelled
+from .. import recorded
+from ..background.worker import Work
+from ..colours import INVALID, PLAIN, set_role
+from ..docks import dock_area
+from ..docks.dock_area import Lookout
 from ..picking.shape_inputs import job_named, job_selection
+from ..preferences import watch
 from ..texts.in_language import error_line, tr, translated_error
-from . import dock
+from ..widgets import fields
+from ..widgets.fold import Fold
+from . import figures
+from .scene import Scene
+
+# ---- The dock of a placement: it tries poses in the background, draws them as a map, and enters
+# the best by a click
+
+SECTION, HIGH = "place", 160  # pixels of the table at least
+
+
+class Form(QtGui.QWidget):
+    """The widgets of the dock; the caller connects their signals. values: of the fields, in the
+    form of a macro."""
+
+    def __init__(self, values: dict[str, Any]) -> None:
+        super().__init__()
+        column = QtGui.QVBoxLayout(self)
+        self.fields: dict[str, fields.Field] = {}
+        box, advanced = Fold(tr("Poses to try"), True), Fold(tr("More"), False)
+        current = flat(change_parameters(None, values))
+        for row in rows(PlaceParameters):
+            field = fields.make(row, current[row.key], None, "", SECTION)
+            self.fields[row.key] = field
+            heading = f"± {field.heading}" if row.key in SIDES else field.heading
+            (advanced if row.spec.advanced else box).add(heading, field.widget)
+        column.addWidget(box.widget)
+        column.addWidget(advanced.widget)
+        self.compute = _button(
+            "compute", tr("Compute"), tr("Try all poses in the background; can be cancelled")
+        )
+        self.use = _button(
+            "use", tr("Use this"), tr("Enter the pose selected in the table into the cell")
+        )
+        self.reach = _reach()
+        self.colour = QtGui.QComboBox()
+        self.colour.setObjectName("colour")
+        self.colour.setToolTip(tr("Quantity shown by the colours of the places"))
+        for name in figures.NAMES:
+            self.colour.addItem(figures.heading(name), name)
+        self.key, self.summary = QtGui.QLabel(), QtGui.QLabel()
+        self.key.setObjectName("key")
+        self.summary.setObjectName("told")
+        for label, lines in (
+            (self.key, 1),
+            (self.summary, 2),
+        ):  # lines; a fixed height keeps the widgets below in place
+            label.setWordWrap(True)
+            label.setMinimumHeight(lines * label.fontMetrics().lineSpacing())
+            label.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
+        self.table = _table()
+        buttons = QtGui.QHBoxLayout()
+        buttons.addWidget(self.compute)
+        buttons.addWidget(self.use)
+        column.addLayout(buttons)
+        for widget in (self.reach, self.summary, self.colour, self.key, self.table):
+            column.addWidget(widget)
+        column.addStretch(1)
+
+    def values(self) -> dict[str, Any]:
+        """Return the entered values in the form of a macro. InputError for unreadable input."""
+        return {key: field.value for key, field in self.fields.items()}
+
+    def tell(self, text: str, wrong: bool = False) -> None:
+        """Show the progress or the result."""
+        self.summary.setText(text)
+        set_role(self.summary, INVALID if wrong else PLAIN)
+
+    def tell_colours(self, coloured: figures.Coloured | None) -> None:
+        """What the colours mean."""
+        if coloured is None or coloured.lowest != coloured.lowest:
+            self.key.setText("")
+            return
+        self.key.setText(
+            tr("blue {:.4g} … yellow {:.4g}; grey: not feasible").format(
+                coloured.lowest, coloured.highest
+            )
+        )
+
+    def fill(self, placed: Placed | None, numbers: list[int]) -> None:
+        """The rows of the table."""
+        self.table.setRowCount(0 if placed is None else len(numbers))
+        for row, number in enumerate(numbers if placed is not None else ()):
+            assert placed is not None
+            for column, text in enumerate(figures.texts(placed, number)):
+                item = QtGui.QTableWidgetItem(text)
+                item.setTextAlignment(QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter)
+                self.table.setItem(row, column, item)
+        self.table.resizeColumnsToContents()
+        if numbers and placed is not None:
+            self.table.selectRow(0)
+
+
+def _button(name: str, text: str, help: str) -> Any:
+    button = QtGui.QPushButton(text)
+    button.setObjectName(name)
+    button.setToolTip(help)
+    return button
+
+
+def _reach() -> Any:
+    box = QtGui.QCheckBox(tr("Reach of the robot"))
+    box.setObjectName("reach")
+    box.setSizePolicy(
+        QtGui.QSizePolicy.Fixed, QtGui.QSizePolicy.Fixed
+    )  # Qt only accepts clicks on its text
+    box.setToolTip(
+        tr("Show the workspace of the robot: blue for few directions, yellow for all directions")
+    )
+    return box
+
+
+def _table() -> Any:
+    table = QtGui.QTableWidget(0, len(figures.heads()))
+    table.setObjectName("poses")
+    table.setHorizontalHeaderLabels(figures.heads())
+    table.verticalHeader().hide()
+    table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
+    table.setSelectionBehavior(QtGui.QAbstractItemView.SelectRows)
+    table.setSelectionMode(QtGui.QAbstractItemView.SingleSelection)
+    table.setMinimumHeight(HIGH)
+    return table
+
+
+NAME = "RoboticAM_Placement"
+MIN_WIDTH = 380  # pixels, at least
+REACH_STEP = 150.0  # mm
+FIT = 150  # ms
+
+
+class PlacementDock:
+    """Tries poses of one joint path or toolpath until the dock closes or its object is deleted."""
+
+    def __init__(self, obj: Any, view: Any) -> None:
+        self.obj, self.gone, self.entering = obj, False, False
+        self.placing: Placing = placing_of(obj)
+        self.found: Placed | None = None
+        self.numbers: list[int] = []
+        self.volume: Reach | None = None
+        self.scene: Scene | None = Scene(view)
+        self.dock = dock_area.dock(NAME, dock_area.RIGHT)
+        self.scroll = QtGui.QScrollArea()
+        self.scroll.setWidgetResizable(True)
+        self.scroll.setFrameShape(QtGui.QFrame.NoFrame)
+        self.scroll.setMinimumWidth(MIN_WIDTH)
+        self._build({})
+        self.work, self.reaching = (
+            Work(
+                self.scroll,
+                take,
+                lambda text, wrong: self.form.tell(text, wrong),
+                tr("Computing"),
+            )
+            for take in (self._take_poses, self._take_reach)
+        )
+        self.dock.hold(self._title(), self.scroll)
+        self.dock.closed = self.close
+        self._stand()
+        self.dock.come()
+        QtCore.QTimer.singleShot(
+            FIT, self._fit
+        )  # once the dock has its place and the view the rest
+        self.lookout = Lookout(lambda: _Shown(self.placing), self._changed_object, self.end)
+        watch.listen(self._paint)
+        watch.listen_to_language(self._speak)
+
+    # ---- the fields
+
+    def _build(self, values: dict[str, Any]) -> None:
+        self.form = Form(values)
+        self.form.compute.clicked.connect(lambda *_: self._compute())
+        self.form.use.clicked.connect(lambda *_: self._use())
+        self.form.reach.clicked.connect(lambda *_: self._reach())
+        self.form.colour.activated.connect(lambda *_: self._paint())
+        self.form.table.itemSelectionChanged.connect(self._paint)
+        self.scroll.setWidget(self.form)  # remove the old widget
+        self._name_buttons()
+
+    def _speak(self) -> None:
+        """Rebuild in the window's new language; entries and results stay."""
+        values, has_reach = {}, self.form.reach.isChecked()
+        with contextlib.suppress(AmError):
+            values = self.form.values()
+        self._build(values)
+        self.form.reach.setChecked(has_reach)
+        self.dock.setWindowTitle(self._title())
+        self._show()
+
+    def _title(self) -> str:
+        return tr("Placement of {}").format(self.obj.Label)
+
+    def _name_buttons(self) -> None:
+        runs = hasattr(self, "work") and self.work.runs
+        self.form.compute.setText(tr("Cancel") if runs else tr("Compute"))
+        self.form.use.setEnabled(not runs and bool(self.numbers))
+
+    # ---- computation
+
+    def _compute(self) -> None:
+        """Try the poses, or stop that."""
+        if self.work.runs:
+            self.work.cancel()
+            self.form.tell(tr("Cancelled."))
+            self._name_buttons()
+            return
+        try:
+            parameters: PlaceParameters = change_parameters(None, self.form.values())
+            self.placing = placing_of(self.obj)
+        except (AmError, ReferenceError) as error:
+            self.form.tell(translated_error(error), True)
+            return
+        placing = self.placing
+        self.work.start(lambda: placing.search_poses(parameters))
+        self._name_buttons()
+
+    def _take_poses(self, placed: Placed | None) -> None:
+        if placed is not None:
+            self.found = placed
+            self.numbers = figures.rows(placed, str(self.form.fields["best"].value))
+        self._show()
+        self._fit()
+        self._name_buttons()
+
+    def _reach(self) -> None:
+        """Show the reach of the robot, or no more."""
+        self.reaching.cancel()
+        if not self.form.reach.isChecked():
+            self.volume = None
+            self._paint()
+            return
+        settings, folders = self.placing.settings, user_machines.folders()
+
+        def work() -> Reach:
+            import numpy as np
+
+            return reach(
+                cells.resolve(settings, np.eye(4), folders=folders), REACH_STEP, progress.report
+            )
+
+        self.reaching.start(work)
+
+    def _take_reach(self, reach: Reach | None) -> None:
+        self.volume = reach
+        if reach is not None:
+            self.form.tell(
+                in_user_units(
+                    tr("The robot can be at {} places of a grid of {:.0f} mm.").format(
+                        len(reach.places), reach.step
+                    )
+                )
+            )
+        self._paint()
+        self._fit()
+
+    # ---- display
+
+    def _show(self) -> None:
+        self.form.table.blockSignals(True)
+        self.form.fill(self.found, self.numbers)
+        self.form.table.blockSignals(False)
+        if self.found is not None:
+            self.form.tell(figures.summed(self.found), self.found.best is None)
+        self._paint()
+        self._name_buttons()
+
+    def chosen(self) -> int | None:
+        """The number of the pose that is chosen in the table."""
+        row = self.form.table.currentRow()
+        return self.numbers[row] if 0 <= row < len(self.numbers) else None
+
+    def _fit(self) -> None:
+        if self.scene is not None:
+            with contextlib.suppress(RuntimeError, ReferenceError):  # the view was closed
+                self.scene.fit()
+
+    def _stand(self) -> None:
+        """Draw the machine of the current cell."""
+        if self.scene is not None:
+            self.scene.stand(self.placing.settings, self.placing.job().toolpath)
+            self._paint()
+
+    def _paint(self) -> None:
+        if self.scene is None:
+            return
+        try:
+            coloured = (
+                None
+                if self.found is None
+                else figures.coloured(self.found, self.form.colour.currentData())
+            )
+            self.scene.show(self.found, coloured, self.chosen())
+            self.scene.show_reach(self.volume)
+        except (RuntimeError, ReferenceError):
+            self.end(tr("its view was closed"))
+            return
+        self.form.tell_colours(coloured)
+
+    # ---- making it the choice
+
+    def _use(self) -> None:
+        """Enter the chosen pose into the cell and renew the dependent stages."""
+        number = self.chosen()
+        if self.found is None or number is None:
+            return
+        entries = {key: repr(value) for key, value in self.found.entries(number).items()}
+        self.entering = True
+        try:
+            recorded.change(self.placing.cell, entries)
+            self.placing = placing_of(self.obj)
+        except (AmError, Cancelled, ReferenceError) as error:
+            self.form.tell(
+                translated_error(error) or tr("Cancelled: the document is unchanged."), True
+            )
+            return
+        finally:
+            self.entering = False
+        self.form.tell(tr("The pose was entered into {}.").format(self.placing.cell.Label))
+        self._stand()
+
+    # ---- the end
+
+    def _changed_object(self, obj: Any, name: str) -> None:
+        """Discard results of outdated inputs."""
+        if name != "Key" or self.entering or self.found is None:
+            return
+        self.found, self.numbers = None, []
+        self._show()
+        self.form.tell(tr("{} has changed; compute again.").format(obj.Label), True)
+
+    def close(self, document_goes: bool = False) -> None:
+        """End it, and leave the view as it was."""
+        if self.gone:
+            return
+        self.gone = True
+        self.lookout.stop()
+        for listener in (self._paint, self._speak):
+            watch.forget(listener)
+        self.work.cancel()
+        self.reaching.cancel()
+        scene, self.scene = self.scene, None
+        if scene is not None:
+            scene.remove(document_goes)
+        self.dock.empty()
+        if self in _open:
+            _open.remove(self)
+
+    def end(self, why: str, document_goes: bool = False) -> None:
+        """Close the dock and show the reason."""
+        if not self.gone:
+            self.close(document_goes)
+            Gui.getMainWindow().statusBar().showMessage(
+                tr("The placement was closed: {}").format(why), 8000
+            )
+
+
+class _Shown:
+    """Return the objects for a lookout to watch."""
+
+    def __init__(self, placing: Placing) -> None:
+        self.document, self.objects = placing.document, placing.names
+
+
+_open: list[PlacementDock] = []  # Python must keep it as long as it is open; there is one
+
+
+def show(obj: Any) -> PlacementDock | None:
+    """Open the dock for a joint path or toolpath in a 3D view of its document and close the open
+    one. Raises InputError without anything to place."""
+    placing_of(obj)
+    document = Gui.getDocument(obj.Document.Name)
+    views = document.mdiViewsOfType("Gui::View3DInventor")
+    active = document.activeView()
+    view = active if hasattr(active, "getSceneGraph") else views[0] if views else None
+    if view is None:
+        App.Console.PrintWarning(tr("There is no 3D view to show places in; open one.") + "\n")
+        return None
+    while _open:
+        _open[0].close()
+    opened = PlacementDock(obj, view)
+    _open.append(opened)
+    return opened
+
 
 KINDS = ("joint path", "toolpath")  # kinds of placed objects, the most complete first
 
@@ -34,7 +433,7 @@ def placement() -> None:
         _say(tr("There is no toolpath with a cell to place; make one first."))
         return
     try:
-        dock.show(selected[0] if selected else candidates[-1])
+        show(selected[0] if selected else candidates[-1])
     except AmError as error:
         App.Console.PrintWarning(error_line(error))
         Gui.getMainWindow().statusBar().showMessage(translated_error(error), 8000)

@@ -13,11 +13,14 @@ import numpy as np
 from PySide import QtGui
 
 from ...core.issues import AmError
+from ...core.planning.redundancy import curve as rotation_curve
 from ...core.planning.redundancy.curve import Compared
+from ...core.planning.task import Task
 from ...core.types import Array
+from ...objects.work import progress
 from ...objects.work.progress import Cancelled
 from .. import recorded
-from ..background.worker import Later, Work
+from ..background.worker import Background, Later, Work, Worker
 from ..docks import dock_area
 from ..docks.dock_area import Lookout
 from ..path import dock as path_dock
@@ -27,13 +30,86 @@ from ..preferences import watch
 from ..simulation import dock as simulation_dock
 from ..texts.in_language import tr, translated, translated_error
 from ..widgets.steady import Scrolled
-from .cells import Cells
-from .comparison import comparison_work
 from .consequences import Consequences, Figures, Form, readout
 from .controls import AXES, CURVES, Controls
 from .draft import Draft, Source, source_of, status_of
 from .drawn.board import COLOURS, Board, Dragged, build_curves
-from .drawn.painting import KINDS, Canvas
+from .drawn.painting import KINDS, Canvas, painted
+
+# ---- The work that plans a toolpath by all methods
+
+
+def comparison_work(source: Source, task: Task) -> Callable[[], tuple[Compared, ...]]:
+    """Return work that plans the beads of the toolpath, from their own seams, by all methods.
+
+    With external axes it plans the beads of the joint path, which hold their positions.
+    """
+    beads = source.beads if source.cell.external else tuple(bead for _, _, bead in source.toolpath)
+    return lambda: rotation_curve.compared(task, beads, source.places, progress.report)
+
+
+# ---- Compute the cells of a map in the background and show them: first without the robot's links,
+# then with a coarse link check, then with every row checked
+
+ROUGH_STRIDE, FINE_STRIDE = 6, 1  # row stride of the link checks
+
+
+class Cells:
+    """`known` is called when more is known of a board, `drawn` when its cells are shown."""
+
+    def __init__(
+        self, form: Any, canvas: Canvas, on_known: Callable[[], None], drawn: Callable[[], None]
+    ) -> None:
+        self.canvas, self.known, self.drawn = canvas, on_known, drawn
+        self.background = Background(form)
+
+    def cancel(self) -> None:
+        """Cancel the computation."""
+        self.background.cancel()
+
+    def show(self, board: Board, branch: int, kind: str) -> None:
+        """Show a branch by margin or condition; its cells are computed first where they are not known."""
+        self.board, self.branch, self.kind = board, branch, kind
+        if branch in board.pictures:
+            self._draw()
+            self._go_on()
+            return
+        self.canvas.set_map(None, board.marks, board.labels)
+
+        def take(worker: Worker) -> None:
+            board.take(worker.result())
+            self.known()
+            self._draw()
+            self._go_on()
+
+        self.background.start(lambda: board.compute(branch), take)
+
+    def _go_on(self) -> None:
+        """Check the robot's links until every row is checked."""
+        board, branch = self.board, self.branch
+        previous = board.looked.get(branch)
+        if previous == FINE_STRIDE:
+            self.background.cancel()
+            return
+        stride = ROUGH_STRIDE if previous is None else FINE_STRIDE
+
+        def take(worker: Worker) -> None:
+            board.take_arm(branch, worker.result(), stride)
+            self._draw()
+            self._go_on()
+
+        self.background.start(lambda: board.arm(branch, stride), take)
+
+    def _draw(self) -> None:
+        board = self.board
+        self.canvas.title = board.title
+        self.canvas.heights = (
+            None if board.pair is None else (board.pair.labels, board.pair.planned)
+        )
+        self.canvas.set_map(
+            painted(board.pictures[self.branch], self.kind), board.marks, board.labels
+        )
+        self.drawn()
 
 
 def jump(obj: Any, layer: int, position: Array) -> bool:

@@ -259,3 +259,11 @@ def link_touches(link: str, what: str) -> str:
     if link == TORCH:
         return tr("the torch touches {what}").format(what=names.get(what, what))
     return tr("the link of {axis} touches {what}").format(axis=link, what=names.get(what, what))
+
+
+# ---- Labels of objects as texts of the window
+
+
+def escape_mnemonic(label: str) -> str:
+    """Escape `&` in a label for a menu, title, tab or button, where Qt marks a key with it."""
+    return label.replace("&", "&&")

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.inspection import fit_layers, scan_checks, scan_heights
+from ...core.inspection import fit_layers, scan_heights
 from ...core.inspection.inspect import Inspected
 from ...core.inspection.scan_heights import Scan
 from ...core.issues import InputError
@@ -60,7 +60,9 @@ def fit_of(obj: Any, parameters: ScanParameters) -> Fit | None:
         fit_layers.refuse_family(toolpath, where)
         body = None if substrate is None else substrate.body()
         if body is not None:
-            scan_checks.refuse_other(inspected.points, inspected.file, body, parameters.scan_within)
+            scan_heights.refuse_other(
+                inspected.points, inspected.file, body, parameters.scan_within
+            )
         return fitted(toolpath, inspected, body, parameters)
 
     return fit

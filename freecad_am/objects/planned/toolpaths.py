@@ -15,7 +15,7 @@ from ...core.parameters.cell import CellParameters
 from ...core.process import classes
 from ...core.process.deposit.pieces import deposited_twice
 from ...core.process.model import notes
-from ...core.process.model.material import check_speeds
+from ...core.process.model.bead_model import check_speeds
 from ...core.process.model.wire import set_wire_feed
 from ...core.process.order import enforce_layer_time
 from ...core.strategies import support

@@ -9,13 +9,16 @@ in place, by their bytes.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import tempfile
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
+from ..fields import properties
 from ..shapes.bodies import body_of, global_shape, shape_of
 from ..shapes.meshes import is_mesh, mesh_of
 from ..shapes.places import outer_matrix
@@ -101,3 +104,53 @@ def _digest(mesh: Any) -> str:
 def digits(*vectors: Any) -> str:
     """Numbers of vectors to six decimals."""
     return " ".join(f"{round(number, 6) + 0.0:.6f}" for vector in vectors for number in vector)
+
+
+# ---- The key of a stage's inputs: the origin of a stored result, as a text that differs after any
+# change
+
+SCHEMA_VERSION = 2  # version of the properties of stages
+
+
+def key_of_inputs(stage: Any, obj: Any, input_key: Callable[[str, Any], str]) -> str:
+    """The key of an object's parameters, of its linked stages by `input_key(link, object)`, and of
+    further inputs of `stage`, its proxy. InputError for a missing or failed one.
+    """
+    texts = [type(stage).__name__, str(SCHEMA_VERSION)]
+    for section in stage.sections:
+        texts += properties.fingerprint(obj, section.cls)
+    for link, linked in stage.linked(obj).items():
+        stage_objects = linked if isinstance(linked, list) else [linked]
+        texts += [
+            input_key(link, stage_object)
+            for stage_object in stage_objects
+            if stage_object is not None
+        ]
+    return hashlib.sha256("\n".join(texts + stage.further_inputs(obj)).encode()).hexdigest()[:32]
+
+
+def key_of_stage(link: str, linked: Any) -> str:
+    """The complete key of a linked stage."""
+    return str(linked.Key)
+
+
+def is_of_earlier_version(obj: Any) -> bool:
+    """Whether an earlier version of the properties computed a stage from the inputs that it has now."""
+    return any(_key_in(version, obj) == obj.Key for version in range(1, SCHEMA_VERSION))
+
+
+def _key_in(version: int, obj: Any) -> str:
+    with _counted_as(version):
+        return str(obj.Proxy.key(obj))
+
+
+@contextlib.contextmanager
+def _counted_as(version: int) -> Iterator[None]:
+    """Keys as an earlier version made them."""
+    global SCHEMA_VERSION
+    current = SCHEMA_VERSION
+    SCHEMA_VERSION = version
+    try:
+        yield
+    finally:
+        SCHEMA_VERSION = current

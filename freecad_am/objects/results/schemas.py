@@ -29,7 +29,7 @@ SCHEMAS: dict[str, Schema] = {
     "bead_path": Schema("core.planning.joint_path:BeadPath"),
     "cell_obstacle": Schema("core.parameters.cell_records:Obstacle"),
     "cell_parameters": Schema("core.parameters.cell:CellParameters", 2),
-    "clad_faces": Schema("core.geometry.walls.clad_faces:CladFaces"),
+    "clad_faces": Schema("core.geometry.walls.patch_wall:CladFaces"),
     "cone_surface": Schema("core.geometry.walls.surface:Cone"),
     "curves": Schema("core.geometry.curves.bead_curves:Curves"),
     "developable_surface": Schema("core.geometry.developable:Developable"),

@@ -47,7 +47,7 @@ from ..refusals import (
     refuse_weave,
     refuse_without_positions,
 )
-from . import numbers, process, text
+from . import process, text
 from .read import read
 from .read_process import INSTRUCTIONS
 
@@ -187,7 +187,7 @@ def write(program: Program) -> dict[str, bytes]:
         for words_of_remark in ("Robotic AM", *program.remarks, *_own_remarks(program))
         for line in text.remark(words_of_remark)
     ]
-    zones = numbers.Words(program, text.SPEED, text.ZONE)
+    zones = text.Words(program, text.SPEED, text.ZONE)
     words = process.Process(program, zones)
     groups = list(grouped(program, words, lambda block: _instructions(program, words, block)))
     remarks += (
@@ -336,7 +336,7 @@ def _switched(
     return [] if block.ahead is not None else [f"    SetDO do{program.deposit_output},{int(on)};"]
 
 
-def _names_used(program: Program, words: process.Process, zones: numbers.Words) -> list[str]:
+def _names_used(program: Program, words: process.Process, zones: text.Words) -> list[str]:
     """Names of the data and signals in the text, except names that no program may have."""
     kinds = {WaitInput: "di", WaitBelow: "ai"}
     inputs = [
@@ -359,14 +359,14 @@ class _Module:
 
     program: Program
     words: process.Process
-    zones: numbers.Words
+    zones: text.Words
 
     def as_bytes(
         self, name: str, routine: str, remarks: list[str], piece_list: Sequence[Piece]
     ) -> bytes:
         """One module with the data that its moves use."""
         program, part_held = self.program, self.program.holds_part
-        station, carried = numbers.pose(program.station), numbers.pose(program.carried)
+        station, carried = text.pose(program.station), text.pose(program.carried)
         lines: list[str] = []
         used: set[str] = set()
         for entry in piece_list:
@@ -399,16 +399,16 @@ def _motion(
     first_external, slides = program.first_external, program.slides
     if moves.interpolation != LINEAR_MOVE and not straight:
         return text.joint_moves(
-            numbers.controller_values(moves.joints[rows], slides), words, first_external
+            text.controller_values(moves.joints[rows], slides), words, first_external
         )
     if moves.position is None or moves.rotation is None:
         raise InputError(
             "NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`"
         )
     return text.linear_moves(
-        numbers.positions(moves.position[rows]),
-        numbers.quaternions(moves.rotation[rows]),
-        numbers.controller_values(moves.joints[rows, AXES:], slides[AXES:]),
+        text.positions(moves.position[rows]),
+        text.quaternions(moves.rotation[rows]),
+        text.controller_values(moves.joints[rows, AXES:], slides[AXES:]),
         words,
         first_external,
     )

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.curves.polyline import turn_segments
+from freecad_am.core.geometry.step_count import turn_segments
 
 
 @pytest.mark.parametrize("radius", [0.7, 3.0, 45.0, 5000.0])

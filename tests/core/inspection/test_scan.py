@@ -9,7 +9,7 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 from freecad_am.core.geometry.obstacles import Body
-from freecad_am.core.inspection import scan_checks
+from freecad_am.core.inspection import scan_heights
 from freecad_am.core.inspection.fit_layers import fit_layers, max_moves
 from freecad_am.core.inspection.planned import align_scan
 from freecad_am.core.inspection.scan_heights import Scan, facing, scanned
@@ -171,16 +171,16 @@ def test_a_part_with_few_layers_tells_what_remains(block):
 
 def test_units_and_other_parts_are_told_from_the_part():
     points = points_on(bent)
-    scan_checks.refuse_size(points, "s", PLATE)
+    scan_heights.refuse_size(points, "s", PLATE)
     for factor, unit in ((1e-3, "m"), (1.0 / 25.4, "inch"), (0.1, "cm")):
         with pytest.raises(InputError, match=rf"in {unit} the size would match") as error:
-            scan_checks.refuse_size(points * factor, "s", PLATE)
+            scan_heights.refuse_size(points * factor, "s", PLATE)
         assert error.value.code == "SCAN_UNIT"
-    scan_checks.refuse_other(points, "s", PLATE, 5.0)
+    scan_heights.refuse_other(points, "s", PLATE, 5.0)
     ball = np.random.default_rng(2).normal(size=(5000, 3))
     ball *= 80.0 / np.linalg.norm(ball, axis=1, keepdims=True)
     with pytest.raises(InputError, match=r"% of its 5000 points are within 5 mm of plate") as error:
-        scan_checks.refuse_other(ball, "s", PLATE, 5.0)
+        scan_heights.refuse_other(ball, "s", PLATE, 5.0)
     assert error.value.code == "SCAN_OTHER"
 
 

@@ -19,7 +19,7 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.place import PlaceParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.core.placement import place, table
+from freecad_am.core.placement import place
 from freecad_am.core.placement.judge import UNREACHED, Job, Judge
 from freecad_am.core.placement.place import Placed, place_part, ranked
 from freecad_am.core.planning.motion import assemble
@@ -176,7 +176,7 @@ def test_the_best_is_planned_with_all_points_and_nearest_to_where_the_part_stand
     times = [found.judged[number].time for number in ranked(found, "time") if number in clear]
     assert times == pytest.approx(sorted(times), abs=0.11)
     assert set(ranked(found, "clearance")) == set(ranked(found, "time"))
-    lines = list(table.rows(found))
+    lines = list(place.rows(found))
     assert (
         len(lines) == 10
         and lines[0].startswith("x_mm,")
@@ -185,7 +185,7 @@ def test_the_best_is_planned_with_all_points_and_nearest_to_where_the_part_stand
     assert [line.split(",")[6] for line in lines[1:]] == [
         "yes" if one.feasible else "no" for one in found.judged
     ]
-    assert table.key(found, found.best).startswith("deposition_point: [")
+    assert place.key(found, found.best).startswith("deposition_point: [")
 
 
 def inner(entries):

@@ -12,9 +12,8 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall, arc, line
-from freecad_am.core.geometry.walls.clad_faces import CladFaces
 from freecad_am.core.geometry.walls.mesh_wall import mesh_wall
-from freecad_am.core.geometry.walls.patch_wall import FirstCurve
+from freecad_am.core.geometry.walls.patch_wall import CladFaces, FirstCurve
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters

@@ -18,7 +18,7 @@ import numpy as np
 from ...issues import NOTE, InputError, Issue, Text
 from ...types import Array, Mask
 from ..curves.plane_curve import doubled_area, nearest_on_rings, winding
-from ..curves.polyline import turn_segments
+from ..step_count import turn_segments
 
 MERGED = 1e-12  # of the extent; points nearer together are one
 STRAIGHTNESS_TOLERANCE = 1e-9  # of the extent; a border within that of a straight line is one, and what is thinner is none

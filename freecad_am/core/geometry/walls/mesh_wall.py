@@ -22,8 +22,7 @@ from ..mesh.refined import Edges, boundary, flip_edges, refine_mesh
 from ..mesh.repair import WELDS_MM, connected_triangles, mended_issues
 from ..mesh.solid import Search, SolidMesh
 from ..mesh.triangle_mesh import Mesh
-from .clad_faces import CladFaces
-from .patch_wall import FirstCurve, PatchWall, Rim
+from .patch_wall import CladFaces, FirstCurve, PatchWall, Rim
 from .surface import dot
 
 REACHED = 0.75  # share of an end's length along which the wall comes up to it

@@ -293,3 +293,34 @@ class _Joints(NamedTuple):
         square, cube = 3.0 * chord - 2.0 * a - b, a + b - 2.0 * chord
         slope = a + t * (2.0 * square + 3.0 * t * cube)
         return start + t * (a + t * (square + t * cube)), slope, 2.0 * square + 6.0 * t * cube
+
+
+# ---- Faces that are to be covered with layers of beads, as smooth sheets whose outer side the
+# layers grow to
+
+
+@dataclass(frozen=True, eq=False)
+class CladFaces:
+    """Faces of a part to be clad.
+
+    label: of the part. faces: their names. sheets: smoothly connected faces, each group as
+    one sheet; none of them starts or ends anywhere. surroundings: the part itself if it is a
+    solid, substrate and fixtures. depths: None, a face has no volume.
+    """
+
+    label: str
+    faces: tuple[str, ...]
+    sheets: tuple[PatchWall, ...]
+    surroundings: tuple[Body, ...] = ()
+    issues: tuple[Issue, ...] = ()
+    depths: None = None
+
+    @property
+    def area(self) -> float:
+        """mm2 of the faces, by their triangles."""
+        return float(sum(sheet.mesh.areas.sum() for sheet in self.sheets))
+
+    @property
+    def smoothing(self) -> float:
+        """Maximum distance, mm, of the sheets from the faces to be covered: 0 for exact faces."""
+        return max((getattr(sheet, "smoothing", 0.0) for sheet in self.sheets), default=0.0)

@@ -20,12 +20,12 @@ from ...collision import deposit
 from ...collision.obstacles import Obstacles
 from ...collision.scene import Bodies, Nozzle, Scene, build_bodies, depositing
 from ...geometry.columns import columns
-from ...geometry.curves.polyline import turn_segments
 from ...geometry.curves.profile import RevolvedWall
 from ...geometry.formatting import place
 from ...geometry.mesh.solid import divide_triangles
 from ...geometry.obstacles import disc
 from ...geometry.on_hub import SolidsOnHub
+from ...geometry.step_count import turn_segments
 from ...issues import WARNING, InputError, Issue, Text, Word
 from ...parameters.cell import NozzleParameters
 from ...types import Array, Index, Mask

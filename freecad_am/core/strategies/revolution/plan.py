@@ -8,8 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...geometry.curves.polyline import turn_segments
 from ...geometry.curves.profile import RevolvedWall
+from ...geometry.step_count import turn_segments
 from ...issues import NOTE, WARNING, InputError, Issue, Text, Word
 from ...parameters.bead_classes import FIRST_LAYER, WALL
 from ...parameters.build_direction import BuildDirectionParameters

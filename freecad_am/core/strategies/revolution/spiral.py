@@ -8,9 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...geometry.curves.polyline import largest_step
 from ...geometry.curves.profile import Meridian, RevolvedWall
-from ...geometry.step_count import step_count
+from ...geometry.step_count import largest_step, step_count
 from ...issues import NOTE, InputError, Issue, Text
 from ...parameters.bead_classes import WALL
 from ...parameters.process import ProcessParameters
