@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.program import Moves
-from freecad_am.posts.fanuc import numbers as fanuc_numbers
+from freecad_am.posts.fanuc import records as fanuc_numbers
 from freecad_am.read_back import ways
 
 

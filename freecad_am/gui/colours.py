@@ -16,7 +16,7 @@ from PySide import QtCore, QtGui
 
 from ..core.types import Array
 from ..objects.fields import preferences
-from .widgets.present import present
+from .widgets.upright import present
 
 STEPS = 256
 # roles of texts; PLAIN is whatever the theme gives a text

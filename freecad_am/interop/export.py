@@ -8,6 +8,10 @@ import tempfile
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import FreeCAD as App
+import numpy as np
+
+from ..core.geometry.frames import pose
 from ..core.issues import InputError
 from ..core.kinematics.machines import machine
 from ..core.motion import Motion
@@ -17,9 +21,67 @@ from ..objects import user_machines
 from ..objects.current import check_current, check_recomputed
 from ..objects.stage import stage_of
 from ..objects.work import hooks
-from . import cell_file, neighbour, robot_trajectory, step_wires
-from . import lines as dxf
-from .lines import Line, lines_of_motion, lines_of_toolpath
+from . import cell_file, neighbour
+from .lines import (
+    Line,
+    attitudes,
+    dxf_text,
+    lines_of_motion,
+    lines_of_toolpath,
+    thinned,
+    write_step,
+)
+
+# ---- Lines as a trajectory of the Robot workbench, which plays it with robots of its own.
+# Thinned, for it is slow with many
+
+
+def make_trajectory(
+    document: Any, lines: Sequence[Line], label: str, tolerance: float, turn: float
+) -> Any:
+    """A Robot::TrajectoryObject through so few points that the path keeps within `tolerance` mm and `turn` rad.
+
+    Z of a waypoint points out of the nozzle. InputError NO_MODULE where this FreeCAD has no Robot workbench.
+    """
+    try:
+        import Robot
+    except ImportError:
+        raise neighbour.lacking("trajectory", "Robot", "make a CAM path") from None
+    obj = neighbour.added(document, "Robot::TrajectoryObject", "AmTrajectory", label)
+    trajectory = Robot.Trajectory()
+    trajectory.insertWaypoints(
+        [
+            Robot.Waypoint(placement, type="LIN", name=name, vel=speed)
+            for name, placement, speed in trajectory_waypoints(lines, tolerance, turn)
+        ]
+    )
+    obj.Trajectory = trajectory
+    obj.purgeTouched()  # nothing is left to recompute, which the tree would ask for
+    return obj
+
+
+def trajectory_waypoints(
+    lines: Sequence[Line], tolerance: float, turn: float
+) -> list[tuple[str, Any, float]]:
+    """Name, placement and speed in mm/s of each waypoint; the end of one line and the same start of the next are one."""
+    named_points: list[tuple[str, Any, float]] = []
+    end_point = None
+    for line in lines:
+        reduced = thinned(line, tolerance, turn)
+        skipped = 1 if end_point is not None and np.array_equal(end_point, reduced.points[0]) else 0
+        end_point = reduced.points[-1]
+        poses = pose(attitudes(reduced.tool), reduced.points)
+        speed = np.where(np.arange(len(reduced.speed)) == 0, reduced.speed[1], reduced.speed)
+        named_points += [
+            (
+                f"{line.name} {k}",
+                App.Placement(App.Matrix(*poses[k].ravel().tolist())),
+                float(speed[k]),
+            )
+            for k in range(skipped, len(reduced.points))
+        ]
+    return named_points
+
 
 DEPOSIT_ON, DEPOSIT_OFF = "(deposit on)", "(deposit off)"
 
@@ -219,14 +281,14 @@ def add_trajectory(obj: Any, tolerance: float, turn: float) -> Any:
             raise InputError(
                 "OUT_OF_RANGE", name, "{:g} is not positive; give a larger value", value
             )
-    return robot_trajectory.add(
+    return make_trajectory(
         obj.Document, lines_of(obj), f"{obj.Label} (trajectory)", tolerance, turn
     )
 
 
 def _write(lines: Sequence[Line], path: str, ending: str, label: str) -> None:
     if ending in STEP:
-        step_wires.write(lines, path, label)
+        write_step(lines, path, label)
         if not os.path.isfile(path):
             raise InputError(
                 "NOT_WRITTEN",
@@ -235,4 +297,4 @@ def _write(lines: Sequence[Line], path: str, ending: str, label: str) -> None:
             )
     else:
         with open(path, "w", encoding="ascii", newline="") as stream:
-            stream.writelines(dxf.text(lines))
+            stream.writelines(dxf_text(lines))

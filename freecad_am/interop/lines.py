@@ -1,14 +1,19 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A toolpath or a motion as the lines that other programs draw: a polyline per bead and per rapid move."""
+"""A toolpath or a motion as polylines, one per bead and per rapid move, and their DXF and STEP files."""
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
+import FreeCAD as App
 import numpy as np
+import Part
 
 from ..core.geometry.frames import smallest_rotation
+from ..core.issues import InputError
 from ..core.motion import Motion
 from ..core.toolpath import Toolpath
 from ..core.types import Array, Index
@@ -147,7 +152,7 @@ _RED, _COLOURS = 1, (3, 4, 5, 6, 30, 140)  # AutoCAD's numbers of colours; layer
 _POLYLINE_3D, _VERTEX_3D = 8, 32
 
 
-def text(lines: Sequence[Line]) -> Iterator[str]:
+def dxf_text(lines: Sequence[Line]) -> Iterator[str]:
     """The file in pieces; millimetres, part coordinates, line ends as Windows has them."""
     names = {
         _layer(line): _RED if not line.deposit else _COLOURS[line.layer % len(_COLOURS)]
@@ -209,3 +214,84 @@ def _point(name: str, point: object) -> str:
 
 def _pairs(pairs: list[tuple[int, object]]) -> str:
     return "".join(f"{code:3d}\r\n{value}\r\n" for code, value in pairs)
+
+
+# ---- Lines as wires in a STEP file: one named component per layer, one for the rapid moves
+
+RAPID_COMPONENT = "Rapid"
+UNITS = ("MM", "M", "INCH")  # by the number that FreeCAD's preference has
+SCHEMA = "AP214IS"
+_PREFERENCES = "User parameter:BaseApp/Preferences/Mod/Part/STEP"
+_UNIT_OF_FILES, _SCHEMA_OF_FILES = "write.step.unit", "write.step.schema"
+
+
+def write_step(lines: Sequence[Line], path: str, label: str) -> None:
+    """Write the file; InputError NO_MODULE where this FreeCAD cannot."""
+    try:
+        import Import
+    except ImportError:
+        raise InputError(
+            "NO_MODULE", "STEP", "this FreeCAD lacks the module Import; use DXF instead"
+        ) from None
+    active = App.ActiveDocument
+    document = App.newDocument("RoboticAM_Export", label, True, True)
+    try:
+        components = [
+            _component(document, name, component_lines)
+            for name, component_lines in _components(lines).items()
+        ]
+        with _millimetres():
+            Import.export(components, path)
+    finally:
+        App.closeDocument(document.Name)
+        if active is not None:
+            App.setActiveDocument(active.Name)
+
+
+@contextlib.contextmanager
+def _millimetres() -> Iterator[None]:
+    """Write STEP files in millimetres and the schema that all read, whatever the user prefers for files of his own.
+
+    The kernel keeps the unit for the whole process. FreeCAD 1.0 writes numbers in mm under the name of the preferred unit.
+    """
+    preferred = App.ParamGet(_PREFERENCES)
+    unit, schema = preferred.GetInt("Unit", 0), preferred.GetString("Scheme", SCHEMA)
+    Part.setStaticValue(_UNIT_OF_FILES, UNITS[0])
+    Part.setStaticValue(_SCHEMA_OF_FILES, SCHEMA)
+    try:
+        yield
+    finally:
+        Part.setStaticValue(_UNIT_OF_FILES, UNITS[unit] if 0 <= unit < len(UNITS) else UNITS[0])
+        Part.setStaticValue(_SCHEMA_OF_FILES, schema or SCHEMA)
+
+
+def step_edge(line: Line) -> Any:
+    """The edge through all points of a line."""
+    gaps = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
+    points = line.points[np.r_[True, gaps > 0.0]]
+    knots = np.r_[0.0, np.cumsum(gaps[gaps > 0.0])].tolist()
+    curve = Part.BSplineCurve()
+    curve.buildFromPolesMultsKnots(
+        [App.Vector(*point) for point in points.tolist()],
+        [2, *[1] * (len(points) - 2), 2],
+        knots,
+        False,
+        1,
+    )
+    return curve.toShape()
+
+
+def _components(lines: Sequence[Line]) -> dict[str, list[Line]]:
+    components: dict[str, list[Line]] = {}
+    for line in lines:
+        components.setdefault(
+            f"Layer {line.layer:03d}" if line.deposit else RAPID_COMPONENT, []
+        ).append(line)
+    return components
+
+
+def _component(document: Any, name: str, lines: list[Line]) -> Any:
+    obj = document.addObject("Part::Feature", "Wires")
+    obj.Label = name
+    obj.Shape = Part.Compound([Part.Wire([step_edge(line)]) for line in lines])
+    return obj

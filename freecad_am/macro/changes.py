@@ -9,7 +9,6 @@ from typing import Any
 
 from ..core.issues import AmError
 from ..objects import stage as stages
-from ..objects.fields.settings import set_parameters
 from ..objects.program import Program
 from ..objects.shapes.chosen import FeatureStage
 from ..objects.staleness import UP_TO_DATE
@@ -22,6 +21,7 @@ from .arguments import (
     one_step,
     owned,
     renew,
+    set_parameters,
     with_faces,
 )
 

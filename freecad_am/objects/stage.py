@@ -22,12 +22,12 @@ from ..core.issues import ERROR, AmError, InfeasibleError, InputError, Issue, Te
 from ..core.one_thread import one_thread
 from . import staleness
 from .fields import properties, rows
-from .fields.link_targets import broken_link, is_there
 from .fields.properties import HIDDEN, OUTPUT, READ_ONLY
 from .results import fingerprints, store
 from .results.findings import first_message, issues_of, reason_of, say, store_issues
 from .results.fingerprints import SCHEMA_VERSION
 from .results.store import Stored
+from .shapes.containers import broken_link, is_there
 from .shapes.file_links import missing_files
 from .stage_parts import Link, Outcome, Section, Work
 from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE

@@ -396,7 +396,7 @@ def joint_path(person, hemisphere):
 
 def _forget_places(window):
     """Docks of ours come in the next test as they come in a new session."""
-    from freecad_am.gui.docks import dock_area
+    from freecad_am.gui import dock_area
 
     for dock in dock_area._docks.values():
         window.removeDockWidget(dock)

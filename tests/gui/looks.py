@@ -52,7 +52,7 @@ def idle(seconds):
 
 
 def present(kind, below):
-    from freecad_am.gui.widgets.present import present as there
+    from freecad_am.gui.widgets.upright import present as there
 
     return there(below, kind)
 

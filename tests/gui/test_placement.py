@@ -9,8 +9,8 @@ from freecad_am import api
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.simulation.table_links import at_rest, placing
 from freecad_am.gui.nodes.cell import resting_point
+from freecad_am.gui.placement import dock as docks
 from freecad_am.gui.placement import figures
-from freecad_am.gui.placement import tool as docks
 
 HIGH = (1045.747, -630.155, 2153.167, 0, 0, 0)  # out of reach
 LONG = 60  # s

@@ -13,7 +13,7 @@ from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.cell_records import EXTERNAL
 from freecad_am.objects.fields import pendants
 from freecad_am.objects.fields.rows import rows
-from freecad_am.posts.fanuc import numbers as tp
+from freecad_am.posts.fanuc import records as tp
 from freecad_am.posts.kuka import text as krl
 
 

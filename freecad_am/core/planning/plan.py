@@ -22,7 +22,6 @@ from .beads.chord_error import all_refined
 from .beads.overlap import extend_past_seam
 from .beads.retreat import go_back
 from .beads.speeds import corners_slowed, rings_slowed, too_fast
-from .certificate import closing
 from .external import optimised, track
 from .external.level import ways
 from .findings import findings, out_of_reach
@@ -371,7 +370,9 @@ def _finished(task: Task, paths: Sequence[BeadPath]) -> tuple[list[BeadPath], li
     """Return the paths with the points that straight motion needs and unwrapped turns, and their
     issues.
     """
-    straight = closing.close_gaps(task, _as_run(task, paths))
+    from .certificate import bound  # few jobs ask for it
+
+    straight = bound.close_gaps(task, _as_run(task, paths))
     paths, notes = turns.unwrapped(task, [path for path, _ in straight])
     paths, missed = as_held(task.cell, paths, task.lock, task.parameters.max_residual)
     phased = [phases.phased(task.cell, path, task.condition_at) for path in paths]

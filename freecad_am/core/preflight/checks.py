@@ -24,9 +24,74 @@ from ..simulation.watch import ArmTouches
 from ..strategies.clearance.look import Looked
 from ..toolpath import Toolpath
 from ..types import Array
-from . import clearance, written
+from . import clearance
 from .promise import PERCENT, Place, Promise, issue_place, number, select_issues
-from .written import ReadBack
+
+# ---- The text of a program against the plan, and the checks that only its controller can do
+
+TEXT, BETWEEN = (
+    "The text takes the tool to the planned points",
+    "Between its points the text keeps to the planned path",
+)
+
+
+@dataclass(frozen=True)
+class ReadBack:
+    """The result of the read-back.
+
+    ok: no error. at_points, between: mm from the plan. bound: mm that the digits of the text
+    explain. allowed: mm between points. solvers: number of solvers of its kinematics.
+    """
+
+    ok: bool
+    at_points: float
+    between: float
+    bound: float
+    allowed: float
+    solvers: int
+
+
+def program_promises(read_back: ReadBack | None, on_controller: Sequence[str]) -> list[Promise]:
+    """The promises about a text; `on_controller`: checks that only the controller can do."""
+    not_checked = "not checked: only the controller can show it"
+    return [*_read_back(read_back), *(Promise(text, not_checked, None) for text in on_controller)]
+
+
+def _read_back(read_back: ReadBack | None) -> list[Promise]:
+    if read_back is None:
+        return [
+            Promise(what, "not checked: there is no program that was read back", None)
+            for what in (TEXT, BETWEEN)
+        ]
+    how = "read back by a reader of its own and driven through the joint-frame chain"
+    method = (
+        Text("{} and PyKDL", Word(how))
+        if read_back.solvers > 1
+        else Text("{}; PyKDL is not installed", Word(how))
+    )
+    return [
+        Promise(
+            TEXT,
+            method,
+            _is_within(read_back, read_back.at_points, read_back.bound),
+            *_figure(read_back.at_points, read_back.bound),
+        ),
+        Promise(
+            BETWEEN,
+            "the path of the text between its points, as the controller interpolates it",
+            _is_within(read_back, read_back.between, read_back.allowed),
+            *_figure(read_back.between, read_back.allowed),
+        ),
+    ]
+
+
+def _is_within(read_back: ReadBack, value: float, bound: float) -> bool:
+    return read_back.ok and value <= bound
+
+
+def _figure(value: float, bound: float) -> tuple[float | None, str, float | None]:
+    return (value, "mm", bound) if math.isfinite(value) else (None, "", None)
+
 
 # ---- The deposit against the part, by the issues and figures of its planning
 
@@ -344,7 +409,7 @@ def promises(evidence: Evidence) -> tuple[Promise, ...]:
         *predicted(evidence.toolpath, issues),
         clearance.nozzle(issues, evidence.looked),
         *_motion_promises(evidence),
-        *written.promises(evidence.read, evidence.on_controller),
+        *program_promises(evidence.read, evidence.on_controller),
     )
 
 

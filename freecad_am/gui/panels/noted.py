@@ -18,8 +18,7 @@ from ..picking.pick_field import Input
 from ..texts.in_language import translated, translated_error
 from ..widgets import fields
 from ..widgets.fold import Fold, Messages
-from ..widgets.present import present
-from ..widgets.upright import scroll_areas_of
+from ..widgets.upright import present, scroll_areas_of
 
 
 class Noted:

@@ -25,7 +25,7 @@ from ..colours import FAINT, GOOD, INVALID, of
 from ..path import dock
 from ..picking import shape_inputs
 from ..picking.shape_inputs import job_selection
-from ..program.listing import listing
+from ..program.window import listing
 from ..simulation import wording
 from ..texts.in_language import sentence, tr, translated
 from ..views.preview import Draft

@@ -17,10 +17,10 @@ from PySide import QtCore, QtGui
 from ... import api
 from ...core.issues import AmError, InputError, summarised
 from ...objects.fields import preferences
-from ...objects.fields.link_targets import is_there
 from ...objects.fields.rows import FOLLOW, Row, group_of, of, rows
 from ...objects.results.findings import issues_of, message_of, reason_of
 from ...objects.shapes.chosen import is_warned
+from ...objects.shapes.containers import is_there
 from ...objects.stage import Stage
 from ...objects.staleness import FAILED, INFEASIBLE
 from ...objects.work.progress import Cancelled

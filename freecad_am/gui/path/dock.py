@@ -14,9 +14,9 @@ from PySide import QtCore, QtGui
 
 from ...core.toolpath import Bead
 from ...objects.fields.preferences import in_user_units, quantity_text
+from .. import dock_area
 from ..background import redraw
-from ..docks import dock_area
-from ..docks.dock_area import Follower
+from ..dock_area import Follower
 from ..picking.shape_inputs import job_selection
 from ..preferences import watch
 from ..texts.in_language import tr, translated

@@ -10,10 +10,10 @@ from typing import Any
 import FreeCADGui as Gui
 
 from ...brep.walls.patch_wall import stand
-from ...objects.fields.link_targets import links_to_nothing
 from ...objects.job_group import is_group
 from ...objects.shapes import meshes, nested
 from ...objects.shapes.bodies import global_shape
+from ...objects.shapes.containers import links_to_nothing
 from ...objects.stage import stage_of
 from ..texts.in_language import tr
 

@@ -16,9 +16,9 @@ from ...plots import catalogue, chart
 from ...plots.chart import Picture
 from ...plots.joints import OVER, PATH, TIME
 from ...plots.source import Source
+from .. import dock_area
 from ..background.worker import Background, Later, Worker
-from ..docks import dock_area
-from ..docks.dock_area import Follower
+from ..dock_area import Follower
 from ..picking.shape_inputs import job_selection
 from ..preferences import watch
 from ..texts.in_language import tr, translated_error

@@ -19,10 +19,9 @@ from ...core.planning.task import Task
 from ...core.types import Array
 from ...objects.work import progress
 from ...objects.work.progress import Cancelled
-from .. import recorded
+from .. import dock_area, recorded
 from ..background.worker import Background, Later, Work, Worker
-from ..docks import dock_area
-from ..docks.dock_area import Lookout
+from ..dock_area import Lookout
 from ..path import dock as path_dock
 from ..path.path_view import PathView
 from ..plots.map_file import save

@@ -21,10 +21,9 @@ from ...core.simulation.table_links import Placing, at_rest, heights, placing
 from ...core.toolpath import Bead
 from ...core.types import Array, Mask
 from ...objects.stage import stage_of
-from .. import colours
+from .. import colours, dock_area
 from ..background import redraw
-from ..docks import dock_area
-from ..docks.dock_area import Lookout
+from ..dock_area import Lookout
 from ..nodes.cell import (
     NOZZLE,
     PLATFORM,

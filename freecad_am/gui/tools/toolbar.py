@@ -11,7 +11,7 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ..picking import picking
-from ..widgets.present import present
+from ..widgets.upright import present
 
 
 def show_tooltips(title: str) -> None:

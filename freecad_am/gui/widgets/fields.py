@@ -28,8 +28,8 @@ from ...objects.fields.rows import (
 from ..colours import INVALID, PLAIN, set_role
 from ..texts.in_language import tr, translated
 from . import choices
-from .present import present
 from .quantity import QuantityField
+from .upright import present
 
 
 class PendantLine:

@@ -9,7 +9,7 @@ from typing import Any
 from PySide import QtCore, QtGui
 
 from ..colours import INVALID, set_role
-from .present import present
+from .upright import present
 
 
 class WrappedLabel(QtGui.QLabel):

@@ -10,7 +10,18 @@ from typing import Any
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-from .present import present
+# ---- Children of a widget
+
+
+def present(parent: Any, kind: Any) -> list[Any]:
+    """Return child widgets of a kind, without those that PySide takes for deleted ones: it finds them by their
+    memory address, which an older widget may have had (docs/versions.md)."""
+    widgets = []
+    for widget in parent.findChildren(kind):
+        with contextlib.suppress(RuntimeError):
+            widget.objectName()
+            widgets.append(widget)
+    return widgets
 
 
 class _Guard(QtCore.QObject):

@@ -16,9 +16,8 @@ from ...core.parameters.build_direction import BuildDirectionParameters
 from ...core.parameters.cell import CellParameters, NozzleParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.program import ProgramParameters
-from ...core.preflight.checks import Evidence, promises
+from ...core.preflight.checks import Evidence, ReadBack, promises
 from ...core.preflight.promise import Promise
-from ...core.preflight.written import ReadBack
 from ...core.process.deposit import balance as deposit_balance
 from ...core.process.deposit import spacing
 from ...core.process.deposit.balance import Balance
@@ -35,8 +34,7 @@ from .. import user_machines
 from ..joint_path import Planned
 from ..results.as_run import AsRun, as_run
 from ..results.findings import issues_of
-from ..shapes.cell_obstacles import meshes_of, resolved
-from ..shapes.platforms import platforms
+from ..shapes.cell_obstacles import meshes_of, platforms, resolved
 from ..toolpath import features_of
 from .placed import arm_of
 

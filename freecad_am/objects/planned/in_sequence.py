@@ -26,7 +26,7 @@ from ..checks.on_its_part import check_on_part
 from ..families.given import Given
 from ..families.planner import CHECKED, CLEARING, STRATEGY
 from ..shapes.bodies import Taken, bodies, snapshot_of
-from ..shapes.platforms import platforms
+from ..shapes.cell_obstacles import platforms
 from ..work import progress
 from .toolpaths import (
     above_platform,

@@ -23,7 +23,7 @@ from ...core.toolpath import Toolpath as CoreToolpath
 from ..families.given import Given, platform_frame
 from ..families.planner import CHECKED, CLEARING, STRATEGY
 from ..families.registry import planner_for, planner_of
-from ..shapes.platforms import platforms
+from ..shapes.cell_obstacles import platforms
 from ..work import progress
 
 

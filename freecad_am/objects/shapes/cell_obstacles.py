@@ -19,11 +19,11 @@ from ...core.geometry import frames
 from ...core.geometry.file_content import digest
 from ...core.geometry.located import is_there, locate
 from ...core.geometry.mesh.file_unit import MESHES
-from ...core.geometry.obstacles import Body, box
+from ...core.geometry.obstacles import Body, box, disc
 from ...core.issues import InputError
 from ...core.kinematics import cell as cells
 from ...core.kinematics import torch
-from ...core.kinematics.cell import Cell
+from ...core.kinematics.cell import Cell, mounted
 from ...core.kinematics.links.bodies import LinkShape
 from ...core.kinematics.links.external_links import Mesh, external_links
 from ...core.kinematics.machines.machine import Machine
@@ -170,3 +170,13 @@ def _refuse_at_start(cell: Cell, toolpath: Toolpath) -> None:
                 "configuration; its pose is in the manufacturer's base frame, and its file in "
                 "mm: move it, or the deposition point",
             )
+
+
+# ---- The platform that a cell has, as a body in part coordinates
+
+
+def platforms(cell: CellParameters | None, toolpath: Toolpath) -> tuple[Body, ...]:
+    """The platform under a toolpath; none without a cell, or where the cell has none."""
+    if cell is None or cell.platform_diameter <= 0.0:
+        return ()
+    return (disc(cell.platform_diameter, mounted(cell, toolpath.frame, toolpath.family)),)

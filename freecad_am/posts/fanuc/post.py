@@ -52,7 +52,7 @@ from ..refusals import (
     switched_ahead,
 )
 from . import listing as text
-from . import numbers
+from . import records
 from .read import read
 
 DECIMALS = 2  # of the seconds before the end
@@ -296,9 +296,9 @@ def _words(program: Program) -> Callable[[Moves], Sequence[str]]:
     def words(moves: Moves) -> Sequence[str]:
         nonlocal is_first
         speeds = (
-            numbers.speed_words(moves)
+            records.speed_words(moves)
             if moves.interpolation == LINEAR_MOVE
-            else numbers.time_words(moves)
+            else records.time_words(moves)
         )
         if is_first:
             speeds[0], is_first = _FIRST_MOVE, False
@@ -370,7 +370,7 @@ def _record_text(program: Program, runs: Sequence[Run]) -> str:
         joints = np.concatenate([run.moves.joints[run.start : run.stop] for run in runs])
         slides, continuous = program.slides, np.array(program.continuous)
         values = np.round(np.where(slides, joints, np.degrees(joints)), 3)
-        values[:, continuous] = numbers.within_half_turn(values[:, continuous])
+        values[:, continuous] = records.within_half_turn(values[:, continuous])
         values += 0.0
         return text.joint_records(
             values[:, :AXES],
@@ -389,8 +389,8 @@ def _record_text(program: Program, runs: Sequence[Run]) -> str:
                 "program.motion",
                 "the program has no positions; use `motion: joint`",
             )
-        poses.append(numbers.poses(moves.position[rows], moves.rotation[rows]))
-        configuration += numbers.configurations(moves, program.continuous)[rows]
+        poses.append(records.poses(moves.position[rows], moves.rotation[rows]))
+        configuration += records.configurations(moves, program.continuous)[rows]
     return text.pose_records(
         np.concatenate(poses), configuration, program.user_frame, program.tool_frame
     )

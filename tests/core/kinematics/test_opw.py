@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics.inverse import opw, opw_inverse
+from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.kinematics.machines import machine
 from tests.core.kinematics.arms import EXAMPLES
 
@@ -74,7 +74,7 @@ def test_one_branch_is_the_same_as_in_all(arm):
 
 
 def test_pieces_do_not_show(arm):
-    q = random_joints(arm, opw_inverse.CHUNK + 3)
+    q = random_joints(arm, opw.CHUNK + 3)
     poses = arm.chain.forward(q)
     parts = np.concatenate([arm.opw.inverse(poses[:100]), arm.opw.inverse(poses[100:])], axis=1)
     assert np.array_equal(arm.opw.inverse(poses), parts, equal_nan=True)

@@ -10,7 +10,7 @@ from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.parameters.joints import OBJECTIVES, JointParameters
 from freecad_am.core.planning import criteria
 from freecad_am.core.planning.certificate import bound as certificate
-from freecad_am.core.planning.certificate import closing, least_ahead
+from freecad_am.core.planning.certificate import least_ahead
 from freecad_am.core.planning.certificate.lattice import Lattice
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
@@ -143,7 +143,7 @@ def test_the_best_course_closes_the_gap(planned):
         points = gather([path.bead], task.cell)
         phi = path.phi + 0.3 * np.sin(3.0 * path.bead.parameter)
         turned = dataclasses.replace(path, phi=phi, joints=task.joints(points, phi))
-        best = closing.closed(task, turned)
+        best = certificate.closed(task, turned)
         value = summed(task.weights, best.joints)
         assert best.objective == pytest.approx(value, rel=1e-9) and value < 0.8 * summed(
             task.weights, turned.joints
@@ -175,7 +175,7 @@ def test_a_bead_that_joins_up_still_does(planned):
     )
     if not turned.bead.closed or not (task.rows.margin(turned.joints) >= 0.0).all():
         pytest.skip("this bead does not come round")
-    best = closing.closed(joined, turned)
+    best = certificate.closed(joined, turned)
     assert best is not turned
     assert best.phi[-1] - best.phi[0] == pytest.approx(turned.phi[-1] - turned.phi[0], abs=1e-9)
 

@@ -14,20 +14,81 @@ sum of m squares is at least the square of the sum divided by m (Cauchy-Schwarz)
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...geometry.angles import TURN
+from ...geometry.angles import TURN, shortest
 from ...issues import NOTE, Issue
+from ...kinematics import jacobian as jac
 from ...types import Array, Index, Mask
+from ..beads.chord_error import refined_to_chord_error
 from ..joint_path import BeadPath
 from ..points import Points, gather, steps
-from ..task import Task
+from ..rotation import given
+from ..task import Task, condition_margin
 from . import course, least_ahead
-from .lattice import Lattice, lattice
-from .point_bounds import point_bound
+from .lattice import CELLS, Lattice, divided, lattice, possible, whole_turn
+
+# ---- Lower bound of an objective that rates every point separately: its minimum over all
+# rotations at each point
+
+LEVELS = 4
+POINT_TOLERANCE = 1e-3  # share of a point's value at which its bound is near enough
+
+
+def point_bound(task: Task, points: Points, threshold: Array) -> float:
+    """The least that the objective of the task can be for one bead; threshold (n,) of the condition at its points. Infinite
+    where a point has no rotation that keeps limits and condition."""
+    count = len(points)
+    phi, half = whole_turn()
+    index, phi = np.repeat(np.arange(count), CELLS), np.tile(phi, count)
+    bound = np.full(count, np.inf)
+    for level in range(LEVELS):
+        feasible = possible(task, points, index, phi, np.full(len(phi), half), threshold[index])
+        index, phi = index[feasible], phi[feasible]
+        three = np.stack(
+            [_values(task, points, index, phi + side * half) for side in (-1.0, 0.0, 1.0)]
+        )
+        bend = np.nan_to_num(np.abs(three[0] - 2.0 * three[1] + three[2]), nan=0.0)
+        lower = np.maximum(np.nanmin(three, axis=0) - bend, 0.0)
+        bound = np.full(count, np.inf)
+        np.minimum.at(bound, index, lower)
+        sampled_min = np.full(count, np.inf)
+        np.minimum.at(sampled_min, index, three[1])
+        open_ = (bound < (1.0 - POINT_TOLERANCE) * sampled_min)[index] & (
+            lower < sampled_min[index]
+        )
+        if level + 1 == LEVELS or not open_.any():
+            break
+        settled = np.bincount(index[open_], minlength=count) == 0
+        retained = open_ | (settled[index] & (lower <= bound[index]))
+        index, phi = np.repeat(index[retained], 3), divided(phi[retained], half)
+        half /= 3.0
+    if task.parameters.objective == "limits-klein":
+        return float(bound.max())
+    return float(bound.mean())
+
+
+def _values(task: Task, points: Points, index: Index, phi: Array) -> Array:
+    """(n,) what the objective says of rotations phi (n,) at chosen points; NaN out of reach."""
+    name, selected = task.parameters.objective, points.select_points(index)
+    joints = task.raw_joints(selected, phi)
+    if name not in ("manipulability", "condition"):
+        centred = joints - task.middle
+        offset = np.abs(task.given_rows.offset(task.middle + shortest(centred)))
+        if name == "limits-klein":
+            return np.asarray(0.5 * offset.max(axis=1))
+        return np.asarray((offset**2).sum(axis=1) * (0.25 if name == "limits-fournier" else 1.0))
+    worth = np.full(len(phi), np.nan)
+    good = np.flatnonzero(np.isfinite(joints).all(axis=1))
+    matrix = task.jacobian_at(selected.frames.of(good), phi[good], joints[good])
+    measure = jac.manipulability if name == "manipulability" else jac.condition
+    worth[good] = 1.0 / np.maximum(measure(matrix, task.parameters.characteristic_length), 1e-300)
+    return worth
+
 
 BOUND_TOLERANCE = 0.005  # share of the objective at which a bound is near enough
 ROTATIONS = (
@@ -245,3 +306,73 @@ def _grouped(step: Array, weights: Array) -> Index:
             return rows
         groups *= 2
     return np.arange(count + 1, dtype=np.int64)
+
+
+# ---- Closes the gap between a joint path and its bound: the best course of the rotation along a
+# bead, each point free
+
+POINTWISE_REASON = "each point free"
+MIN_GAIN = 1e-3  # share of the objective that has to be won, else the polynomial stays
+
+
+def close_gaps(
+    task: Task, paths: list[tuple[BeadPath, list[Issue]]]
+) -> list[tuple[BeadPath, list[Issue]]]:
+    """Return the paths and their issues, with gaps closed if the task asks for it.
+
+    New courses get the points that straight motion needs.
+    """
+    if not task.parameters.close_gap or not task.cell.machine.free or task.arm.followed:
+        return paths
+    return [
+        (path, issues)
+        if (best := closed(task, path)) is path
+        else refined_to_chord_error(task, best, task.chord_error)
+        for path, issues in paths
+    ]
+
+
+def closed(task: Task, path: BeadPath) -> BeadPath:
+    """Return the path with the best rotation course that the search finds, if it is better.
+
+    The course keeps limits, condition and range of the rotation, joined beads and link clearance.
+    Given paths and infeasible paths stay unchanged.
+    """
+    if (
+        task.parameters.objective != "displacement"
+        or path.reason == given.GIVEN
+        or not path.reachable
+        or len(path.phi) < 3
+    ):
+        return path
+    points = gather([path.bead], task.cell)
+
+    def broken(phi: Array, joints: Array) -> Mask:
+        return course.broken_by(task, points, path.threshold, phi, joints)
+
+    def joints_at(phi: Array) -> Array:
+        return task.raw_joints(points, phi)
+
+    scale = np.broadcast_to(task.weights, (len(path.phi) - 1, len(task.weights)))
+    phi, objective = course.best(
+        joints_at, scale, path.phi, task.joined and path.bead.closed, broken
+    )
+    step = steps(path.joints, points)
+    if not objective < (1.0 - MIN_GAIN) * float(((step * step) @ task.weights).sum()):
+        return path
+    joints, condition = task.joints(points, phi), task.condition(points, phi, joints_at(phi))
+    if task.kept is not None:
+        deposited = np.full(len(phi), task.kept.moment((path.layer, path.index)), dtype=np.int64)
+        if task.kept.contact.touches(joints, deposited).any.any():
+            return path
+    margin = np.minimum(task.rows.margin(joints), condition_margin(condition, path.threshold))
+    return dataclasses.replace(
+        path,
+        phi=phi,
+        joints=joints,
+        condition=condition,
+        objective=objective,
+        margin=float(margin.min()),
+        coefficients=None,
+        reason=POINTWISE_REASON,
+    )

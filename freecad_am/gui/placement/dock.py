@@ -22,11 +22,10 @@ from ...objects.fields.rows import flat, rows
 from ...objects.stage import stage_of
 from ...objects.work import progress
 from ...objects.work.progress import Cancelled
-from .. import recorded
+from .. import dock_area, recorded
 from ..background.worker import Work
 from ..colours import INVALID, PLAIN, set_role
-from ..docks import dock_area
-from ..docks.dock_area import Lookout
+from ..dock_area import Lookout
 from ..picking.shape_inputs import job_named, job_selection
 from ..preferences import watch
 from ..texts.in_language import error_line, tr, translated_error

@@ -11,8 +11,8 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-from ..texts.in_language import escape_mnemonic, tr
-from ..widgets.present import present
+from .texts.in_language import escape_mnemonic, tr
+from .widgets.upright import present
 
 
 class Follower:

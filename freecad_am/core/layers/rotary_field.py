@@ -11,20 +11,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...geometry.angles import TURN
-from ...geometry.columns import columns
-from ...geometry.developable import Developable
-from ...geometry.obstacles import Body
-from ...geometry.on_hub import Base, middle_azimuth
-from ...geometry.regions.region import Region, regions
-from ...geometry.regions.several import grow_regions
-from ...geometry.regions.strip import Period, Strip, strips
-from ...issues import InputError
-from ...parameters.filled import DevelopableParameters
-from ...slicing.solids.equidistant import Facets, Loop, count, cut, unroll_layers
-from ...types import Array, Index
-from ..margins import ARCS, regions_of, within_margin
-from ..surface import Slice, Wrapped, common_regions
+from ..geometry.angles import TURN
+from ..geometry.columns import columns
+from ..geometry.developable import Developable
+from ..geometry.obstacles import Body
+from ..geometry.on_hub import Base, middle_azimuth
+from ..geometry.regions.region import Region, regions
+from ..geometry.regions.several import grow_regions
+from ..geometry.regions.strip import Period, Strip, strips
+from ..issues import InputError
+from ..parameters.filled import DevelopableParameters
+from ..slicing.solids.equidistant import Facets, Loop, count, cut, unroll_layers
+from ..types import Array, Index
+from .margins import ARCS, regions_of, within_margin
+from .surface import Slice, Wrapped, common_regions
 
 
 @dataclass(frozen=True)
