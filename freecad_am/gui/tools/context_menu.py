@@ -20,8 +20,7 @@ from ...objects.stage import stage_of
 from ...objects.staleness import UP_TO_DATE
 from ...objects.work.progress import Cancelled
 from .. import recorded, registry
-from ..texts.in_language import error_line, tr
-from ..texts.labels import escape_mnemonic
+from ..texts.in_language import error_line, escape_mnemonic, tr
 
 Act = Callable[[], Any]
 _NAME = "RoboticAM_Menu"

@@ -114,9 +114,9 @@ def redundancy_map() -> None:
 
 def placement() -> None:
     """The dock of placements."""
-    from ..placement import tool
+    from ..placement import dock
 
-    tool.placement()
+    dock.placement()
 
 
 def path() -> None:
