@@ -14,6 +14,7 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import Iterator
+from contextvars import ContextVar
 from typing import Any, ClassVar
 
 import FreeCAD as App
@@ -34,7 +35,8 @@ from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
 from .work import faults, hooks, progress
 
 CLASS_PROPERTY = "StageClass"
-_RESULT, _deferred = "Result", 0
+_RESULT = "Result"
+_is_deferred: ContextVar[bool] = ContextVar("is_deferred", default=False)
 
 
 class Stage(Stored):
@@ -270,7 +272,7 @@ class Stage(Stored):
         cancelled one wait for it.
         """
         self.was_run = True
-        if _deferred:
+        if _is_deferred.get():
             return
         stale = next(
             (linked.Label for linked in self._linked_stages(obj) if linked.Status == STALE), ""
@@ -328,12 +330,11 @@ class Stage(Stored):
 @contextlib.contextmanager
 def deferred() -> Iterator[None]:
     """Within it a recompute renews shapes and expressions but no stage; `renew` is then called one by one."""
-    global _deferred
-    _deferred += 1
+    token = _is_deferred.set(True)
     try:
         yield
     finally:
-        _deferred -= 1
+        _is_deferred.reset(token)
 
 
 def _lost_link(obj: Any, label: str, link: str) -> Text:

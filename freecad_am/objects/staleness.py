@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import FreeCAD as App
@@ -35,8 +36,6 @@ RESULTS = frozenset(
 
 LEFT_OUT = "FreeCAD left it out of the recompute; unfreeze it (Toggle Freeze in the tree) if it is frozen, then recompute"
 
-_observer: _Observer | None = None
-
 
 def changed(obj: Any, name: str) -> None:
     """Mark a stage, after its property `name` changed, and all that follows as stale."""
@@ -56,10 +55,15 @@ def changed(obj: Any, name: str) -> None:
 
 def watch() -> None:
     """Watch the documents for changes of shapes that features grow on; once per session."""
-    global _observer
-    if _observer is None:
-        _observer = _Observer()
-        App.addDocumentObserver(_observer)
+    document_observer()
+
+
+@functools.cache
+def document_observer() -> _Observer:
+    """Return the observer of all documents."""
+    observer = _Observer()
+    App.addDocumentObserver(observer)
+    return observer
 
 
 class _Observer:

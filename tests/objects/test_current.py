@@ -64,11 +64,11 @@ def test_a_part_that_was_changed_and_not_recomputed(job, tmp_path, name):
 def test_changes_that_freecad_tells_nobody_of(job, tmp_path, name):
     # as of objects that are frozen: FreeCAD 1.0 changes their shape, and tells neither observers nor what follows
     lowest = api.result(job.toolpath).layers[0].beads[0].points[:, 2].min()
-    App.removeDocumentObserver(staleness._observer)
+    App.removeDocumentObserver(staleness.document_observer())
     try:
         job.part.Placement.Base = App.Vector(0, 0, 7)
     finally:
-        App.addDocumentObserver(staleness._observer)
+        App.addDocumentObserver(staleness.document_observer())
     job.part.purgeTouched()
     assert job.program.Status == OK
     assert not write(name, job, tmp_path / "changed")

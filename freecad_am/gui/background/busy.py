@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator
+from contextvars import ContextVar
 from time import monotonic
 from typing import Any
 
@@ -28,7 +29,7 @@ GRACE = 0.15  # s that work is waited for once it is cancelled
 STEPS = 1000
 _WIDTH = 420  # px
 
-_together: _Dialog | None = None
+_dialog: ContextVar[_Dialog | None] = ContextVar("dialog", default=None)
 
 
 def carry_out(work: Callable[[], Any], title: str, doing: str = "") -> Any:
@@ -44,15 +45,16 @@ def carry_out(work: Callable[[], Any], title: str, doing: str = "") -> Any:
 @contextlib.contextmanager
 def busy() -> Iterator[_Dialog]:
     """Show one dialog for several works, if together they take long."""
-    global _together
-    if _together is not None:
-        yield _together
+    outer = _dialog.get()
+    if outer is not None:
+        yield outer
         return
-    _together = _Dialog()
+    dialog = _Dialog()
+    token = _dialog.set(dialog)
     try:
-        yield _together
+        yield dialog
     finally:
-        dialog, _together = _together, None
+        _dialog.reset(token)
         dialog.close()
 
 

@@ -47,7 +47,7 @@ class Worker:
         self._cancelled = False
         self._ending = threading.Lock()
         self._thread = threading.Thread(target=self._run, name="Robotic AM", daemon=True)
-        _attend(self)
+        _running_workers.add(self)
         self._thread.start()
 
     def result(self) -> Any:
@@ -110,33 +110,38 @@ class Worker:
         return alive
 
 
-_going: list[Worker] = []
-_collecting = False  # whether Python's cycle collector was on before the first worker
+class _RunningWorkers:
+    """The workers whose threads run. collecting: whether Python's cycle collector was on before the
+    first one.
+    """
+
+    def __init__(self) -> None:
+        self.workers: list[Worker] = []
+        self.collecting = False
+
+    def add(self, worker: Worker) -> None:
+        """Keep a worker that is about to start until its thread has ended."""
+        if not self.workers:
+            self.collecting = gc.isenabled()
+            gc.disable()
+            one_thread.hold()
+            QtCore.QTimer.singleShot(AGAIN, self._look)
+        self.workers.append(worker)
+
+    def _look(self) -> None:
+        """Drop workers that have ended, and collect the cycles of a moment, in the window's thread."""
+        self.workers[:] = [worker for worker in self.workers if worker.goes_on()]
+        if self.collecting:
+            gc.collect(YOUNG)
+        if self.workers:
+            QtCore.QTimer.singleShot(AGAIN, self._look)
+            return
+        one_thread.release()
+        if self.collecting:
+            gc.enable()
 
 
-def _attend(worker: Worker) -> None:
-    """Keep a worker that is about to start until its thread has ended."""
-    global _collecting
-    if not _going:
-        _collecting = gc.isenabled()
-        gc.disable()
-        one_thread.hold()
-        QtCore.QTimer.singleShot(AGAIN, _look)
-    _going.append(worker)
-
-
-def _look() -> None:
-    """Drop workers that have ended, and collect the cycles of a moment, in the window's thread."""
-    _going[:] = [worker for worker in _going if worker.goes_on()]
-    if _collecting:
-        gc.collect(YOUNG)
-    if _going:
-        QtCore.QTimer.singleShot(AGAIN, _look)
-        return
-    one_thread.release()
-    if _collecting:
-        gc.enable()
-
+_running_workers = _RunningWorkers()
 
 WAIT = 300  # ms
 LOOK_EVERY = 30  # ms

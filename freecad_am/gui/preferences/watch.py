@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -63,23 +64,27 @@ def _notify(listeners: list[Callable[[], None]]) -> None:
             listener()
 
 
-_watch: _Watch | None = None
-_ear: _Ear | None = None
+@functools.cache
+def _watch() -> _Watch:
+    """Return the observer of the preferences, made once."""
+    return _Watch()
+
+
+@functools.cache
+def _ear() -> _Ear:
+    """Return the widget that hears of the language, made once."""
+    return _Ear()
 
 
 def listen(listener: Callable[[], None]) -> None:
     """Call `listener` after each change of preferences, until `forget`."""
-    global _watch
-    if _watch is None:
-        _watch = _Watch()
+    _watch()
     _listeners.append(listener)
 
 
 def listen_to_language(listener: Callable[[], None]) -> None:
     """Call `listener` after each change of the window's language, until `forget`."""
-    global _ear
-    if _ear is None:
-        _ear = _Ear()
+    _ear()
     _readers.append(listener)
 
 

@@ -14,6 +14,7 @@ import hashlib
 import os
 import tempfile
 from collections.abc import Callable, Iterator
+from contextvars import ContextVar
 from typing import Any
 
 import numpy as np
@@ -110,13 +111,14 @@ def digits(*vectors: Any) -> str:
 # change
 
 SCHEMA_VERSION = 2  # version of the properties of stages
+_counted_version: ContextVar[int] = ContextVar("counted_version", default=0)  # an earlier one
 
 
 def key_of_inputs(stage: Any, obj: Any, input_key: Callable[[str, Any], str]) -> str:
     """The key of an object's parameters, of its linked stages by `input_key(link, object)`, and of
     further inputs of `stage`, its proxy. InputError for a missing or failed one.
     """
-    texts = [type(stage).__name__, str(SCHEMA_VERSION)]
+    texts = [type(stage).__name__, str(_counted_version.get() or SCHEMA_VERSION)]
     for section in stage.sections:
         texts += properties.fingerprint(obj, section.cls)
     for link, linked in stage.linked(obj).items():
@@ -147,10 +149,8 @@ def _key_in(version: int, obj: Any) -> str:
 @contextlib.contextmanager
 def _counted_as(version: int) -> Iterator[None]:
     """Keys as an earlier version made them."""
-    global SCHEMA_VERSION
-    current = SCHEMA_VERSION
-    SCHEMA_VERSION = version
+    token = _counted_version.set(version)
     try:
         yield
     finally:
-        SCHEMA_VERSION = current
+        _counted_version.reset(token)

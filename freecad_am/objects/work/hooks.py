@@ -15,8 +15,18 @@ import FreeCAD as App
 
 T = TypeVar("T")
 
-_module: str | None = None
-_carrying = False
+
+class _Window:
+    """The window, once it has registered. module: name of its module with `attach` and `carry_out`;
+    '' without a window. is_waiting: whether it waits for long work.
+    """
+
+    def __init__(self) -> None:
+        self.module = ""
+        self.is_waiting = False
+
+
+_window = _Window()
 
 
 def register(module: str) -> None:
@@ -24,16 +34,15 @@ def register(module: str) -> None:
     draws the stored result, and `carry_out(work, title, doing)`, which does long work while the
     window stays alive.
     """
-    global _module
-    _module = module
+    _window.module = module
 
 
 def attach(obj: Any) -> None:
     """Show the object in a window: when it is made, and when a document (also a headless one)
     opens.
     """
-    if App.GuiUp and _module and getattr(obj, "ViewObject", None) is not None:
-        importlib.import_module(_module).attach(obj)
+    if App.GuiUp and _window.module and getattr(obj, "ViewObject", None) is not None:
+        importlib.import_module(_window.module).attach(obj)
 
 
 def carry_out(work: Callable[[], T], title: str, doing: str = "") -> T:
@@ -42,17 +51,19 @@ def carry_out(work: Callable[[], T], title: str, doing: str = "") -> T:
 
     Raises Cancelled when the user cancels it.
     """
-    global _carrying
-    if not (App.GuiUp and _module) or threading.current_thread() is not threading.main_thread():
+    if (
+        not (App.GuiUp and _window.module)
+        or threading.current_thread() is not threading.main_thread()
+    ):
         return work()
-    _carrying = True
+    _window.is_waiting = True
     try:
-        result: T = importlib.import_module(_module).carry_out(work, title, doing)
+        result: T = importlib.import_module(_window.module).carry_out(work, title, doing)
         return result
     finally:
-        _carrying = False
+        _window.is_waiting = False
 
 
 def carrying() -> bool:
     """Whether the window is waiting for work: what events bring about meanwhile must not start another one."""
-    return _carrying
+    return _window.is_waiting
