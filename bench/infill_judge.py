@@ -28,8 +28,8 @@ TURN_RAD = math.atan(
 MITRED_TURN_RAD = math.radians(95.0)  # right angles with the rounding of a G-code file included
 STRAIGHT_RAD = 1e-9  # a smaller turn leaves no wedge
 ROUND_END = math.pi / 8.0  # of the width: a rectangle of that length has the area of a round end
-# of the width: a stroke longer than LOOP that ends as near to its start is a loop; slicers leave such gaps at seams
-CLOSING, LOOP = 0.25, math.pi
+# a stroke is a loop if its ends are nearer than a share of its width and of its length; slicers leave gaps at seams
+CLOSING, CLOSING_OF_LENGTH = 0.25, 0.08
 
 
 class Stroke(NamedTuple):
@@ -203,7 +203,8 @@ def is_loop(stroke: Stroke) -> bool:
     """Whether a stroke comes back to its start, up to the gap of a seam."""
     width = min(stroke.widths[0], stroke.widths[-1])
     gap = np.hypot(*(stroke.points[-1] - stroke.points[0]))
-    return bool(gap <= CLOSING * width and lengths(stroke.points).sum() > LOOP * width)
+    longest_gap = min(CLOSING * width, CLOSING_OF_LENGTH * lengths(stroke.points).sum())
+    return bool(gap <= longest_gap)
 
 
 def _corners(
