@@ -13,6 +13,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from functools import partial
 from pathlib import Path
 from statistics import median
 from typing import NamedTuple
@@ -33,6 +34,8 @@ MEDIAN_SHARE, WORST_SHARE = (
     3.0,
 )  # per cent of the section, void or over, in the median and the worst layer
 MEDIAN_TIMES, WORST_TIMES = 2.0, 4.0  # PrusaSlicer's processor time per 1,000 points
+ISLANDS = choose((8, 16), (1, 2))  # along the sides of two squares of islands
+LINEAR_TIMES = 1.25  # the time of as many islands in proportion
 RESOLUTION = 1e-3  # per cent; the raster shows no smaller share
 JOB = Path(__file__).resolve().parent / "infill_job.py"
 
@@ -66,16 +69,16 @@ def run() -> list[Row]:
         ]
         ours = our_results(cases, meshes, folder)
         peers = [
-            peer_result(case, mesh, folder / f"{number}.stl") if with_peer else None
+            peer_result(case, folder / f"{number}.stl", mesh) if with_peer else None
             for number, (case, mesh) in enumerate(zip(cases, meshes))
         ]
-    print(table(cases, ours, peers), file=sys.stderr)
-    rows = [
-        row
-        for case, our, peer in zip(cases, ours, peers)
-        for row in (*quality_rows(case, our), time_row(case, our, peer))
-    ]
-    return [*rows, median_time_row(ours, peers)]
+        print(table(cases, ours, peers), file=sys.stderr)
+        rows = [
+            row
+            for case, our, peer in zip(cases, ours, peers)
+            for row in (*quality_rows(case, our), time_row(case, our, peer))
+        ]
+        return [*rows, median_time_row(ours, peers), islands_row(folder)]
 
 
 def selected_cases(words: str) -> tuple[Case, ...]:
@@ -90,6 +93,18 @@ def selected_cases(words: str) -> tuple[Case, ...]:
 
 def our_results(cases: tuple[Case, ...], meshes: list[Triangles], folder: Path) -> list[Result]:
     """What we do with the cases, in one other process."""
+    results = []
+    for beads, mesh in zip(planned_beads(cases, folder), meshes):
+        base = mesh.corners[:, :, 2].min()
+        layers = our_layers(beads["points"], beads["widths"], beads["counts"], base)
+        results.append(
+            Result(verdicts(mesh, layers), float(beads["seconds"]), len(beads["points"]))
+        )
+    return results
+
+
+def planned_beads(cases: tuple[Case, ...], folder: Path) -> list[dict[str, np.ndarray]]:
+    """The arrays that `infill_job.save_beads` writes of each case; meshes are in the folder by number."""
     jobs = [
         {
             "mesh": str(folder / f"{number}.stl"),
@@ -100,15 +115,7 @@ def our_results(cases: tuple[Case, ...], meshes: list[Triangles], folder: Path) 
     ]
     (folder / "jobs.json").write_text(json.dumps(jobs), encoding="utf-8")
     subprocess.run([sys.executable, str(JOB), str(folder / "jobs.json")], check=True)
-    results = []
-    for job, mesh in zip(jobs, meshes):
-        with np.load(job["beads"]) as beads:
-            base = mesh.corners[:, :, 2].min()
-            layers = our_layers(beads["points"], beads["widths"], beads["counts"], base)
-            results.append(
-                Result(verdicts(mesh, layers), float(beads["seconds"]), len(beads["points"]))
-            )
-    return results
+    return [dict(np.load(job["beads"])) for job in jobs]
 
 
 def strategy(case: Case) -> dict[str, object]:
@@ -137,7 +144,7 @@ def our_layers(
     return layers
 
 
-def peer_result(case: Case, mesh: Triangles, file: Path) -> Result:
+def peer_result(case: Case, file: Path, mesh: Triangles) -> Result:
     """What PrusaSlicer does with a case."""
     sliced = prusa.slice_mesh(file, case.fill, BEAD, LAYER, CHORD_ERROR, NARROWEST)
     return Result(verdicts(mesh, sliced.layers), sliced.seconds, sliced.points)
@@ -190,6 +197,19 @@ def median_time_row(ours: list[Result], peers: list[Result | None]) -> Row:
     if not ratios:
         return Row(name, 0.0, None, "times", 1.0)
     return Row(name, median(ratios), MEDIAN_TIMES, "times", 1.0)
+
+
+def islands_row(folder: Path) -> Row:
+    """Processor time of many islands, against fewer in proportion."""
+    cases = tuple(
+        Case(f"{side**2} islands", partial(infill_parts.square_islands, side)) for side in ISLANDS
+    )
+    for number, case in enumerate(cases):
+        infill_parts.write_mesh(case.shape(), folder / f"{number}.stl")
+    few, many = (float(beads["seconds"]) for beads in planned_beads(cases, folder))
+    times = ISLANDS[1] ** 2 / ISLANDS[0] ** 2
+    name = f"{ISLANDS[1] ** 2} islands against {times:g} times the time of {ISLANDS[0] ** 2}"
+    return Row(name, many, times * few, "s", 1.0 / LINEAR_TIMES)
 
 
 def table(cases: tuple[Case, ...], ours: list[Result], peers: list[Result | None]) -> str:

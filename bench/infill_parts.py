@@ -110,6 +110,18 @@ def round_islands() -> Any:
     )
 
 
+def square_islands(side: int) -> Any:
+    """Blocks of one layer, each 1.5 beads wide, in a square of `side` by `side` of them."""
+    wide, pitch = 1.5 * BEAD, 3.0 * BEAD
+    return Part.makeCompound(
+        [
+            Part.makeBox(wide, wide, LAYER, Vector(pitch * x, pitch * y, 0.0))
+            for x in range(side)
+            for y in range(side)
+        ]
+    )
+
+
 def tapering_fins() -> Any:
     """A hub with three ribs that taper to an edge."""
     hub = Part.makeCylinder(13.0, PRISM)
