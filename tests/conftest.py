@@ -88,6 +88,16 @@ def pytest_collection_modifyitems(config, items):
             )
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_setupnodes():
+    """Start workers in the locale of the user: importing FreeCAD sets C for processes that are started."""
+    for name in ("LANG", "LC_ALL"):
+        if name in os.environ:
+            os.putenv(name, os.environ[name])
+        else:
+            os.unsetenv(name)
+
+
 @pytest.hookimpl(optionalhook=True, tryfirst=True)
 def pytest_handlecrashitem():
     """A crash is a failure: no plugin runs the test once more."""

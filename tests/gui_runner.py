@@ -12,7 +12,9 @@ def work():
     """Run the tests that xdist sends."""
     status = 3
     try:
-        os.dup2(int(os.environ.pop("WORKER_PIPE")), 1)
+        for stream, pipe in enumerate(map(int, os.environ.pop("WORKER_PIPES").split())):
+            os.dup2(pipe, stream)
+            os.close(pipe)
         # FreeCAD's window has replaced the streams by its report view
         sys.stdin, sys.stdout = open(0, closefd=False), open(1, "w", closefd=False)  # noqa: SIM115
         sys.stderr = sys.__stderr__ or open(2, "w", closefd=False)  # noqa: SIM115

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Start FreeCAD's main window under Xvfb as a worker of pytest-xdist, which takes this file for a Python.
 
-xdist talks to its workers through stdin and stdout. FreeCAD prints its banner to stdout, so the pipe is passed on as
-another descriptor, which tests/gui_runner.py uses.
+xdist talks to its workers through stdin and stdout. FreeCAD prints its banner to stdout, and xvfb-run may close stdin, so
+both pipes are passed on as other descriptors, which tests/gui_runner.py uses.
 """
 
 from __future__ import annotations
 
+import fcntl
 import os
 import shutil
 import subprocess
@@ -15,6 +16,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
+FIRST_PIPE = 20  # the lowest descriptor of a pipe to xdist
 SCREEN = "-screen 0 1400x900x24 -dpi 96 -nolisten tcp"
 PREFERENCES = """<?xml version="1.0" encoding="UTF-8" standalone="no" ?>
 <FCParameters><FCParamGroup Name="Root"><FCParamGroup Name="BaseApp"><FCParamGroup Name="Preferences">
@@ -64,15 +66,21 @@ def freecad() -> str | None:
 
 def main() -> int:
     """Run FreeCAD until xdist closes the pipe, and return its exit status."""
-    pipe = os.dup(1)
+    # xvfb-run keeps some of the lowest descriptors for itself
+    pipes = tuple(fcntl.fcntl(stream, fcntl.F_DUPFD, FIRST_PIPE) for stream in (0, 1))
     with tempfile.TemporaryDirectory() as folder:
-        env = {**private_home(Path(folder)), "WORKER_PIPE": str(pipe)}
+        env = {**private_home(Path(folder)), "WORKER_PIPES": f"{pipes[0]} {pipes[1]}"}
         env.pop("VIRTUAL_ENV", None)
         # with a folder of its own xvfb-run fails if it cannot remove that folder
         screen = ["xvfb-run", "-a", "-f", str(Path(folder) / "Xauthority"), "-s", SCREEN]
         command = [*screen, freecad() or "freecad", str(ROOT / "tests" / "gui_runner.py")]
         return subprocess.run(
-            command, env=env, stdout=subprocess.DEVNULL, pass_fds=(pipe,), check=False
+            command,
+            env=env,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            pass_fds=pipes,
+            check=False,
         ).returncode
 
 
