@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable
 from typing import Any
 
 SUCCESS, OUR_FAULT, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 1, 2, 3, 130
@@ -82,8 +83,7 @@ def _run(argv: list[str], session: Any) -> int:
         session.out(parser.format_help())
         return SUCCESS
     options = parser.parse_args(words)
-    status: int = getattr(sys.modules[__name__], f"_{command}")(options, session)
-    return status
+    return RUN_COMMANDS[command](options, session)
 
 
 def _interrupted(session: Any) -> int:
@@ -217,6 +217,17 @@ def _machines(options: Any, session: Any) -> int:
     else:
         session.out(machines.chosen(*criteria) if filtered else machines.listing())
     return SUCCESS
+
+
+RUN_COMMANDS: dict[str, Callable[[Any, Any], int]] = {
+    "plan": _plan,
+    "export": _export,
+    "batch": _batch,
+    "inspect": _inspect,
+    "check": _check,
+    "place": _place,
+    "machines": _machines,
+}
 
 
 if __name__ == "__main__":
