@@ -1532,7 +1532,7 @@
         <translation>&lt;axis&gt; n&apos;a pas de rpy ; tournez son xyz</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/collision.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/machine.py"/>
         <source>&lt;{0}&gt; has a size that is not positive; give its sizes in m</source>
         <translation>&lt;{0}&gt; a une taille qui n’est pas supérieure à 0 ; donnez ses dimensions en m</translation>
     </message>
@@ -1577,7 +1577,7 @@
         <translation>Une machine de la liste, ou le chemin d&apos;un fichier machine.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/families/revolution.py"/>
         <source>A part of revolution needs exact faces; {} is a mesh.</source>
         <translation>Une pièce de révolution demande des faces exactes ; {} est un maillage.</translation>
     </message>
@@ -1622,12 +1622,12 @@
         <translation>Accélération</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Add</source>
         <translation>Ajouter</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
+        <location filename="../../freecad_am/objects/families/cladding.py"/>
         <source>Add one layer, or use a smaller allowance</source>
         <translation>Ajoutez une couche, ou prenez une surépaisseur plus petite</translation>
     </message>
@@ -1642,7 +1642,7 @@
         <translation>Ajoute une cellule : machine, installation, plateau et buse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Adds the selected features, or the next one in the document</source>
         <translation>Ajoute les éléments sélectionnés, sinon le suivant du document</translation>
     </message>
@@ -1672,7 +1672,7 @@
         <translation>Tous les fichiers</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>All of the part is deposited</source>
         <translation>Toute la pièce est déposée</translation>
     </message>
@@ -1907,7 +1907,7 @@
         <translation>Meilleure</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/written.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>Between its points the text keeps to the planned path</source>
         <translation>Entre ses points, le texte suit la trajectoire planifiée</translation>
     </message>
@@ -1992,7 +1992,7 @@
         <translation>Annuler</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/dock.py"/>
+        <location filename="../../freecad_am/gui/background/worker.py"/>
         <source>Cancelled.</source>
         <translation>Annulé.</translation>
     </message>
@@ -2002,7 +2002,7 @@
         <translation>Annulé : rien n&apos;a été fait.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell/proposing.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Cancelled: the document is unchanged.</source>
         <translation>Annulé : le document est tel qu&apos;il était.</translation>
     </message>
@@ -2012,7 +2012,7 @@
         <translation>le mouvement cartésien avec la pièce sur le robot demande le TCP distant, dont les enregistrements de position (RX RY RZ RW RP RR) ne sont pas assez documentés ; utilisez `motion: joint`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
+        <location filename="../../freecad_am/posts/fanuc/records.py"/>
         <source>Cartesian positions need an arm that reaches forwards; use `branch: [front, ...]` or `motion: joint`</source>
         <translation>les positions cartésiennes ne sont écrites que pour un bras tendu vers l&apos;avant ; utilisez `branch: [front, ...]` ou `motion: joint`</translation>
     </message>
@@ -2077,7 +2077,7 @@
         <translation>Poses de contrôle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/preflight_list.py"/>
+        <location filename="../../freecad_am/gui/panels/program.py"/>
         <source>Checks of this program, how they were made and their worst points; click one to show it</source>
         <translation>Vérifications de ce programme, leur méthode et leurs pires points ; cliquez-en une pour la montrer</translation>
     </message>
@@ -2127,12 +2127,12 @@
         <translation>Rechargement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/families/cladding.py"/>
         <source>Cladding of faces</source>
         <translation>Rechargement de faces</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/cladding.py"/>
         <source>Cladding…</source>
         <translation>Rechargement…</translation>
     </message>
@@ -2172,7 +2172,7 @@
         <translation>Cliquez l&apos;objet à déposer, dans l&apos;arbre ou la vue 3D ; puis, avec Ctrl, son substrat, s&apos;il y en a un.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/families/cladding.py"/>
         <source>Click, with Ctrl, the faces to cover.</source>
         <translation>Cliquez, avec Ctrl, sur les faces à couvrir.</translation>
     </message>
@@ -2312,7 +2312,7 @@
         <translation>Arrondi des coins dans un cordon, en pour cent : CNT de FANUC, et du plus grand permis pour les autres.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/cladding.py"/>
         <source>Covers the selected faces with layers of beads</source>
         <translation>Prend les faces sélectionnées pour les recouvrir de couches de cordons</translation>
     </message>
@@ -2352,12 +2352,12 @@
         <translation>Courbes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/families/curves.py"/>
         <source>Curves as beads</source>
         <translation>Courbes en cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/curves.py"/>
         <source>Curves…</source>
         <translation>Courbes…</translation>
     </message>
@@ -2487,37 +2487,37 @@
         <translation>Point de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Deposits the chosen feature earlier</source>
         <translation>Dépose plus tôt l&apos;élément choisi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Deposits the chosen feature later</source>
         <translation>Dépose plus tard l&apos;élément choisi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/curves.py"/>
         <source>Deposits the selected edges, wires, sketches or tables as beads</source>
         <translation>Dépose les arêtes, fils, esquisses ou tableaux choisis en cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/surface.py"/>
         <source>Deposits the selected faces as a wall on the other selected object</source>
         <translation>Prend les faces sélectionnées comme paroi à déposer sur l&apos;autre objet sélectionné</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/revolution.py"/>
         <source>Deposits the selected shape of revolution</source>
         <translation>Prend la forme de révolution sélectionnée pour la déposer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/solid.py"/>
         <source>Deposits the selected solids in planar layers</source>
         <translation>Prend les solides sélectionnés à déposer en couches planes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/developable.py"/>
         <source>Deposits the selected solids on the cylinder or cone that is selected last</source>
         <translation>Prend les solides sélectionnés pour les déposer sur le cylindre ou le cône sélectionné en dernier</translation>
     </message>
@@ -2562,7 +2562,7 @@
         <translation>Cotes d&apos;un bras à poignet sphérique (OPW)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Direction</source>
         <translation>Sens</translation>
     </message>
@@ -2617,7 +2617,7 @@
         <translation>Document (*.pdf)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Down</source>
         <translation>Descendre</translation>
     </message>
@@ -2707,7 +2707,7 @@
         <translation>Chaque axe reste dans ses limites</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>Every bead is supported from below</source>
         <translation>Chaque cordon est porté par-dessous</translation>
     </message>
@@ -2827,7 +2827,7 @@
         <translation>Élément</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/revolution.py"/>
         <source>Feature…</source>
         <translation>Élément…</translation>
     </message>
@@ -3167,7 +3167,7 @@
         <translation>Général</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
+        <location filename="../../freecad_am/objects/families/filled_planner.py"/>
         <source>Give strategy.margin {0} mm more than it has, or wider beads</source>
         <translation>Donnez à strategy.margin {0} mm de plus, ou des cordons plus larges</translation>
     </message>
@@ -3212,7 +3212,7 @@
         <translation>Demi-angle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Height</source>
         <translation>Hauteur</translation>
     </message>
@@ -3422,12 +3422,12 @@
         <translation>Articulations</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell/proposing.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>Kept as entered; for {} it would be {}.</source>
         <translation>Laissé comme saisi ; pour {} ce serait {}.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell/proposing.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>Kept as entered; the job of {} is feasible with {}.</source>
         <translation>Laissé comme saisi ; la tâche de {} peut se faire avec {}.</translation>
     </message>
@@ -3567,7 +3567,7 @@
         <translation>Couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>Layers are one layer height apart</source>
         <translation>Les couches sont distantes d’une hauteur de couche</translation>
     </message>
@@ -3577,7 +3577,7 @@
         <translation>Couches à la hauteur de couche du point le plus proche de celle du dessous (constant-distance), dans une bande autour d&apos;elle et sans angles (smooth), ou le long des lignes qui montent la paroi (iso-parameter).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>Layers come out as high as they are planned</source>
         <translation>Les couches ont la hauteur prévue</translation>
     </message>
@@ -3777,7 +3777,7 @@
         <translation>LinuxCNC : de combien les angles peuvent être arrondis (G64 P).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>Little is deposited twice</source>
         <translation>Peu de matière est déposée deux fois</translation>
     </message>
@@ -4212,7 +4212,7 @@
         <translation>Normale du plan de symmetry-plane, en x y z dans les coordonnées de la pièce ; auto : le plan d&apos;un coude.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>Nothing is deposited outside the part</source>
         <translation>Rien n’est déposé à côté de la pièce</translation>
     </message>
@@ -4432,7 +4432,7 @@
         <translation>Ordre et attentes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Order of several features: one after the other, or the lowest layer of any feature first</source>
         <translation>Ordre de plusieurs éléments : l&apos;un après l&apos;autre, ou la couche la plus basse de tous d&apos;abord</translation>
     </message>
@@ -4527,7 +4527,7 @@
         <translation>Pièce sous les solides ; inutile sur un plateau.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/families/revolution.py"/>
         <source>Part of revolution</source>
         <translation>Pièce de révolution</translation>
     </message>
@@ -4612,7 +4612,7 @@
         <translation>Épaisseur prévue de la paroi, centrée sur la surface prévue ; 0 : la surface prévue est elle-même mesurée.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/comparison.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/dock.py"/>
         <source>Planning</source>
         <translation>Planification</translation>
     </message>
@@ -4782,7 +4782,7 @@
         <translation>Largeurs et vitesses prévues</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/preflight_list.py"/>
+        <location filename="../../freecad_am/gui/panels/program.py"/>
         <source>Preflight: {} passed, {} failed, {} not checked</source>
         <translation>Contrôle avant départ : {} tenues, {} non tenues, {} non vérifiées</translation>
     </message>
@@ -4852,12 +4852,12 @@
         <translation>Programme…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell/proposing.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>Proposed for the job of {}; enter the values of your cell.</source>
         <translation>Proposé pour la tâche de {} ; saisissez ce qu&apos;il en est du vôtre.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell/proposing.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>Proposed for {}; enter the values of your cell.</source>
         <translation>Proposé pour {} ; saisissez ce qu&apos;il en est du vôtre.</translation>
     </message>
@@ -5047,12 +5047,12 @@
         <translation>Remarques</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Remove</source>
         <translation>Retirer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Removes the selected feature from this toolpath</source>
         <translation>Retire l&apos;élément choisi de cette trajectoire d&apos;outil</translation>
     </message>
@@ -5282,17 +5282,17 @@
         <translation>Section de la dernière couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/families/surface.py"/>
         <source>Select also, with Ctrl, the faces to deposit on {}.</source>
         <translation>Sélectionnez aussi, avec Ctrl, les faces à déposer sur {}.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/families/developable.py"/>
         <source>Select also, with Ctrl, the hub: a cylinder or cone.</source>
         <translation>Sélectionnez aussi, avec Ctrl, le moyeu : un cylindre ou un cône.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/families/window.py"/>
         <source>Select also, with Ctrl, the part it grows on.</source>
         <translation>Sélectionnez aussi, avec Ctrl, la pièce sur laquelle il croît.</translation>
     </message>
@@ -5522,17 +5522,17 @@
         <translation>Solides</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/families/solid.py"/>
         <source>Solids in plane layers</source>
         <translation>Solides en couches planes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/developable.py"/>
         <source>Solids on Hub…</source>
         <translation>Solides sur moyeu…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/families/developable.py"/>
         <source>Solids on a hub</source>
         <translation>Solides sur un moyeu</translation>
     </message>
@@ -5552,7 +5552,7 @@
         <translation>Les solides qui se touchent ou se recouvrent sont déposés comme un seul (auto), ou chacun pour soi (none).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/families/solid.py"/>
         <source>Solids without support</source>
         <translation>Solides sans support</translation>
     </message>
@@ -5562,7 +5562,7 @@
         <translation>Solid{0} ({1} à {2})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/solid.py"/>
         <source>Solid…</source>
         <translation>Solide…</translation>
     </message>
@@ -5862,7 +5862,7 @@
         <translation>Les cylindres et cônes du moyeu sur lesquels croître ; trouvés s&apos;ils sont omis.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>The deposit is on the part</source>
         <translation>Ce qui est déposé se trouve sur la pièce</translation>
     </message>
@@ -6112,12 +6112,12 @@
         <translation>La pose a été entrée dans {}.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>The predicted deposit covers the part and its machining allowance</source>
         <translation>La pièce est à l&apos;intérieur du dépôt prédit, avec sa surépaisseur d&apos;usinage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>The predicted deposit holds what the wire feeds</source>
         <translation>Le dépôt prédit contient ce que le fil apporte</translation>
     </message>
@@ -6182,7 +6182,7 @@
         <translation>Les surfaces sur lesquelles reposent les solides.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/written.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>The text takes the tool to the planned points</source>
         <translation>Le texte amène l’outil aux points planifiés</translation>
     </message>
@@ -6257,7 +6257,7 @@
         <translation>{} est pris en entier ; Choisir ne prend que les faces sélectionnées.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>The wire feeds what the beads take</source>
         <translation>Le fil amène ce que les cordons demandent</translation>
     </message>
@@ -6302,7 +6302,7 @@
         <translation>Il n&apos;y a pas encore de post-processeur pour la commande de cette machine : tout est planifié, vérifié et simulé, mais aucun programme n&apos;est écrit. Exporter une trajectoire… écrit ses points en tableau.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/tool.py"/>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>There is no toolpath with a cell to place; make one first.</source>
         <translation>Il n&apos;y a pas de trajectoire d&apos;outil avec une cellule à placer ; faites-en d&apos;abord une.</translation>
     </message>
@@ -6327,7 +6327,7 @@
         <translation>Cette courbe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>This document has no other feature; create it first.</source>
         <translation>Il n&apos;y a pas d&apos;autre élément dans ce document ; créez-le d&apos;abord.</translation>
     </message>
@@ -6597,12 +6597,12 @@
         <translation>Unité des coordonnées mesurées ; auto : celle que nomme le fichier, sinon mm.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Up</source>
         <translation>Monter</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
+        <location filename="../../freecad_am/objects/families/planner.py"/>
         <source>Use beads {0} mm wider on either side, by process.bead_width, or a smaller allowance</source>
         <translation>Utilisez des cordons plus larges de {0} mm de chaque côté, par process.bead_width, ou laissez moins à usiner</translation>
     </message>
@@ -6712,12 +6712,12 @@
         <translation>Paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/surface.py"/>
         <source>Wall on Part…</source>
         <translation>Paroi sur pièce…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/families/surface.py"/>
         <source>Wall on a part</source>
         <translation>Paroi sur une pièce</translation>
     </message>
@@ -6742,7 +6742,7 @@
         <translation>Numéro du balayage propre à la commande avec lequel les cordons sont déposés ; 0 ou aucun : droits.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/payload.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>What carries the part carries its weight</source>
         <translation>Ce qui porte la pièce porte son poids</translation>
     </message>
@@ -6777,7 +6777,7 @@
         <translation>Plus large jour qui peut rester ouvert entre les cordons, en part de la distance des cordons.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Width</source>
         <translation>Largeur</translation>
     </message>
@@ -7117,7 +7117,7 @@
         <translation>un mouvement de {0} s ne peut pas être écrit ; les mouvements prennent de {1} à {2} s : utilisez une autre vitesse ou une plus grande erreur de corde</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
+        <location filename="../../freecad_am/posts/fanuc/records.py"/>
         <source>a move of {0} s is longer than {1} s; raise the speed or add points</source>
         <translation>un mouvement de {0} s est plus long que {1} s ; augmentez la vitesse ou ajoutez des points</translation>
     </message>
@@ -7127,7 +7127,7 @@
         <translation>un mouvement dure {0} ms, moins que le pas de {1} ms de la commande ; utilisez un strategy.chord_error plus grand ou un process.travel_speed plus petit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/numbers.py"/>
+        <location filename="../../freecad_am/posts/abb/text.py"/>
         <source>a move takes {0} s, below the minimum of {1} s; use a larger chord error or a lower speed</source>
         <translation>un mouvement prend {0} s, moins que les {1} s qui peuvent s&apos;écrire ; prenez une erreur de corde plus grande ou une vitesse plus faible</translation>
     </message>
@@ -7147,7 +7147,7 @@
         <translation>un mouvement demanderait {0} % de la plus grande vitesse articulaire, qui se dit par pas de {1} % ; utilisez une autre vitesse, pour qu&apos;il soit de {2} à 100 %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/quantity.py"/>
+        <location filename="../../freecad_am/sections/fields.py"/>
         <source>a number without a unit such as 0.1</source>
         <translation>un nombre sans unité comme 0.1</translation>
     </message>
@@ -7162,7 +7162,7 @@
         <translation>une partie est chargée sans arrêt là où cela ne se peut pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/quantity.py"/>
+        <location filename="../../freecad_am/sections/fields.py"/>
         <source>a percentage such as 20 %</source>
         <translation>un pourcentage comme 20 %</translation>
     </message>
@@ -7832,7 +7832,7 @@
         <translation>l&apos;axe {0} n&apos;a pas de limites, mais les valeurs articulaires de ce contrôleur comptent chaque tour jusqu&apos;à une limite ; utilisez des limites qui en ont une pour l&apos;axe {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
+        <location filename="../../freecad_am/posts/fanuc/records.py"/>
         <source>axis {0} is at {1} deg, where a Cartesian position has no reliable turn number; use `motion: joint`</source>
         <translation>l&apos;axe {0} est à {1} deg, où une position cartésienne n&apos;a pas de numéro de tour sûr ; utilisez `motion: joint`</translation>
     </message>
@@ -7897,7 +7897,7 @@
         <translation>cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>bead volume beyond the bead spacing of the layer, compared with 10 % of the beads</source>
         <translation>volume des cordons au-delà de l&apos;écart entre cordons de la couche, comparé à 10 % des cordons</translation>
     </message>
@@ -8337,7 +8337,7 @@
         <translation>sens antihoraire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>cubes of the deposit against wire section x feed x time, or what beads count where no wire is known</source>
         <translation>cubes du dépôt contre section du fil x vitesse x temps, ou ce que comptent les cordons là où aucun fil n&apos;est connu</translation>
     </message>
@@ -8377,12 +8377,12 @@
         <translation>dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/payload.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>deposit and closed substrate, at {0} g/cm3 (process.density), compared with the payload of {1}</source>
         <translation>dépôt et substrat fermé, à {0} g/cm3 (process.density), comparés à la charge de {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/payload.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>deposit and closed substrate, at {0} g/cm3 (process.density), compared with the payload of {1}, and its moment about the last axis, as it grows</source>
         <translation>dépôt et substrat fermé, à {0} g/cm3 (process.density), comparés à la charge de {1}, et son moment autour du dernier axe, à mesure qu&apos;il croît</translation>
     </message>
@@ -8457,22 +8457,22 @@
         <translation>déplacement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>distance by which the predicted deposit, in cubes of {0} mm filled bead by bead from the wire feed, extends beyond {1} points on the part faces, along their normals</source>
         <translation>de combien un dépôt de cubes de {0} mm, remplis cordon par cordon de ce que le fil apporte, dépasse {1} endroits des faces de la pièce, le long de leurs normales</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>distance in space of each point to the layer below, against what the strategy allows</source>
         <translation>distance dans l’espace de chaque point à la couche du dessous, comparée à ce que permet la stratégie</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>distance of {0} bead points to the original shape, independent of slicing</source>
         <translation>distance de {0} endroits des cordons à la forme elle-même, que le tranchage n’emploie pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>distance of {0} bead points to the original shape, less the layer shift from a scan</source>
         <translation>distance de {0} endroits des cordons à la forme elle-même, moins ce dont un scan a déplacé leurs couches</translation>
     </message>
@@ -8507,7 +8507,7 @@
         <translation>marche à vide, rien n&apos;est déposé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>each short piece of a bead, against its build direction, above earlier deposit with its actual width and existing parts</source>
         <translation>chaque court morceau de cordon, contre sa direction de dépôt, au-dessus du dépôt antérieur à sa largeur réelle et des pièces existantes</translation>
     </message>
@@ -8862,7 +8862,7 @@
         <translation>hauteur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>height of each point over the nearest place of the layer below, along the build direction there</source>
         <translation>hauteur de chaque point au-dessus de l’endroit le plus proche de la couche inférieure, selon la direction de dépôt à cet endroit</translation>
     </message>
@@ -8947,37 +8947,37 @@
         <translation>le conditionnement {0} lors d&apos;un mouvement rapide avant ou après le cordon est inférieur aux {1} admis, et aucune autre hauteur, direction ou rotation n&apos;est plus loin d&apos;une singularité ; diminuez joints.min_condition ou déplacez la pièce dans la cellule</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/quantity.py"/>
+        <location filename="../../freecad_am/sections/fields.py"/>
         <source>is a length</source>
         <translation>est une longueur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/quantity.py"/>
+        <location filename="../../freecad_am/sections/fields.py"/>
         <source>is a speed</source>
         <translation>est une vitesse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/quantity.py"/>
+        <location filename="../../freecad_am/sections/fields.py"/>
         <source>is a time</source>
         <translation>est un temps</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/quantity.py"/>
+        <location filename="../../freecad_am/sections/fields.py"/>
         <source>is a turn per length</source>
         <translation>est une rotation par longueur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/quantity.py"/>
+        <location filename="../../freecad_am/sections/fields.py"/>
         <source>is an angle</source>
         <translation>est un angle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/quantity.py"/>
+        <location filename="../../freecad_am/sections/fields.py"/>
         <source>is of another dimension</source>
         <translation>est d&apos;une autre dimension</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/quantity.py"/>
+        <location filename="../../freecad_am/sections/fields.py"/>
         <source>is without unit</source>
         <translation>est sans unité</translation>
     </message>
@@ -9037,7 +9037,7 @@
         <translation>il ne peut pas être écrit : {0} ; vérifiez le dossier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/settings.py"/>
+        <location filename="../../freecad_am/macro/arguments.py"/>
         <source>it cannot follow an expression; enter a plain value</source>
         <translation>il ne peut pas suivre une expression ; donnez une valeur simple</translation>
     </message>
@@ -9452,17 +9452,17 @@
         <translation>il est endommagé ou n&apos;est pas ce que dit son extension ; exportez la pièce de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/apart.py"/>
+        <location filename="../../freecad_am/brep/files/sandbox.py"/>
         <source>it is damaged: FreeCAD crashes on it; export it again</source>
         <translation>il est endommagé : FreeCAD plante en le lisant ; exportez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/apart.py"/>
+        <location filename="../../freecad_am/brep/files/sandbox.py"/>
         <source>it is damaged: reading it takes more than {0} MB of memory, the limit for a file of its size; export it again</source>
         <translation>il est endommagé : sa lecture demande plus de {0} Mo de mémoire, la limite pour un fichier de sa taille ; exportez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/apart.py"/>
+        <location filename="../../freecad_am/brep/files/sandbox.py"/>
         <source>it is damaged: reading it takes more than {0} s of processor time, the limit for a file of its size; export it again</source>
         <translation>il est endommagé : sa lecture demande plus de {0} s de processeur, la limite pour un fichier de sa taille ; exportez-le de nouveau</translation>
     </message>
@@ -9547,7 +9547,7 @@
         <translation>ce n&apos;est pas un réseau de liens ; donnez l&apos;objet lui-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/parsed.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>it is not a listing with /PROG, /MN, /POS and /END in this order</source>
         <translation>ce n&apos;est pas un listing avec /PROG, /MN, /POS et /END dans cet ordre</translation>
     </message>
@@ -10147,7 +10147,7 @@
         <translation>dégagement du bras</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
+        <location filename="../../freecad_am/objects/families/planner.py"/>
         <source>keeping the nozzle clear</source>
         <translation>maintien de la buse à distance</translation>
     </message>
@@ -10482,7 +10482,7 @@
         <translation>la plus basse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>lowest layer first</source>
         <translation>couche la plus basse d&apos;abord</translation>
     </message>
@@ -10502,7 +10502,7 @@
         <translation>il n&apos;y a pas de fichier machine {0} ; vérifiez le chemin</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/robot_trajectory.py"/>
+        <location filename="../../freecad_am/interop/export.py"/>
         <source>make a CAM path</source>
         <translation>faites une trajectoire CAM</translation>
     </message>
@@ -10862,7 +10862,7 @@
         <translation>non vérifié en entier, car {0} : {1} corps qui bougent avec leurs axes, tous les {2} deg du mouvement entier, la buse tous les mm ; ils touchent {3} avec {4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>not checked: a bead model, or nothing, says how wide the beads are</source>
         <translation>non vérifié : un modèle de cordon, ou rien, dit la largeur des cordons</translation>
     </message>
@@ -10872,7 +10872,7 @@
         <translation>non vérifié : build_direction.clearance vaut none</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>not checked: it is not known how wide the beads count</source>
         <translation>non vérifié : la largeur des cordons qui compte n’est pas connue</translation>
     </message>
@@ -10882,17 +10882,17 @@
         <translation>non vérifié : aucun fichier ne dit de quoi {0} est fait</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/written.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>not checked: only the controller can show it</source>
         <translation>non vérifié : seule la commande peut le montrer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>not checked: planned by an earlier version</source>
         <translation>non vérifié : planifié par une version antérieure</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/payload.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>not checked: the file of {0} states no payload; deposit and closed substrate, at {1} g/cm3 (process.density)</source>
         <translation>non vérifié : le fichier de {0} n&apos;indique pas de charge ; dépôt et substrat fermé, à {1} g/cm3 (process.density)</translation>
     </message>
@@ -10902,17 +10902,17 @@
         <translation>non vérifié : le fichier machine ne donne pas la forme de ses corps</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>not checked: the part encloses no volume</source>
         <translation>non vérifié : la pièce n’enferme pas de volume</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>not checked: the part has no faces to measure from</source>
         <translation>non vérifié : la pièce n’a pas de faces d’où mesurer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>not checked: the welder schedules, unknown here, set the feed of {0}</source>
         <translation>non vérifié : des programmes de soudage propres, que personne ne connaît ici, disent au poste comment alimenter {0}</translation>
     </message>
@@ -10922,12 +10922,12 @@
         <translation>non vérifié : il n’y a pas de trajectoire articulaire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/written.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>not checked: there is no program that was read back</source>
         <translation>non vérifié : il n’y a pas de programme relu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>not checked: there is no wire, process.wire.feed is 0</source>
         <translation>non vérifié : il n’y a pas de fil, process.wire.feed est 0</translation>
     </message>
@@ -11087,7 +11087,7 @@
         <translation>sur {0} de {1} cordons, {2} mm en tout, la torche commence à tourner avant les coins, avec un écart jusqu&apos;à {3} deg, pour ne pas tourner plus vite que {4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>one after the other</source>
         <translation>l&apos;un après l&apos;autre</translation>
     </message>
@@ -11127,7 +11127,7 @@
         <translation>seulement {0} de ses points correspondent à {1} ; choisissez l&apos;objet mesuré, son unité, ou des paires de points de départ</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/scan_checks.py"/>
+        <location filename="../../freecad_am/core/inspection/scan_heights.py"/>
         <source>only {0} of its {1} points are within {2} mm of {3}, at least {4} are needed; the median distance is {5} mm. The scan extends over {6} mm, {7} over {8} mm: scan the right part, crop the scan, check its unit, or raise substrate.scan_within</source>
         <translation>seulement {0} de ses {1} points sont à moins de {2} mm de {3}, il en faut au moins {4} ; la distance médiane est de {5} mm. La numérisation s&apos;étend sur {6} mm, {7} sur {8} mm : numérisez la bonne pièce, recadrez la numérisation, vérifiez son unité, ou augmentez substrate.scan_within</translation>
     </message>
@@ -11452,12 +11452,12 @@
         <translation>plage de parts</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/written.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>read back by a reader of its own and driven through the joint-frame chain and PyKDL</source>
         <translation>relu par un lecteur à part et mené par la chaîne des repères et PyKDL</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/written.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>read back by a reader of its own and driven through the joint-frame chain; PyKDL is not installed</source>
         <translation>relu par un lecteur à part et mené par la chaîne des repères ; PyKDL n’est pas installé</translation>
     </message>
@@ -11617,7 +11617,7 @@
         <translation>second</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>section of the wire times its feed, against width x height x speed of beads of each class, their starts and ends</source>
         <translation>section du fil fois sa vitesse, comparée à largeur x hauteur x vitesse des cordons de chaque classe, de leurs débuts et de leurs fins</translation>
     </message>
@@ -11877,7 +11877,7 @@
         <translation>finition de surface</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>surface of each layer of the predicted deposit, in the mean, against where the next one should begin</source>
         <translation>surface de chaque couche du dépôt prédit, en moyenne, par rapport à l&apos;endroit où la suivante devrait commencer</translation>
     </message>
@@ -12237,7 +12237,7 @@
         <translation>le dépôt commence par un mouvement linéaire vers le cordon, et le programme commence au cordon même ; donnez une distance de retrait, ou un autre {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/docks/dock_area.py"/>
+        <location filename="../../freecad_am/gui/dock_area.py"/>
         <source>the document was closed</source>
         <translation>le document a été fermé</translation>
     </message>
@@ -12387,7 +12387,7 @@
         <translation>le fichier est vide ; donnez au moins {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/apart.py"/>
+        <location filename="../../freecad_am/brep/files/sandbox.py"/>
         <source>the file is larger than {0} MB, the maximum; check that it is the right one</source>
         <translation>le fichier dépasse {0} Mo, le maximum qui est lu ; vérifiez que c&apos;est le bon</translation>
     </message>
@@ -12717,7 +12717,7 @@
         <translation>la machine attend avant {0} couches sur {1}, jusqu&apos;à {2} s et {3} s en tout, afin qu&apos;aucune couche ne dure moins de {4} s et qu&apos;on ne revienne à aucun solide avant {5} s</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/material.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>the material</source>
         <translation>le matériau</translation>
     </message>
@@ -12967,7 +12967,7 @@
         <translation>la trajectoire entre deux points quitte la droite de {0} mm, plus que l&apos;erreur de corde</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/written.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>the path of the text between its points, as the controller interpolates it</source>
         <translation>la trajectoire du texte entre ses points, comme la commande l’interpole</translation>
     </message>
@@ -13077,7 +13077,7 @@
         <translation>la relecture du programme ne donne pas la trajectoire planifiée ; ne l&apos;utilisez pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
+        <location filename="../../freecad_am/posts/fanuc/records.py"/>
         <source>the program has no arm configurations; use `motion: joint`</source>
         <translation>le programme n&apos;a pas de configurations de bras ; utilisez `motion: joint`</translation>
     </message>
@@ -13167,12 +13167,12 @@
         <translation>la ligne a {0} valeurs, la première {1} : les virgules sont peut-être aussi des séparateurs décimaux ; exportez-le avec des points décimaux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/scan_checks.py"/>
+        <location filename="../../freecad_am/core/inspection/scan_heights.py"/>
         <source>the scan extends over {0} mm, {1} over {2} mm; check its unit, substrate.scan_unit, and the scanned object</source>
         <translation>la numérisation s&apos;étend sur {0} mm, {1} sur {2} mm ; vérifiez son unité, substrate.scan_unit, et ce qui a été numérisé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/scan_checks.py"/>
+        <location filename="../../freecad_am/core/inspection/scan_heights.py"/>
         <source>the scan extends over {0} mm, {1} over {2} mm; in {3} the size would match; set it as substrate.scan_unit</source>
         <translation>la numérisation s&apos;étend sur {0} mm, {1} sur {2} mm ; en {3} la taille conviendrait ; fixez-le comme substrate.scan_unit</translation>
     </message>
@@ -13292,7 +13292,7 @@
         <translation>le solide autour de {0} est retourné (volume {1} mm3) ; réparez-le (Part, Vérifier la géométrie), ou inversez-le (Part, Inverser les formes)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/rotary/field.py"/>
+        <location filename="../../freecad_am/core/layers/rotary_field.py"/>
         <source>the solid crosses the hub axis beyond its end, at {0}, where equidistant surfaces have an apex or an end; end the solid before the axis</source>
         <translation>le solide passe l&apos;axe du moyeu au-delà de son bout, en {0}, où les surfaces équidistantes ont un sommet ou un bout ; terminez le solide avant l&apos;axe</translation>
     </message>
@@ -13527,12 +13527,12 @@
         <translation>la transformation change pendant que le dépôt est en marche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/material.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>the travel speed of beads is {0} to {1} mm/s, but {2} at {3} mm/s or more; change process.travel_speed, process.bead_width or process.classes, or measure beads at these speeds</source>
         <translation>les cordons sont déposés de {0} à {1} mm/s, et {2} à {3} mm/s ou plus ; changez process.travel_speed, process.bead_width ou process.classes, ou mesurez des cordons à ces vitesses</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/material.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>the travel speed of beads is {0} to {1} mm/s, but {2} at {3} to {4} mm/s; change process.travel_speed, process.bead_width or process.classes, or measure beads at these speeds</source>
         <translation>les cordons sont déposés de {0} à {1} mm/s, et {2} de {3} à {4} mm/s ; changez process.travel_speed, process.bead_width ou process.classes, ou mesurez des cordons à ces vitesses</translation>
     </message>
@@ -13557,7 +13557,7 @@
         <translation>l&apos;élément inconnu {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/checks/placed.py"/>
+        <location filename="../../freecad_am/macro/arguments.py"/>
         <source>the value is a deleted object; give a number or a text</source>
         <translation>une valeur est un objet qui a été supprimé ; donnez un nombre ou un texte</translation>
     </message>
@@ -13797,7 +13797,7 @@
         <translation>il n&apos;y a pas de {0} ; corrigez la ligne, ou retirez-la</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>there is only one layer</source>
         <translation>il n’y a qu’une couche</translation>
     </message>
@@ -13822,7 +13822,7 @@
         <translation>ce FreeCAD n&apos;a pas d&apos;atelier {0} ; installez-le, ou {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/step_wires.py"/>
+        <location filename="../../freecad_am/interop/lines.py"/>
         <source>this FreeCAD lacks the module Import; use DXF instead</source>
         <translation>ce FreeCAD n&apos;a pas de module Import ; écrivez DXF</translation>
     </message>
@@ -14152,7 +14152,7 @@
         <translation>prenez d&apos;autres couches ou une autre direction, ou laissez de côté ce à quoi ces points appartiennent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>v in mm/min; R² {:.4f}, RMSE {:.3f} mm</source>
         <translation>v en mm/min ; R² {:.4f}, RMSE {:.3f} mm</translation>
     </message>
@@ -14167,27 +14167,27 @@
         <translation>volume</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>volume of the beads, as wide as their spacing, less the covered volume, compared with 10 % of the part</source>
         <translation>volume des cordons, aussi larges que leur écartement, moins ce qu&apos;ils couvrent, par rapport à 10 % de la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>volume of the beads, as wide as they count, that is wider than the part is thick</source>
         <translation>volume des cordons, de la largeur qui compte, qui dépasse l’épaisseur de la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>volume of the beads, at their printed width, outside their layers, and of layers outside the part</source>
         <translation>volume des cordons, aussi larges que déposés, hors de leurs couches, et des couches hors de la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>volume of the part deeper than half of a bead&apos;s width below the wall, or of its solids aside</source>
         <translation>volume de la pièce plus profond qu’une demi-largeur de cordon sous la paroi, ou de ses solides à côté</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>volume of the part less what beads cover of each layer, as wide as they count, times the layer height</source>
         <translation>volume de la pièce moins ce que les cordons couvrent de chaque couche, à la largeur comptée, fois la hauteur de couche</translation>
     </message>
@@ -14367,7 +14367,7 @@
         <translation>écrivez les décimales avec &apos;{0}&apos;, comme 1{1}5 {2}, et ne groupez pas les chiffres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/touched.py"/>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>write such as: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5</source>
         <translation>écrivez par exemple : 0 0 0 = 900.4 2.1 -99.7 ; 100 0 0 = 1000.3 1.2 -99.9 ; 0 80 0 = 901 82 -99.5</translation>
     </message>
@@ -14377,12 +14377,12 @@
         <translation>écrivez par exemple `contour: travel_speed 8, schedule 3; fill: lead 5`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/external.py"/>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>write such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</source>
         <translation>écrivez par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>write such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0</source>
         <translation>écrivez par exemple : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0</translation>
     </message>
@@ -14532,7 +14532,7 @@
         <translation>{0} ne sont pas des noms de faces ou d’arêtes ; donnez une liste de textes, telle que [&quot;Face1&quot;]</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>{0} are not {1} numbers; {2}</source>
         <translation>{0} ne sont pas {1} nombres ; {2}</translation>
     </message>
@@ -14587,7 +14587,7 @@
         <translation>{0} s&apos;appelle lui-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/external.py"/>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>{0} cannot be carried; use {1} or {2}</source>
         <translation>{0} ne peut pas être porté ; utilisez {1} ou {2}</translation>
     </message>
@@ -14932,7 +14932,7 @@
         <translation>{0} a une autre dimension ; donnez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/external.py"/>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>{0} has {1} numbers, a pose has six; {2}</source>
         <translation>{0} a {1} nombres, une pose en a six ; {2}</translation>
     </message>
@@ -15047,7 +15047,7 @@
         <translation>{0} est un volume négatif et ne peut pas être soustrait de la pièce ici : {1} triangles sont concernés, et au plus {2} sont coupés ; soustrayez-le là où la pièce a été dessinée ou supprimez-le dans le trancheur, et exportez de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/quantity.py"/>
+        <location filename="../../freecad_am/sections/fields.py"/>
         <source>{0} is a percentage; give {1}</source>
         <translation>{0} est un pourcentage ; donnez {1}</translation>
     </message>
@@ -15377,7 +15377,7 @@
         <translation>{0} ne sont pas des valeurs par clé ; donnez un dictionnaire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>{0} is not a name; use words without = and ;</source>
         <translation>{0} n&apos;est pas un nom ; utilisez des mots sans = ni ;</translation>
     </message>
@@ -15397,7 +15397,7 @@
         <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 2 ou {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/quantity.py"/>
+        <location filename="../../freecad_am/sections/fields.py"/>
         <source>{0} is not a number; give {1}</source>
         <translation>{0} n&apos;est pas un nombre ; donnez {1}</translation>
     </message>
@@ -15452,7 +15452,7 @@
         <translation>{0} n&apos;est pas une pose ; donnez [x, y, z, RX, RY, RZ]</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/external.py"/>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>{0} is not a pose; give six numbers x y z RX RY RZ</source>
         <translation>{0} n&apos;est pas une pose ; donnez six nombres x y z RX RY RZ</translation>
     </message>
@@ -15472,7 +15472,7 @@
         <translation>{0} n&apos;est pas une pose ; utilisez la forme : {1} X Y Z {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/external.py"/>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>{0} is not a pose; {1}</source>
         <translation>{0} n&apos;est pas une pose ; {1}</translation>
     </message>
@@ -15482,12 +15482,12 @@
         <translation>{0} n&apos;est pas un de ses programmes, ou s&apos;appelle lui-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/quantity.py"/>
+        <location filename="../../freecad_am/sections/fields.py"/>
         <source>{0} is not a quantity with a known unit; give {1}</source>
         <translation>{0} n&apos;est pas une grandeur d&apos;une unité connue ; donnez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/quantity.py"/>
+        <location filename="../../freecad_am/sections/fields.py"/>
         <source>{0} is not a quantity; give {1}</source>
         <translation>{0} n&apos;est pas une grandeur ; donnez {1}</translation>
     </message>
@@ -15572,7 +15572,7 @@
         <translation>{0} n&apos;est ni un tore, ni un cylindre, ni un cône : une paroi de plusieurs faces doit être de l&apos;un d&apos;eux ; choisissez une seule face</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/touched.py"/>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>{0} is not a touched point; {1}</source>
         <translation>{0} n&apos;est pas un point palpé ; {1}</translation>
     </message>
@@ -15592,7 +15592,7 @@
         <translation>{0} n&apos;est pas un choix valable ; utilisez l&apos;un de {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/checks/placed.py"/>
+        <location filename="../../freecad_am/macro/arguments.py"/>
         <source>{0} is not a valid parameter; use {1}</source>
         <translation>{0} n’est pas un des jeux de paramètres attendus ; donnez {1}</translation>
     </message>
@@ -15642,7 +15642,7 @@
         <translation>{0} n&apos;est pas une arête de {1} ; choisissez ses arêtes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/parsed.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>{0} is not an instruction</source>
         <translation>{0} n&apos;est pas une instruction</translation>
     </message>
@@ -15662,7 +15662,7 @@
         <translation>{0} n&apos;est pas un objet ; écrivez-en un entre accolades</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>{0} is not an obstacle; {1}</source>
         <translation>{0} n&apos;est pas un obstacle ; {1}</translation>
     </message>
@@ -15682,7 +15682,7 @@
         <translation>{0} n&apos;est pas connu ; donnez {1} ou {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/checks/placed.py"/>
+        <location filename="../../freecad_am/macro/arguments.py"/>
         <source>{0} is not known; use one of {1}</source>
         <translation>{0} n&apos;est pas connu ; utilisez l&apos;un de {1}</translation>
     </message>
@@ -16007,7 +16007,7 @@
         <translation>{0} mm/s ne peuvent pas être écrits ; utilisez {1} à {2} mm/s</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/material.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>{0} mm/s is more than the fastest, {1} mm/s; give the slower speed here</source>
         <translation>{0} mm/s est plus que le plus rapide, {1} mm/s ; donnez ici la vitesse la plus lente</translation>
     </message>
@@ -16042,7 +16042,7 @@
         <translation>{0} couches de plus ont des cordons non portés, {1} mm en tout</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
+        <location filename="../../freecad_am/posts/fanuc/records.py"/>
         <source>{0} moves take {1} s in total, but each needs at least 1 ms; use a larger chord error or a lower speed</source>
         <translation>{0} mouvements prennent {1} s en tout et ne peuvent pas durer moins de 1 ms chacun ; prenez une plus grande erreur de corde ou une vitesse plus basse</translation>
     </message>
@@ -16052,7 +16052,7 @@
         <translation>{0} doivent être 1 ou -1 chacun ; donnez-en un par articulation</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>{0} must be either a file or a box; give exactly one</source>
         <translation>{0} doit être soit un fichier soit une boîte ; donnez exactement l&apos;un des deux</translation>
     </message>
@@ -16077,7 +16077,7 @@
         <translation>{0} nomme les arêtes d&apos;où elle part</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/external.py"/>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>{0} names no external axes; {1}</source>
         <translation>{0} ne désigne pas d&apos;axes externes ; {1}</translation>
     </message>
@@ -16122,7 +16122,7 @@
         <translation>{0} objets s&apos;appellent {1} ; donnez un autre nom à l&apos;un d&apos;eux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>{0} obstacles are called {1}; use unique names</source>
         <translation>{0} obstacles s&apos;appellent {1} ; utilisez des noms uniques</translation>
     </message>
@@ -16517,7 +16517,7 @@
         <translation>{0} {1} {2} n&apos;est pas un nombre positif ; corrigez la ligne, ou retirez-la</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/quantity.py"/>
+        <location filename="../../freecad_am/sections/fields.py"/>
         <source>{0} {1}; give {2}</source>
         <translation>{0} {1} ; donnez {2}</translation>
     </message>
@@ -16817,12 +16817,12 @@
         <translation>{0} : {1} non lus : codes et macros de la machine, considérés comme ne déplaçant et ne déposant rien</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>{0}: {1} is not a pose; give six numbers x y z RX RY RZ</source>
         <translation>{0} : {1} n&apos;est pas une pose ; donnez six nombres x y z RX RY RZ</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>{0}: {1} mm is not a box; give three positive lengths of at most {2} mm</source>
         <translation>{0} : {1} mm n&apos;est pas une boîte ; donnez trois longueurs de plus de 0 mm, au plus {2} mm</translation>
     </message>
@@ -16962,7 +16962,7 @@
         <translation>large de {:.4g} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>{:g} mm wide: {} where straight, {} where r is {:g} mm</source>
         <translation>largeur {:g} mm : {} en ligne droite, {} là où r est {:g} mm</translation>
     </message>
@@ -17002,7 +17002,7 @@
         <translation>{label} a été recalculé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/docks/dock_area.py"/>
+        <location filename="../../freecad_am/gui/dock_area.py"/>
         <source>{label} was deleted</source>
         <translation>{label} a été supprimé</translation>
     </message>
@@ -17072,12 +17072,12 @@
         <translation>{} à la couche {} cordon {} point {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/at_rest.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>{} at rest, revolute axes at 0</source>
         <translation>{} au repos, ses axes rotatifs à 0</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>{} beads, {:g} to {:g} mm/min, r {:g} to {:g} mm, wire {:g} m/min</source>
         <translation>{} cordons, {:g} à {:g} mm/min, r {:g} à {:g} mm, fil {:g} m/min</translation>
     </message>
@@ -17107,7 +17107,7 @@
         <translation>{} courbes, {:.4g} mm en tout</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/at_rest.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>{} does not reach the part with the nozzle upright: all its axes are drawn at 0</source>
         <translation>{} n&apos;atteint pas la pièce avec la buse droite : tous ses axes sont dessinés à 0</translation>
     </message>
@@ -17162,7 +17162,7 @@
         <translation>{} n&apos;a pas de forme ; sélectionnez un corps, un solide, une face, un lien ou une esquisse.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/tool.py"/>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>{} has no toolpath with a cell to place; make one first, or select another job.</source>
         <translation>{} n&apos;a pas de trajectoire d&apos;outil avec une cellule à placer ; faites-en d&apos;abord une, ou sélectionnez une autre tâche.</translation>
     </message>
@@ -17247,12 +17247,12 @@
         <translation>{0} ne renvoie à rien : sa cible a été supprimée ou n&apos;est pas chargée.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>{} mm/min (the fastest of the table)</source>
         <translation>{} mm/min (la plus rapide du tableau)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>{} mm/min (the slowest of the table)</source>
         <translation>{} mm/min (la plus lente du tableau)</translation>
     </message>
@@ -17312,12 +17312,12 @@
         <translation>{} a été écrit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/at_rest.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>{} with the nozzle upright: {} is {:.0f}° from its limit</source>
         <translation>{} avec la buse droite sur la pièce : {} est à {:.0f}° de sa limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/at_rest.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>{} with the nozzle upright: {} is {:.0f}° past its limit</source>
         <translation>{} avec la buse droite sur la pièce : {} dépasse sa limite de {:.0f}°</translation>
     </message>
@@ -17357,7 +17357,7 @@
         <translation>{} : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell/proposing.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>{}: {} is now {}. {}</source>
         <translation>{} : {} est maintenant {}. {}</translation>
     </message>
@@ -17408,12 +17408,12 @@
 <context>
     <name>RoboticAM_Cladding</name>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/cladding.py"/>
         <source>Cladding…</source>
         <translation>Rechargement…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/cladding.py"/>
         <source>Covers the selected faces with layers of beads</source>
         <translation>Prend les faces sélectionnées pour les recouvrir de couches de cordons</translation>
     </message>
@@ -17421,12 +17421,12 @@
 <context>
     <name>RoboticAM_Curves</name>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/curves.py"/>
         <source>Curves…</source>
         <translation>Courbes…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/curves.py"/>
         <source>Deposits the selected edges, wires, sketches or tables as beads</source>
         <translation>Dépose les arêtes, fils, esquisses ou tableaux choisis en cordons</translation>
     </message>
@@ -17447,12 +17447,12 @@
 <context>
     <name>RoboticAM_Feature</name>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/revolution.py"/>
         <source>Deposits the selected shape of revolution</source>
         <translation>Prend la forme de révolution sélectionnée pour la déposer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/revolution.py"/>
         <source>Feature…</source>
         <translation>Élément…</translation>
     </message>
@@ -17590,12 +17590,12 @@
 <context>
     <name>RoboticAM_Solid</name>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/solid.py"/>
         <source>Deposits the selected solids in planar layers</source>
         <translation>Prend les solides sélectionnés à déposer en couches planes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/solid.py"/>
         <source>Solid…</source>
         <translation>Solide…</translation>
     </message>
@@ -17603,12 +17603,12 @@
 <context>
     <name>RoboticAM_SolidsOnHub</name>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/developable.py"/>
         <source>Deposits the selected solids on the cylinder or cone that is selected last</source>
         <translation>Prend les solides sélectionnés pour les déposer sur le cylindre ou le cône sélectionné en dernier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/developable.py"/>
         <source>Solids on Hub…</source>
         <translation>Solides sur moyeu…</translation>
     </message>
@@ -17642,12 +17642,12 @@
 <context>
     <name>RoboticAM_WallOnPart</name>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/surface.py"/>
         <source>Deposits the selected faces as a wall on the other selected object</source>
         <translation>Prend les faces sélectionnées comme paroi à déposer sur l&apos;autre objet sélectionné</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/families/surface.py"/>
         <source>Wall on Part…</source>
         <translation>Paroi sur pièce…</translation>
     </message>
