@@ -18,7 +18,6 @@ from .job import document as job_document
 from .job.features import UPRIGHT, JobFeature, in_words_of_job, leans
 from .job.job import SECTIONS, Job
 from .outputs import folder as outputs
-from .outputs import for_report
 
 Plan = Callable[
     [Job, str], Any
@@ -371,7 +370,7 @@ def _write(
         if stages.program is None or has_errors(stages.issues)
         else api.result(stages.program).files
     )
-    results = for_report.results(stages, [f"{outputs.PROGRAMS}/{name}" for name in programs])
+    results = outputs.results(stages, [f"{outputs.PROGRAMS}/{name}" for name in programs])
     _, motion = made.as_run(results, cell)
     axes, units = ((), ()) if cell is None else (cell.machine.columns, cell.machine.units)
     with stages.timed("waypoints", session):
@@ -380,7 +379,7 @@ def _write(
         files.write(f"{outputs.PROGRAMS}/{name}", content)
     with stages.timed("document", session):
         job_document.save(stages.document, files.path(job.name + outputs.DOCUMENT_ENDING))
-    report_job = for_report.job(job, stages)
+    report_job = outputs.job(job, stages)
     report = made.make_report(
         report_job, results, cell, lambda stage: stages.timed(stage, session), session.progress
     )

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import dataclasses
+import json
+import math
 import os
 import tempfile
 from collections.abc import Callable, Sequence
@@ -13,15 +16,17 @@ import numpy as np
 
 from ..core.geometry.frames import pose
 from ..core.issues import InputError
-from ..core.kinematics.machines import machine
+from ..core.kinematics.arrangement import arrangement_of
+from ..core.kinematics.machines import calibration, machine
+from ..core.kinematics.urdf import reference as urdf_reference
 from ..core.motion import Motion
+from ..core.parameters import field as f
 from ..core.parameters.cell import CellParameters
 from ..core.simulation import timeline, waypoints
 from ..objects import user_machines
 from ..objects.current import check_current, check_recomputed
 from ..objects.stage import stage_of
 from ..objects.work import hooks
-from . import cell_file, neighbour
 from .lines import (
     Line,
     attitudes,
@@ -31,6 +36,114 @@ from .lines import (
     thinned,
     write_step,
 )
+
+# ---- A cell as a file of its own, which jobs name: `cell: my-cell.yaml`
+
+SHOWN_APART = ("machine", "nozzle", "external", "world_up", "obstacles", "touched")
+PROPOSED = ("deposition_point", "branch")  # where a job file leaves them out
+
+
+def cell_text(cell: CellParameters, folder: str) -> str:
+    """The YAML of a cell, of what is not at its default alone, and of where a robot deposits, each key on a line; lengths in
+    mm, angles in degrees. Files within `folder`, where the cell file will be, are named from there."""
+    lines = [f"machine: {_machine(cell.machine, folder)}"]
+    usual = CellParameters()
+    for field in dataclasses.fields(cell):
+        value = getattr(cell, field.name)
+        is_proposed = field.name in PROPOSED and arrangement_of(cell.setup).free > 0
+        if field.name in SHOWN_APART or (value == getattr(usual, field.name) and not is_proposed):
+            continue
+        lines.append(f"{field.name}: {_format(value, f.spec_of(field).kind)}")
+    if cell.nozzle != usual.nozzle:
+        entries = [
+            f"{field.name}: "
+            + (
+                _file(str(cell.nozzle.shape), folder)
+                if field.name == "shape"
+                else _format(getattr(cell.nozzle, field.name), f.spec_of(field).kind)
+            )
+            for field in dataclasses.fields(cell.nozzle)
+            if getattr(cell.nozzle, field.name) != getattr(usual.nozzle, field.name)
+        ]
+        lines.append(f"nozzle: {{{', '.join(entries)}}}")
+    if cell.external:
+        lines.append("external:")
+        lines += [
+            f"- {{machine: {_machine(mechanism.machine, folder)}, pose: {_format(mechanism.pose, f.POSE)}, carries: {mechanism.carries}}}"
+            for mechanism in cell.external
+        ]
+    lines += ["obstacles:"] if cell.obstacles else []
+    for body in cell.obstacles:
+        what = (
+            f"file: {_file(body.file, folder)}"
+            if body.box is None
+            else f"box: {_format(body.box, f.LENGTH)}"
+        )
+        name = json.dumps(body.name, ensure_ascii=False)
+        lines.append(f"- {{name: {name}, {what}, pose: {_format(body.pose, f.POSE)}}}")
+    lines += ["touched:"] if cell.touched else []
+    lines += [
+        f"- {{part: {_format(point.part, f.LENGTH)}, robot: {_format(point.robot, f.LENGTH)}}}"
+        for point in cell.touched
+    ]
+    if cell.world_up != usual.world_up:
+        lines.append(f"world_up: {_format(cell.upward(), f.NUMBER)}")
+    return "\n".join(lines) + "\n"
+
+
+def _format(value: Any, kind: str) -> str:
+    """A value in the units of a job file; numbers to what a float holds of them in degrees."""
+    if isinstance(value, str):
+        return json.dumps(value)
+    if isinstance(value, (tuple, list)):
+        if value and isinstance(value[0], str):
+            return f"[{', '.join(value)}]"
+        kinds = [kind] * len(value) if len(value) != 6 else [f.LENGTH] * 3 + [f.ANGLE] * 3
+        return f"[{', '.join(_format(number, number_kind) for number, number_kind in zip(value, kinds, strict=True))}]"
+    return f"{math.degrees(value) if kind == f.ANGLE else value:.15g}"
+
+
+def _machine(name: str, folder: str) -> str:
+    """What names a machine, as a job file says it."""
+    measured = calibration.named(name)
+    if measured is not None:
+        return f"{{name: {_machine(measured.machine, folder)}, calibration: {_file(measured.file, folder)}}}"
+    reference = urdf_reference.reference(name)
+    if reference is not None:
+        links = [
+            f", {key}: {json.dumps(link)}"
+            for key, link in (("base", reference.base), ("tip", reference.tip))
+            if link
+        ]
+        return f"{{file: {_file(reference.file, folder)}{''.join(links)}}}"
+    return _file(name, folder) if os.sep in name or name.lower().endswith(".json") else name
+
+
+def _file(path: str, folder: str) -> str:
+    inside = os.path.relpath(path, folder)
+    return json.dumps(path if inside.startswith(os.pardir) else inside, ensure_ascii=False)
+
+
+# ---- Objects of other workbenches, which a FreeCAD may be without
+
+
+def lacking(what: str, workbench: str, otherwise: str) -> InputError:
+    """The error that a workbench is not there, and what to do."""
+    return InputError(
+        "NO_MODULE",
+        what,
+        "this FreeCAD has no {} workbench; install it or {} instead",
+        workbench,
+        otherwise,
+    )
+
+
+def added(document: Any, kind: str, name: str, label: str) -> Any:
+    """A new object of such a workbench in a document."""
+    obj = document.addObject(kind, name)
+    obj.Label = label
+    return obj
+
 
 # ---- Lines as a trajectory of the Robot workbench, which plays it with robots of its own.
 # Thinned, for it is slow with many
@@ -46,8 +159,8 @@ def make_trajectory(
     try:
         import Robot
     except ImportError:
-        raise neighbour.lacking("trajectory", "Robot", "make a CAM path") from None
-    obj = neighbour.added(document, "Robot::TrajectoryObject", "AmTrajectory", label)
+        raise lacking("trajectory", "Robot", "make a CAM path") from None
+    obj = added(document, "Robot::TrajectoryObject", "AmTrajectory", label)
     trajectory = Robot.Trajectory()
     trajectory.insertWaypoints(
         [
@@ -91,8 +204,8 @@ def add(document: Any, lines: Sequence[Line], label: str) -> Any:
     try:
         import Path
     except ImportError:
-        raise neighbour.lacking("CAM path", "CAM (Path)", "write STEP or DXF") from None
-    obj = neighbour.added(document, "Path::Feature", "AmPath", label)
+        raise lacking("CAM path", "CAM (Path)", "write STEP or DXF") from None
+    obj = added(document, "Path::Feature", "AmPath", label)
     obj.Path = Path.Path([Path.Command(name, words) for name, words in commands(lines)])
     obj.purgeTouched()  # nothing is left to recompute, which the tree would ask for
     return obj
@@ -239,7 +352,7 @@ def write_cell(obj: Any, path: str) -> str:
     if getattr(getattr(obj, "Proxy", None), "kind", "") != "cell":
         raise InputError("WRONG_KIND", obj.Label, "this is not a cell; choose one")
     check_recomputed(obj)
-    saved = cell_file.text(
+    saved = cell_text(
         obj.Proxy.parameters(obj, CellParameters), os.path.dirname(os.path.abspath(path))
     )
 

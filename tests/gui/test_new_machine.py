@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.kinematics import external
-from freecad_am.core.kinematics.machines import machine, pendant, pose_figures
+from freecad_am.core.kinematics.machines import draft, machine, pendant
 from freecad_am.core.kinematics.urdf import text as urdf_text
 from freecad_am.kdl.chain import KdlArm
 from freecad_am.objects import user_machines
@@ -90,13 +90,13 @@ def fill(table, values, column=0, row=0):
     table.paste()
 
 
-def pendant_poses(name="fanuc-arcmate120ic", count=4, convention=pose_figures.FANUC):
+def pendant_poses(name="fanuc-arcmate120ic", count=4, convention=draft.FANUC):
     """Joints and poses as the pendant shows them, rounded as on its display."""
     arm = machine.load(name)
     shown = np.random.default_rng(5).uniform(-70, 70, (count, 6)).round(2)
     shown[0] = np.degrees(arm.controller_offset)
     poses = np.linalg.inv(arm.base) @ arm.chain.forward(arm.from_controller(np.radians(shown)))
-    return np.column_stack((shown, pose_figures.figures_of(convention, poses).round(3)))
+    return np.column_stack((shown, draft.figures_of(convention, poses).round(3)))
 
 
 def test_a_fanuc_from_its_urdf_checked_by_its_pendant(person, hand, wizard, tmp_path):
@@ -228,12 +228,9 @@ def test_figures_with_a_wrong_sign_are_found_out(person, hand, wizard):
     person.choose(
         wizard,
         "convention",
-        next(
-            f"{figures}   {who}"
-            for figures, who in [pose_figures.CONVENTIONS[pose_figures.STAUBLI]]
-        ),
+        next(f"{figures}   {who}" for figures, who in [draft.CONVENTIONS[draft.STAUBLI]]),
     )
-    figures = pendant_poses("staubli-tx60", convention=pose_figures.STAUBLI)
+    figures = pendant_poses("staubli-tx60", convention=draft.STAUBLI)
     fill(person.field(wizard, "poses"), figures)
     verdict = person.field(wizard, "verdict")
     person.until(lambda: "It would if" in verdict.text(), "the verdict")
@@ -331,7 +328,7 @@ def test_a_machine_tool_from_its_table(person, hand, wizard):
     poses = tool.chain.forward(values * tool.unit_values)
     fill(
         person.field(wizard, "poses"),
-        np.column_stack((values, pose_figures.figures_of(pose_figures.FANUC, poses))),
+        np.column_stack((values, draft.figures_of(draft.FANUC, poses))),
     )
     verdict = person.field(wizard, "verdict")
     person.until(
@@ -354,7 +351,7 @@ def test_what_a_pendant_shows_is_what_the_wizard_reads():
     arm = machine.load("fanuc-arcmate120ic")
     shown = pendant.Shown((1,) * 6, (0.0,) * 6, pendant.HORIZONTAL)
     figures = pendant_poses(count=6)
-    poses = pose_figures.flange_poses(pose_figures.FANUC, figures[:, 6:], arm.base, np.eye(4))
+    poses = draft.flange_poses(draft.FANUC, figures[:, 6:], arm.base, np.eye(4))
     assert pendant.fits(pendant.deviations(arm.chain, shown, figures[:, :6], poses))
 
 
@@ -459,7 +456,7 @@ def test_a_positioner_out_of_the_urdf_of_a_whole_cell(person, hand, wizard, tmp_
     poses = KdlArm(given).forward(np.radians(values))
     fill(
         person.field(wizard, "poses"),
-        np.column_stack((values, pose_figures.figures_of(pose_figures.FANUC, poses))),
+        np.column_stack((values, draft.figures_of(draft.FANUC, poses))),
     )
     person.until(
         lambda: "reproduces all 3 poses" in person.field(wizard, "verdict").text(),

@@ -31,7 +31,7 @@ from .points import gather
 from .rotation import given, search
 from .task import Parts, Task
 from .turns import unwrap as turns
-from .turns.locked import as_held, lock_of
+from .turns.directed import as_held, lock_of
 
 Progress = Callable[[float, str], None]
 Place = tuple[int, int]

@@ -13,7 +13,13 @@ from PySide import QtGui
 from ...core.geometry import frames
 from ...core.issues import InputError
 from ...core.kinematics.chain import Chain
-from ...core.kinematics.machines import pendant, pose_figures
+from ...core.kinematics.machines import pendant
+from ...core.kinematics.machines.draft import (
+    CONVENTIONS,
+    QUATERNION,
+    figures_of,
+    flange_poses,
+)
 from ...core.kinematics.machines.pendant import Deviation, Suspect
 from ...core.types import Array
 from ..background.worker import Later
@@ -41,10 +47,7 @@ class PosesPage(Page):
         )
         self.convention = choice(
             "convention",
-            [
-                (f"{figures}   {who}", name)
-                for name, (figures, who) in pose_figures.CONVENTIONS.items()
-            ],
+            [(f"{figures}   {who}", name) for name, (figures, who) in CONVENTIONS.items()],
         )
         self.column.addWidget(self.convention)
         self.zero = self.add_text("")
@@ -88,7 +91,7 @@ class PosesPage(Page):
         return self.axes + 3 + len(self._angles())
 
     def _angles(self) -> list[str]:
-        return pose_figures.CONVENTIONS[str(self.convention.currentData())][0].split()
+        return CONVENTIONS[str(self.convention.currentData())][0].split()
 
     # ---- display
 
@@ -103,7 +106,7 @@ class PosesPage(Page):
                 self.table.show(0, column, format_figure(value))
         else:
             in_base = frames.inverse(draft.base) @ draft.poses
-            figures = pose_figures.figures_of(str(self.convention.currentData()), in_base)
+            figures = figures_of(str(self.convention.currentData()), in_base)
             for row, line in enumerate(np.column_stack((draft.values, figures)).tolist()):
                 for column, value in enumerate(line):
                     self.table.show(row, column, format_figure(round(value, 9)))
@@ -155,10 +158,7 @@ class PosesPage(Page):
                 if require_complete:
                     raise
                 continue
-            if (
-                not line[self.axes + 3 :].any()
-                and str(self.convention.currentData()) == pose_figures.QUATERNION
-            ):
+            if not line[self.axes + 3 :].any() and str(self.convention.currentData()) == QUATERNION:
                 raise InputError(
                     "BAD_VALUE",
                     tr("Pose {}").format(row + 1),
@@ -171,7 +171,7 @@ class PosesPage(Page):
         if not rows:
             return np.zeros((0, self.axes)), np.zeros((0, 4, 4)), rows
         on_flange = frames.from_rpy(tool[:3], np.radians(tool[3:]))
-        poses = pose_figures.flange_poses(
+        poses = flange_poses(
             str(self.convention.currentData()), np.stack(figures), draft.base, on_flange
         )
         return np.stack(values), poses, rows

@@ -13,7 +13,7 @@ import FreeCAD as App
 from ...core.issues import InputError
 from ...core.parameters import field as f
 from ...core.parameters.records import Records
-from ..shapes.placement import placement_of
+from .pendants import placement_of
 from .rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row, build, flat, property_name, rows
 
 READ_ONLY, HIDDEN, OUTPUT = 1, 4, 8

@@ -416,9 +416,7 @@ def _quantity(value: Any, where: str, example: str) -> Any:
 
 def _pose(value: Any, where: str) -> tuple[float, ...]:
     if isinstance(value, App.Placement):
-        from ..shapes.placement import pose_of
-
-        return pose_of(value)
+        return pendants.pose_of(value)
     try:
         numbers = split(value, where) if isinstance(value, str) else list(value)
     except TypeError:

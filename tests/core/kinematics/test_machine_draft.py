@@ -12,7 +12,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import external
 from freecad_am.core.kinematics.inverse import opw_recognition
 from freecad_am.core.kinematics.machines import draft as machine_draft
-from freecad_am.core.kinematics.machines import machine, pendant, pose_figures
+from freecad_am.core.kinematics.machines import machine, pendant
 from freecad_am.core.kinematics.machines.pendant import Shown
 from freecad_am.core.kinematics.urdf import cell as urdf_cell
 from freecad_am.core.kinematics.urdf import read as urdf
@@ -38,23 +38,23 @@ def seen(arm=FANUC, count=4, seed=5, digits=2):
 # ---- poses as they are written
 
 
-@pytest.mark.parametrize("convention", pose_figures.CONVENTIONS)
+@pytest.mark.parametrize("convention", machine_draft.CONVENTIONS)
 def test_poses_are_written_and_read_in_every_convention(convention):
     rng = np.random.default_rng(2)
     figures = np.column_stack((rng.uniform(-900, 900, (60, 3)), rng.uniform(-179, 179, (60, 3))))
-    turned = pose_figures.rotation(pose_figures.FANUC, figures[:, 3:])
+    turned = machine_draft.rotation(machine_draft.FANUC, figures[:, 3:])
     turned[:6] = [
         np.diag(signs)
         for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1), (1, 1, 1), (1, -1, -1))
     ]
     turned[6] = frames.about_y(np.pi / 2)  # where W and R, or A and C, are one
     poses = frames.pose(turned, figures[:, :3])
-    written = pose_figures.figures_of(convention, poses)
+    written = machine_draft.figures_of(convention, poses)
     base, tool = (
         frames.bryant((10.0, 20.0, 330.0, 0.1, 0.2, 0.3)),
         frames.bryant((1.0, 2.0, 3.0, -0.4, 0.5, 0.6)),
     )
-    read = pose_figures.flange_poses(convention, written, base, tool)
+    read = machine_draft.flange_poses(convention, written, base, tool)
     np.testing.assert_allclose(read @ tool, base @ poses, atol=1e-9)
 
 
@@ -62,23 +62,23 @@ def test_poses_are_written_and_read_in_every_convention(convention):
     "convention,figures,turned",
     [
         (
-            pose_figures.FANUC,
+            machine_draft.FANUC,
             (90, 0, 90),
             [[0, 0, 1], [1, 0, 0], [0, 1, 0]],
         ),  # W about X, then R about the outer Z
         (
-            pose_figures.KUKA,
+            machine_draft.KUKA,
             (90, 0, 90),
             [[0, 0, 1], [1, 0, 0], [0, 1, 0]],
         ),  # A about Z, then C about its own X
         (
-            pose_figures.STAUBLI,
+            machine_draft.STAUBLI,
             (90, 0, 90),
             [[0, -1, 0], [0, 0, -1], [1, 0, 0]],
         ),  # RX, then RZ about its own Z
-        (pose_figures.ZYZ, (90, 90, 0), [[0, -1, 0], [0, 0, 1], [-1, 0, 0]]),
+        (machine_draft.ZYZ, (90, 90, 0), [[0, -1, 0], [0, 0, 1], [-1, 0, 0]]),
         (
-            pose_figures.QUATERNION,
+            machine_draft.QUATERNION,
             (0, 0, 2, 0),
             [[-1, 0, 0], [0, 1, 0], [0, 0, -1]],
         ),  # half a turn about Y
@@ -86,7 +86,7 @@ def test_poses_are_written_and_read_in_every_convention(convention):
 )
 def test_conventions_are_those_of_the_makers(convention, figures, turned):
     np.testing.assert_allclose(
-        pose_figures.rotation(convention, np.array(figures, float)), turned, atol=1e-12
+        machine_draft.rotation(convention, np.array(figures, float)), turned, atol=1e-12
     )
 
 

@@ -13,10 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...geometry.columns import dots, lengths
+from ...geometry.ramps import MIN_STEP, ramp
 from ...issues import ERROR, Issue, Text
 from ...kinematics.cell import Cell
 from ...motion import AT_END, AT_START, MIDDLE
-from ...parameters.ramp import MIN_STEP, ramp
 from ...toolpath import Bead
 from ...types import Array, Index
 from ..joint_path import BeadPath

@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.file_content import read_content
+from ...geometry.ramps import ramp
 from ...issues import WARNING, InputError, Issue, Text, Word
 from ...motion import AT_END, AT_START, MIDDLE
 from ...parameters.bead_classes import CLASSES
 from ...parameters.process import ProcessParameters
-from ...parameters.ramp import ramp
 from ...toolpath import Bead, Toolpath
 from ...types import Array
 from .bead_model import MINUTE, BeadModel, fit, row_name

@@ -16,7 +16,7 @@ from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.cell import NozzleParameters
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import RevolutionParameters
-from ...process import classes, seam
+from ...process import classes, order
 from ...slicing import arc_length, iso_height
 from ...toolpath import Bead, Layer, Toolpath
 from ...types import Array, Index
@@ -198,12 +198,12 @@ def _layers(
         segments = turn_segments(
             radius, strategy.chord_error, wall.end - wall.start, strategy.min_points
         )
-        up = seam.rising(process, int(layer) if wall.full else index, wall.full)
+        up = order.rising(process, int(layer) if wall.full else index, wall.full)
         rising.append(up)
         azimuths.append(
-            seam.closed_azimuths(process, int(layer), segments, up)
+            order.closed_azimuths(process, int(layer), segments, up)
             if wall.full
-            else seam.open_azimuths(wall.start, wall.end, segments, up)
+            else order.open_azimuths(wall.start, wall.end, segments, up)
         )
     builds, tools, issues = tilting.resolve(
         slices.radius, slices.height, slices.tangent, azimuths, rising, slices.layer

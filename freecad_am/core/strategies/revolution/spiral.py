@@ -14,7 +14,7 @@ from ...issues import NOTE, InputError, Issue, Text
 from ...parameters.bead_classes import WALL
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import RevolutionParameters
-from ...process import seam
+from ...process import order
 from ...slicing import arc_length
 from ...toolpath import Bead, Layer
 from ...types import Array, Index
@@ -44,7 +44,7 @@ def layers(
     turns = _turn_angles(wall.meridian, end, pitch, strategy)
     s = np.clip(pitch * (turns / (2.0 * math.pi) - 1.0), 0.0, end)
     radius, height, _ = wall.meridian.at(s)
-    rising = seam.rising(process, 0, True)
+    rising = order.rising(process, 0, True)
     parameter = process.seam.angle + (turns if rising else -turns)
     build, tool, issues = _directions(wall.meridian, turns, s, rising, tilting)
     bead = Bead(

@@ -13,8 +13,7 @@ from PySide import QtCore, QtGui
 from ....core.issues import AmError
 from ....core.layers.along import centre_line
 from ....core.layers.along import field as along
-from ....core.layers.leaning import Leaning, find_leaning
-from ....core.layers.planes.stacking import CONTACT_HEIGHTS, prepare_stack
+from ....core.layers.planes.stacking import CONTACT_HEIGHTS, Leaning, find_leaning, prepare_stack
 from ....core.parameters.filled import SolidParameters
 from ....core.strategies import size
 from ....core.types import Array
