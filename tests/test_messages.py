@@ -17,7 +17,7 @@ import pytest
 from freecad_am import api
 from freecad_am.batch import run
 from freecad_am.batch.job import job as jobs
-from freecad_am.batch.rows.table import Order, received, start_row
+from freecad_am.batch.rows.table import Order, row_result, start_row
 from freecad_am.brep.files import read
 from freecad_am.core.issues import AmError, InputError, Issue, Text, Word
 from freecad_am.core.kinematics.machines import machine
@@ -391,7 +391,10 @@ def test_a_message_of_another_process_keeps_its_parts(tmp_path, french):
 def test_a_message_of_a_row_of_a_batch_keeps_its_parts(tmp_path, french):
     values = {"version": 1, "part": {"file": "part.step"}, "strategy": {"layer_height": "-2 mm"}}
     order = Order("row 1", values, str(tmp_path / "job.yaml"), str(tmp_path / "out"), False)
-    message = received(*start_row(order))["message"]
+    row = start_row(order)
+    while not row.poll(60.0):
+        pass
+    message = row_result(row)["message"]
     assert (
         check_told(message, french) == f"-2 mm est hors de la plage{NO_BREAK}; donnez plus de 0 mm"
     )
