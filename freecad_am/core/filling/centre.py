@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..geometry.curves.plane_curve import cut_at_length, doubled_area, length, start_at
+from ..geometry.curves.plane_curve import arcs, cut_at_length, doubled_area, length, nearest, start_at
 from ..geometry.regions.medial import spine
 from ..geometry.regions.region import Region, along, simplified
 from ..geometry.regions.several import (
@@ -162,10 +162,20 @@ def long_enough(curves: list[PlaneCurve], shortest: float) -> list[PlaneCurve]:
 
 def start_curve(curve: PlaneCurve, beads: Beads) -> PlaneCurve:
     """A closed curve with the sense and start asked for; an open one as it is."""
-    return (
-        replace(curve, points=beads.ring(curve.points, curve.ring))
-        if curve.closed and not curve.turns
-        else curve
+    if not curve.closed or curve.turns:
+        return curve
+    points = beads.ring(curve.points, curve.ring)
+    if curve.share is None:
+        return replace(curve, points=points)
+    is_turned = (doubled_area(points) < 0.0) != (doubled_area(curve.points) < 0.0)
+    turned = curve.reversed() if is_turned else curve
+    assert turned.share is not None
+    arc = arcs(turned.points, True)
+    edge, part = nearest(turned.points, points[:1], True)[1:3]
+    start = arc[edge[0]] + part[0] * (arc[edge[0] + 1] - arc[edge[0]])
+    along = np.remainder(start + arcs(points), arc[-1])
+    return replace(
+        curve, points=points, share=np.interp(along, arc, np.r_[turned.share, turned.share[:1]])
     )
 
 

@@ -1,0 +1,714 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Contours whose widths adapt to the thickness of a region, so that they fill it without gaps.
+
+After T. Kuipers, E. Doubrovski, J. Wu, C. Wang, "A Framework for Adaptive Width Control of Dense
+Contour-Parallel Toolpaths in Fused Deposition Modeling", Computer-Aided Design 128 (2020): the
+thickness at each point of the medial axis decides the number of beads across and their widths.
+Where the axis runs into a corner, the beads of the thicker place go on into it. Instead of
+trapezoids between the border and a Voronoi diagram, spokes carry the decision to the border.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+from scipy.spatial import cKDTree
+
+from ..geometry.curves.plane_curve import arcs, length
+from ..geometry.regions.region import Region, regions, select_significant, simplified
+from ..geometry.regions.spokes import Spokes, find_spokes
+from ..types import Array, Index, Mask
+from .centre import Beads, PlaneCurve, dot, long_enough, start_curve
+
+MAX_WEDGE = math.radians(80.0)  # sides of a wedge that opens more belong to a corner
+STEP = 0.5  # of the spacing, between spokes
+RADIUS_TOLERANCE = 0.01  # of the spacing
+SHORTEST_CENTRE = 1.0  # of the spacing; where the axis of a thick place is shorter, pairs fill it
+SUMMIT = 0.1  # of the spacing; summits that near to each other are one
+SHORT_CHANGE = 2.0  # of the spacing; where another number of beads holds for less, it does not
+RAMP = 1.0  # of the spacing, along a bead to either side, over which its depth is averaged
+MOUTH = 0.35  # of the spacing; how far inside a thick place its beads turn before a thin one
+SHARE_TOLERANCE = 0.02  # of the usual width; shares within this of a straight line need no point
+SAME = 1e-9  # of the spacing
+SHORTEST_PIECE = 0.1  # of the spacing; shorter pieces of the axis are ends of branches into corners
+JOINT = 1.3  # steps; ends of middle beads that near to each other meet
+
+
+@dataclass(frozen=True)
+class BeadLaw:
+    """How many beads lie side by side in a place, and how wide they are.
+
+    Parameters
+    ----------
+    width, spacing : float
+        mm, of usual beads: width of one, distance between two.
+    narrowest, widest : float
+        Least and greatest share of the usual width.
+    """
+
+    width: float
+    spacing: float
+    narrowest: float
+    widest: float
+
+    def usual_radius(self, counts: Array | Index | int) -> Array:
+        """Half the thickness (n,), mm, that usual beads of a number fill."""
+        return np.asarray(0.5 * (self.width + (np.asarray(counts) - 1.0) * self.spacing))
+
+    def count_beads(self, radii: Array, in_pairs: Mask) -> Index:
+        """The number of beads (n,) across places with half a thickness of `radii` mm.
+
+        in_pairs: places (n,) that have no room along their middle for a bead of its own.
+        """
+        highest = int(np.max(radii, initial=0.0) / (0.5 * self.spacing)) + 3
+        counts = np.searchsorted(self._limits(np.arange(highest), 1), radii, side="right")
+        pairs = np.arange(2, highest + 2, 2)
+        even = 2 + 2 * np.searchsorted(self._limits(pairs, 2), radii, side="right")
+        return np.where(in_pairs & (counts > 1), even, counts).astype(np.intp)
+
+    def _limits(self, counts: Index, step: int) -> Array:
+        """Half a thickness (n,), mm, from which on there are more beads than `counts`, by a step."""
+        few, many = self.usual_radius(counts), self.usual_radius(counts + step)
+        limits = np.where(counts <= 4, np.sqrt(np.maximum(few, 0.0) * many), 0.5 * (few + many))
+        limits = np.minimum(limits, self._radius_at(counts, self.widest))
+        return np.where(
+            counts == 0,
+            0.5 * self.width * self.narrowest,
+            np.maximum(limits, self._radius_at(counts + step, self.narrowest)),
+        )
+
+    def _radius_at(self, counts: Index, share: float) -> Array:
+        """Half a thickness (n,), mm, that beads fill whose inner ones have a share of the usual width."""
+        usual = self.usual_radius(counts)
+        return usual + (share - 1.0) * self._variable_radius(counts)
+
+    def _variable_radius(self, counts: Index) -> Array:
+        """How much of half the thickness (n,), mm, beads of variable width fill: all of up to five, else
+        the inner four or five."""
+        inner = np.where(np.asarray(counts) % 2 == 0, 2.0, 2.5) * self.spacing
+        return np.where(np.asarray(counts) <= 5, self.usual_radius(counts), inner)
+
+    def shares(self, counts: Index, radii: Array) -> Array:
+        """The share of the usual width (n,) of the inner beads."""
+        room = np.maximum(self._variable_radius(counts), SAME)
+        share = 1.0 + (radii - self.usual_radius(counts)) / room
+        return np.clip(share, self.narrowest, self.widest)
+
+    def depths(self, pair: int, counts: Index, radii: Array) -> tuple[Array, Array]:
+        """How deep (n,), mm, the middles of a pair of beads lie, and their share (n,) of the width.
+
+        pair: 0 for the outermost. counts, radii: (n,) as of `shares`.
+        """
+        share = self.shares(counts, radii)
+        usual_pairs = np.where(counts <= 5, 0, counts // 2 - 2)
+        outermost = np.where(usual_pairs > 0, 1.0, share)
+        variable = np.maximum(pair - usual_pairs, 0)  # beads of variable width before this
+        depth = 0.5 * self.width * outermost + self.spacing * (pair - variable + share * variable)
+        # one of two neighbours is usual, so that half a spacing between them is too
+        between = (pair >= usual_pairs) & (usual_pairs > 0)
+        depth += np.where(between, 0.5 * self.spacing * (share - 1.0), 0.0)
+        return depth, np.where(pair < usual_pairs, 1.0, share)
+
+
+class _Thickness(NamedTuple):
+    """What the beads at each spoke follow. radii: (n,) mm, of the place that decides; counts: (n,) beads
+    across; is_central: (n,) whether the axis there runs between two sides.
+    """
+
+    radii: Array
+    counts: Index
+    is_central: Mask
+
+
+class _Crossing(NamedTuple):
+    """Where a bead begins or ends between two spokes. middle (2,): on the axis; foot, direction (2,),
+    radius and depth: of a spoke there; share: of the width.
+    """
+
+    middle: Array
+    foot: Array
+    direction: Array
+    radius: float
+    depth: float
+    share: float
+
+
+class Adaptive(NamedTuple):
+    """Beads of a region; and the regions inside of the walls that are left for another pattern."""
+
+    curves: list[PlaneCurve]
+    interior: tuple[Region, ...]
+
+
+def adapt_contours(region: Region, beads: Beads, law: BeadLaw, walls: float) -> Adaptive:
+    """Fill a region with contours, and with beads along its middle.
+
+    Parameters
+    ----------
+    region : Region
+        Plane region, mm.
+    beads : Beads
+        Options; spacing and width are the law's.
+    law : BeadLaw
+        Number and widths of beads.
+    walls : float
+        Number of contours round thick places, whose inside is left; infinity fills them.
+    """
+    reach = law.usual_radius(2.0 * walls + 3.0) if math.isfinite(walls) else region.extent
+    turn = 2.0 * math.acos(max(1.0 - beads.chord_error / max(float(reach), beads.chord_error), 0.0))
+    spokes = find_spokes(
+        region,
+        STEP * law.spacing,
+        RADIUS_TOLERANCE * law.spacing,
+        min(max(turn, 0.02), 0.5),
+        float(reach),
+    )
+    thickness = _thickness(spokes, law)
+    deepest = int(thickness.counts.max(initial=0)) // 2
+    is_thick = thickness.counts > 2.0 * walls + 2.0
+    curves: list[PlaneCurve] = []
+    free = spokes.radii - 0.5 * (law.width - law.spacing)  # half the room for a bead in the middle
+    for pair in range(deepest):
+        has_pair = (thickness.counts >= 2 * pair + 2) & ~(is_thick & (pair >= walls))
+        depths, shares = law.depths(pair, thickness.counts, thickness.radii)
+        curves += _rings(spokes, thickness, has_pair, depths, shares, beads, pair, law)
+        innermost = thickness.counts // 2 == pair + 1
+        free = np.where(innermost, spokes.radii - depths - 0.5 * law.spacing * shares, free)
+    curves += _centres(spokes, thickness, law, beads, np.where(is_thick, 0.0, free))
+    interior: tuple[Region, ...] = ()
+    if is_thick.any():
+        depth = law.usual_radius(1) + (walls - 0.5) * law.spacing if walls else 0.0
+        depths = np.full(len(spokes.radii), float(depth))
+        loops = _rings(
+            spokes, thickness, is_thick, depths, np.ones(len(depths)), beads, 0, law
+        ) if walls else []
+        interior = regions([loop.points for loop in loops]) if walls else (region,)
+    curves = [start_curve(curve, beads) for curve in long_enough(curves, beads.shortest)]
+    return Adaptive(curves, interior)
+
+
+def _thickness(spokes: Spokes, law: BeadLaw) -> _Thickness:
+    """Carry the thickness of places between two sides into the corners that belong to them."""
+    radii, following = spokes.radii, spokes.following
+    middles = spokes.middles
+    rise = radii[following] - radii
+    distance = np.hypot(*(middles[following] - middles).T)
+    tiny = SAME * law.spacing
+    is_steep = np.abs(rise) > np.maximum(math.sin(0.5 * MAX_WEDGE) * distance, tiny)
+    is_level = ~is_steep & (distance > tiny)
+    is_level &= ~_in_short_runs(is_level, distance, following, SHORTEST_CENTRE * law.spacing)
+    is_central = np.zeros(len(radii), dtype=bool)
+    is_central[is_level] = True
+    is_central[following[is_level]] = True
+    deciding, in_pairs = _carry_uphill(spokes, is_central, SUMMIT * law.spacing)
+    counts = law.count_beads(deciding, in_pairs)
+    even = law.count_beads(deciding, np.ones(len(radii), dtype=bool))
+    _level_short_changes(
+        counts, even, distance, following, is_central, SHORT_CHANGE * law.spacing
+    )
+    return _Thickness(deciding, counts, is_central)
+
+
+def _level_short_changes(
+    counts: Index, even: Index, distance: Array, following: Index, is_central: Mask, shortest: float
+) -> None:
+    """Write to `counts` the number of the neighbours where another one holds for less than a length,
+    mm, of the axis; and an even number from `even` where an odd one between others does.
+    """
+    for cycle in _cycles(following):
+        for run in _runs(is_central[cycle]):
+            members = cycle[run]
+            cuts = np.flatnonzero(np.diff(counts[members])) + 1
+            stretches = np.split(members, cuts)
+            for before, stretch, after in zip(stretches, stretches[1:], stretches[2:]):
+                low, here, high = (int(counts[part[0]]) for part in (before, stretch, after))
+                if distance[stretch].sum() >= shortest:
+                    continue
+                if (here - low) * (here - high) > 0:
+                    counts[stretch] = min(low, high) if here < low else max(low, high)
+                elif here % 2 == 1 and here > 1:
+                    counts[stretch] = even[stretch]
+
+
+def _in_short_runs(is_level: Mask, distance: Array, following: Index, shortest: float) -> Mask:
+    """Which level stretches of the axis are shorter than a length, mm."""
+    short = np.zeros(len(is_level), dtype=bool)
+    for cycle in _cycles(following):
+        for run in _runs(is_level[cycle]):
+            members = cycle[run]
+            if distance[members].sum() < shortest:
+                short[members] = True
+    return short
+
+
+def _cycles(following: Index) -> list[Index]:
+    """The spokes of each border in their order. Spokes of a border are consecutive numbers."""
+    last = np.flatnonzero(following != np.arange(1, len(following) + 1))
+    firsts = np.r_[0, last[:-1] + 1]
+    return [np.arange(first, end + 1) for first, end in zip(firsts.tolist(), last.tolist())]
+
+
+def _runs(mask: Mask) -> list[Index]:
+    """Runs of True in a cyclic mask, each as consecutive places; a single one where all are True."""
+    if mask.all():
+        return [np.arange(len(mask))]
+    if not mask.any():
+        return []
+    first = int(np.flatnonzero(~mask)[0])
+    order = np.roll(np.arange(len(mask)), -first)
+    turned = mask[order].astype(np.int8)
+    starts = np.flatnonzero(np.diff(turned, prepend=0) == 1)
+    ends = np.flatnonzero(np.diff(turned, append=0) == -1) + 1
+    return [order[a:b] for a, b in zip(starts.tolist(), ends.tolist())]
+
+
+def _carry_uphill(spokes: Spokes, is_central: Mask, reach: float) -> tuple[Array, Mask]:
+    """The radius (n,) that decides at each spoke, and whether (n,) beads there come in pairs only.
+
+    A spoke in a corner follows the greatest circle uphill of it along the axis, its summit. Of several
+    summits in a row, which small facets make, a lower one between two higher ones follows the lower of
+    these. Summits within `reach` mm of each other are one.
+    """
+    radii = spokes.radii
+    deciding, summit = radii.copy(), np.arange(len(radii))
+    in_pairs = np.zeros(len(radii), dtype=bool)
+    for cycle in _cycles(spokes.following):
+        for run in _runs(~is_central[cycle]):
+            whole = len(run) == len(cycle)
+            span = run if whole else np.r_[run[0] - 1, run, (run[-1] + 1) % len(cycle)]
+            if whole:
+                span = np.roll(span, -int(np.argmax(radii[cycle[span]])))
+                span = np.r_[span, span[:1]]
+            values = radii[cycle[span]]
+            level, uphill = _summits(values)
+            ends_high = max(values[0], values[-1]) >= (1.0 - RADIUS_TOLERANCE) * level.max()
+            inner = cycle[span[:-1] if whole else span[1:-1]]
+            used = slice(0, -1) if whole else slice(1, -1)
+            deciding[inner] = level[uphill[used]]
+            summit[inner] = cycle[span[uphill[used]]]
+            in_pairs[inner] = whole or not ends_high
+    tops = np.unique(summit[~is_central])
+    for a, b in cKDTree(spokes.middles[tops]).query_pairs(reach) if len(tops) else ():
+        first, second = summit == tops[a], summit == tops[b]
+        either = (first | second) & ~is_central
+        if either.any():
+            deciding[either] = deciding[either].max()
+            in_pairs[either] = in_pairs[either].all()
+    return deciding, in_pairs
+
+
+def _summits(values: Array) -> tuple[Array, Index]:
+    """The level (n,) to which each of values (n,) is raised between higher ones, and the place (n,) of
+    the summit uphill of each.
+    """
+    level = np.minimum(np.maximum.accumulate(values), np.maximum.accumulate(values[::-1])[::-1])
+    number = np.arange(len(values))
+    right = _walk_up(values)
+    left = number[::-1][_walk_up(values[::-1])][::-1]
+    return level, np.where(level[right] >= level[left], right, left)
+
+
+def _walk_up(values: Array) -> Index:
+    """The place (n,) that a walk to the right from each place climbs to."""
+    rising = np.r_[values[1:] >= values[:-1], False]
+    ends = np.where(rising, len(values), np.arange(len(values)))
+    return np.asarray(np.minimum.accumulate(ends[::-1])[::-1])
+
+
+def _rings(
+    spokes: Spokes,
+    thickness: _Thickness,
+    has_pair: Mask,
+    depths: Array,
+    shares: Array,
+    beads: Beads,
+    pair: int,
+    law: BeadLaw,
+) -> list[PlaneCurve]:
+    """The closed beads of a pair: along the border where it has the pair, and back on the other side
+    where it ends. Writes the depths and shares that they have in the end to `depths` and `shares`.
+    """
+    is_valid = has_pair & (depths <= spokes.radii + SAME * law.spacing)
+    runs: list[tuple[_Crossing | None, Index, _Crossing | None]] = []
+    for cycle in _cycles(spokes.following):
+        for run in _runs(is_valid[cycle]):
+            members = cycle[run]
+            if len(run) == len(cycle):
+                runs.append((None, members, None))
+                continue
+            before, after = cycle[run[0] - 1], cycle[(run[-1] + 1) % len(cycle)]
+            entry = _crossing(spokes, thickness, members[0], before, has_pair, depths, shares, law)
+            leave = _crossing(spokes, thickness, members[-1], after, has_pair, depths, shares, law)
+            runs.append((entry, members, leave))
+    curves = []
+    for chain in _chains([(entry, leave) for entry, _, leave in runs], law.spacing):
+        points, chain_shares = _trace(
+            spokes, [runs[number] for number in chain], thickness.counts, depths, shares, beads, law
+        )
+        if len(points) > 2:
+            curves.append(PlaneCurve(points, True, "contour", pair, share=chain_shares))
+    return curves
+
+
+def _crossing(
+    spokes: Spokes,
+    thickness: _Thickness,
+    inside: int,
+    outside: int,
+    has_pair: Mask,
+    depths: Array,
+    shares: Array,
+    law: BeadLaw,
+) -> _Crossing:
+    """Where a bead that the spoke `inside` has ends before the spoke `outside`."""
+    radii = spokes.radii[[inside, outside]]
+    depth, share = float(depths[inside]), 1.0
+    if has_pair[outside]:
+        room = radii - depths[[inside, outside]]
+        share = room[0] / max(room[0] - room[1], 1e-300)
+        depth += share * float(depths[outside] - depths[inside])
+    elif thickness.is_central[inside] and thickness.is_central[outside]:
+        share = _share_of_change(thickness, inside, outside, law)
+    else:
+        limit = min(depth + MOUTH * law.spacing, radii[0])
+        if radii[1] < limit:
+            share = (radii[0] - limit) / max(radii[0] - radii[1], 1e-300)
+    share = min(max(share, 0.0), 1.0)
+    places = spokes.feet[[inside, outside]], spokes.directions[[inside, outside]]
+    foot, direction = ((1.0 - share) * place[0] + share * place[1] for place in places)
+    direction = direction / max(float(np.hypot(*direction)), 1e-300)
+    middles = spokes.feet[[inside, outside]] + radii[:, None] * places[1]
+    middle = (1.0 - share) * middles[0] + share * middles[1]
+    radius = float((1.0 - share) * radii[0] + share * radii[1])
+    return _Crossing(middle, foot, direction, radius, min(depth, radius), float(shares[inside]))
+
+
+def _share_of_change(thickness: _Thickness, inside: int, outside: int, law: BeadLaw) -> float:
+    """Where between two spokes the number of beads changes, by halving."""
+    low, high = 0.0, 1.0
+    start, end = thickness.radii[inside], thickness.radii[outside]
+    for _ in range(20):
+        middle = 0.5 * (low + high)
+        count = law.count_beads(
+            np.array([start + middle * (end - start)]), np.zeros(1, dtype=bool)
+        )[0]
+        if count // 2 >= thickness.counts[inside] // 2:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+def _chains(
+    ends: Sequence[tuple[_Crossing | None, _Crossing | None]], spacing: float
+) -> list[list[int]]:
+    """Runs chained to rings: where a run ends, another begins on the other side of the axis."""
+    open_runs = [number for number, (entry, leave) in enumerate(ends) if leave is not None]
+    closed = [[number] for number, (_, leave) in enumerate(ends) if leave is None]
+    if not open_runs:
+        return closed
+    leaves = np.array([ends[number][1].middle for number in open_runs])  # type: ignore[union-attr]
+    entries = np.array([ends[number][0].middle for number in open_runs])  # type: ignore[union-attr]
+    successor = _match(leaves, entries, spacing)
+    chains, is_left = closed, np.ones(len(open_runs), dtype=bool)
+    for first in range(len(open_runs)):
+        chain = []
+        number = first
+        while is_left[number]:
+            is_left[number] = False
+            chain.append(open_runs[number])
+            number = int(successor[number])
+        if chain:
+            chains.append(chain)
+    return chains
+
+
+def _match(leaves: Array, entries: Array, spacing: float) -> Index:
+    """For each place (n, 2) the number of an entry (n, 2), one to one, at the least distances."""
+    count = len(leaves)
+    successor = np.full(count, -1)
+    following = np.roll(np.arange(count), -1)  # most gaps are corners, where the next run begins
+    is_near = np.hypot(*(leaves - entries[following]).T) < 1e-3 * spacing
+    successor[is_near] = following[is_near]
+    left_leaves = np.flatnonzero(successor < 0)
+    left_entries = np.setdiff1d(np.arange(count), successor)
+    if len(left_leaves):
+        distances = np.hypot(
+            *(leaves[left_leaves][:, None] - entries[left_entries]).transpose(2, 0, 1)
+        )
+        rows, columns = linear_sum_assignment(distances)
+        successor[left_leaves[rows]] = left_entries[columns]
+    return successor
+
+
+def _trace(
+    spokes: Spokes,
+    runs: Sequence[tuple[_Crossing | None, Index, _Crossing | None]],
+    counts: Index,
+    depths: Array,
+    shares: Array,
+    beads: Beads,
+    law: BeadLaw,
+) -> tuple[Array, Array | None]:
+    """Points (n, 2) of a ring through runs of spokes, and their shares of the width."""
+    parts: list[tuple[Array, Array, Array, Array, Array]] = []
+    for entry, members, leave in runs:
+        parts += [_of_crossing(entry)] if entry is not None else []
+        parts.append(
+            (
+                spokes.feet[members],
+                spokes.directions[members],
+                spokes.radii[members],
+                depths[members],
+                shares[members],
+            )
+        )
+        parts += [_of_crossing(leave)] if leave is not None else []
+    count = np.concatenate(
+        [
+            counts[
+                np.r_[
+                    members[:1] if entry is not None else [],
+                    members,
+                    members[-1:] if leave is not None else [],
+                ].astype(np.intp)
+            ]
+            for entry, members, leave in runs
+        ]
+    )
+    numbers = np.concatenate(
+        [
+            np.r_[[-1] if entry is not None else [], members, [-1] if leave is not None else []]
+            for entry, members, leave in runs
+        ]
+    ).astype(np.intp)
+    feet, directions, radii, depth, share = (
+        np.concatenate(columns) for columns in zip(*parts)
+    )
+    points = feet + depth[:, None] * directions
+    chord = points - np.roll(points, 1, axis=0)
+    is_kept = np.hypot(*chord.T) > 1e-6 * law.spacing
+    feet, directions, radii, depth, share = (
+        column[is_kept] for column in (feet, directions, radii, depth, share)
+    )
+    points, numbers, count = points[is_kept], numbers[is_kept], count[is_kept]
+    if len(points) < 3:
+        return points, None
+    if np.ptp(count) > 0:
+        depth, share = (
+            _ramp_jumps(points, values, count, RAMP * law.spacing) for values in (depth, share)
+        )
+        depths[numbers[numbers >= 0]] = depth[numbers >= 0]
+        shares[numbers[numbers >= 0]] = share[numbers >= 0]
+        points = feet + np.minimum(depth, radii)[:, None] * directions
+    return _thinned(points, share, True, beads)
+
+
+def _of_crossing(crossing: _Crossing) -> tuple[Array, Array, Array, Array, Array]:
+    return (
+        crossing.foot[None],
+        crossing.direction[None],
+        np.array([crossing.radius]),
+        np.array([crossing.depth]),
+        np.array([crossing.share]),
+    )
+
+
+def _ramp_jumps(points: Array, values: Array, counts: Index, reach: float) -> Array:
+    """Values (n,) at the points (n, 2) of a ring, whose jumps where the number of beads changes are
+    spread over `reach` mm to either side.
+    """
+    jumps = np.flatnonzero(counts != np.roll(counts, -1))
+    arc = arcs(points, True)
+    total = float(arc[-1])
+    reach = min(reach, 0.25 * total)
+    middles = 0.5 * (arc[jumps] + arc[jumps + 1])
+    heights = np.roll(values, -1)[jumps] - values[jumps]
+    ahead = (arc[:-1, None] - middles + 0.5 * total) % total - 0.5 * total
+    ramp = 0.5 * np.clip(1.0 - np.abs(ahead) / reach, 0.0, None) * -np.sign(ahead)
+    return np.asarray(values + ramp @ heights)
+
+
+def _thinned(
+    points: Array, share: Array, closed: bool, beads: Beads
+) -> tuple[Array, Array | None]:
+    """The points and shares that the tolerances ask for; no shares where all are usual."""
+    if closed:
+        points = np.vstack([points, points[:1]])
+        share = np.r_[share, share[:1]]
+    line = np.column_stack([points, np.arange(len(points))])
+    kept = np.zeros(len(points), dtype=bool)
+    kept[_kept_numbers(line, 0.5 * beads.chord_error)] = True
+    if np.ptp(share) > SHARE_TOLERANCE:
+        kept |= select_significant(arcs(points), share, SHARE_TOLERANCE)
+    if closed:
+        kept[-1] = False
+    points, share = points[kept], share[kept]
+    return points, None if np.abs(share - 1.0).max(initial=0.0) < 1e-3 else share
+
+
+def _kept_numbers(line: Array, tolerance: float) -> Index:
+    """Numbers of the points that remain of a line (n, 3) of points with their numbers."""
+    shape = simplified(line[:, :2], tolerance)
+    order = {tuple(point): number for number, point in enumerate(line[:, :2].tolist())}
+    return np.array([order[tuple(point)] for point in shape.tolist()] + [0, len(line) - 1])
+
+
+class _Middle(NamedTuple):
+    """A piece of the axis for a bead: points (n, 2), shares (n,); and whether its ends meet beads that begin
+    there.
+    """
+
+    points: Array
+    shares: Array
+    meets: tuple[bool, bool]
+
+
+def _centres(
+    spokes: Spokes, thickness: _Thickness, law: BeadLaw, beads: Beads, free: Array
+) -> list[PlaneCurve]:
+    """Beads along the axis where pairs leave room for one. free: half that room (n,), mm."""
+    width = np.where(thickness.counts == 1, law.width, law.spacing)
+    room = np.where(thickness.counts == 1, spokes.radii, free)
+    shares = np.minimum(2.0 * room / width, law.widest)
+    pieces, closed = _middle_pieces(spokes, thickness, law, shares)
+    curves = []
+    for points, closed_shares in closed:
+        thin_points, thin_shares = _thinned(points, closed_shares, True, beads)
+        curves.append(PlaneCurve(thin_points, True, "centre", 0, share=thin_shares))
+    for piece in _join_middles(pieces, JOINT * STEP * law.spacing, law):
+        if len(piece.points) < 2 or length(piece.points, False) < SAME * law.spacing:
+            continue
+        thin_points, thin_shares = _thinned(piece.points, piece.shares, False, beads)
+        curves.append(PlaneCurve(thin_points, False, "centre", 0, share=thin_shares))
+    return curves
+
+
+def _middle_pieces(
+    spokes: Spokes, thickness: _Thickness, law: BeadLaw, shares: Array
+) -> tuple[list[_Middle], list[tuple[Array, Array]]]:
+    """Open pieces of the axis with room for a bead, each from one of its two sides, and closed ones."""
+    following, middles, counts = spokes.following, spokes.middles, thickness.counts
+    has_room = thickness.is_central & (shares >= law.narrowest) & (counts > 0)
+    is_first_side = (spokes.positions < spokes.opposite) & ~np.isnan(spokes.opposite)
+    pieces, closed = [], []
+    for cycle in _cycles(following):
+        for run in _runs((has_room & is_first_side)[cycle]):
+            members = cycle[run]
+            if len(run) == len(cycle):
+                closed.append((middles[members], shares[members]))
+                continue
+            before, after = cycle[run[0] - 1], cycle[(run[-1] + 1) % len(cycle)]
+            points, widths = middles[members], shares[members]
+            meets = []
+            for neighbour, member, last in ((before, members[0], False), (after, members[-1], True)):
+                goes_on = bool(thickness.is_central[neighbour] and is_first_side[neighbour])
+                has_more = bool(counts[neighbour] // 2 > counts[member] // 2)
+                meets.append(goes_on and has_more)
+                if goes_on:
+                    share = _share_of_end(thickness, member, neighbour, law, shares)
+                    end = middles[member] + share * (middles[neighbour] - middles[member])
+                    width = max(float(shares[member]), law.narrowest)
+                    if not has_more:
+                        width += share * (float(shares[neighbour]) - width)
+                    points = np.vstack([points, end] if last else [end, points])
+                    widths = np.r_[widths, width] if last else np.r_[width, widths]
+            pieces.append(_Middle(points, widths, (meets[0], meets[1])))
+    return pieces, closed
+
+
+def _share_of_end(
+    thickness: _Thickness, inside: int, outside: int, law: BeadLaw, shares: Array
+) -> float:
+    """Where between two spokes a bead in the middle ends: where another pair begins, or where it would
+    get too narrow.
+    """
+    if thickness.counts[outside] // 2 > thickness.counts[inside] // 2:
+        return 1.0 - _share_of_change(thickness, outside, inside, law)
+    fall = float(shares[inside] - shares[outside])
+    return min(max((float(shares[inside]) - law.narrowest) / max(fall, 1e-300), 0.0), 1.0)
+
+
+def _join_middles(pieces: list[_Middle], reach: float, law: BeadLaw) -> list[_Middle]:
+    """Pieces joined where they meet, the straightest pair of several; ends on other beads cut back."""
+    least = SHORTEST_PIECE * law.spacing
+    joined = [piece for piece in pieces if length(piece.points, False) > least]
+    ends = np.array([piece.points[at] for piece in joined for at in (0, -1)]).reshape(-1, 2)
+    if not len(ends):
+        return []
+    pairs = cKDTree(ends).query_pairs(reach, output_type="ndarray")
+    outward = np.array([_outward(piece.points, at) for piece in joined for at in (0, -1)])
+    turn = np.einsum("ni,ni->n", outward[pairs[:, 0]], outward[pairs[:, 1]])
+    partner = np.full(len(ends), -1)
+    for a, b in pairs[np.argsort(turn, kind="stable")].tolist():
+        if partner[a] < 0 and partner[b] < 0 and (a // 2 != b // 2):
+            partner[a], partner[b] = b, a
+    meets = np.array([flag for piece in joined for flag in piece.meets])
+    for a, b in pairs.tolist():
+        meets[a] |= partner[a] < 0 and partner[b] >= 0
+        meets[b] |= partner[b] < 0 and partner[a] >= 0
+    return _walk(joined, partner, meets, law)
+
+
+def _outward(points: Array, at: int) -> Array:
+    """Unit direction (2,) in which a line (n, 2) ends."""
+    if len(points) < 2:
+        return np.zeros(2)
+    out = points[0] - points[1] if at == 0 else points[-1] - points[-2]
+    return np.asarray(out / max(float(np.hypot(*out)), 1e-300))
+
+
+def _walk(pieces: list[_Middle], partner: Index, meets: Mask, law: BeadLaw) -> list[_Middle]:
+    """Chains of pieces from open end to open end, and those that close."""
+    is_left = np.ones(len(pieces), dtype=bool)
+    starts = [end for end in range(2 * len(pieces)) if partner[end] < 0]
+    starts += list(range(0, 2 * len(pieces), 2))
+    chains = []
+    for start in starts:
+        if not is_left[start // 2]:
+            continue
+        points, shares, end = [], [], start
+        while True:
+            number = end // 2
+            is_left[number] = False
+            piece = pieces[number]
+            step = 1 if end % 2 == 0 else -1
+            points.append(piece.points[::step])
+            shares.append(piece.shares[::step])
+            far = end ^ 1
+            if partner[far] < 0 or not is_left[partner[far] // 2]:
+                break
+            end = int(partner[far])
+        chain = _Middle(
+            np.vstack(points), np.concatenate(shares), (bool(meets[start]), bool(meets[far]))
+        )
+        chains.append(_cut_back(chain, law))
+    return chains
+
+
+def _cut_back(piece: _Middle, law: BeadLaw) -> _Middle:
+    """A piece without its ends that lie on other beads."""
+    points, shares = piece.points, piece.shares
+    for turned in range(2):
+        if piece.meets[turned]:
+            points, shares = points[::-1], shares[::-1]
+            points, shares = _shortened(points, shares, 0.5 * law.spacing * float(shares[-1]))
+            points, shares = points[::-1], shares[::-1]
+        points, shares = points[::-1], shares[::-1]
+    return piece._replace(points=points, shares=shares)
+
+
+def _shortened(points: Array, shares: Array, by: float) -> tuple[Array, Array]:
+    """A line (n, 2) with shares (n,) without the last `by` mm."""
+    arc = arcs(points)
+    end = arc[-1] - by
+    if end <= 0.0:
+        return points[:1], shares[:1]
+    keep = arc < end
+    last = np.array([np.interp(end, arc, points[:, k]) for k in (0, 1)])
+    return np.vstack([points[keep], last]), np.r_[shares[keep], np.interp(end, arc, shares)]

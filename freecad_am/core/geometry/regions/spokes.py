@@ -1,0 +1,337 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Spokes of a region: straight lines from its border, square to it, to the medial axis.
+
+The end of a spoke is the middle of the largest circle inside the region that touches the border
+at its foot. All spokes in their order along the border walk round the whole medial axis, each of
+its branches once on either side, so functions on the axis are functions of the spoke.
+
+The circles come from shrinking balls: J. Ma, S. W. Bae, S. Choi, "3D medial axis point
+approximation using nearest neighbors and the normal field", The Visual Computer 28 (2012).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ...types import Array, Index, Mask
+from .region import Region
+
+NEAREST_PIECES = 8  # whose middles are nearest; among them is the nearest piece of the border
+SMOOTH_TURN = 0.3  # rad; a corner that turns less is part of a curve, without an axis of its own
+SAME_PLACE = 1e-9  # of the longest edge
+MAX_SHRINKS = 40
+SHRINK_TOLERANCE = 1e-6  # of the radius
+MAX_HALVINGS = 8  # of an interval between spokes
+
+
+@dataclass(frozen=True, eq=False)
+class Spokes:
+    """Spokes of a region in their order along its borders.
+
+    Parameters
+    ----------
+    feet : ndarray, shape (n, 2)
+        On the border, mm.
+    directions : ndarray, shape (n, 2)
+        Unit vectors into the region.
+    radii : ndarray, shape (n,)
+        Lengths of the spokes, mm; 0 at convex corners.
+    following : ndarray, shape (n,)
+        The next spoke along the same border, material to the left.
+    positions : ndarray, shape (n,)
+        Of the feet along all borders: the number of the edge and the share of it.
+    opposite : ndarray, shape (n,)
+        Position of the other place that the circle touches; nan where it touches none.
+    """
+
+    feet: Array
+    directions: Array
+    radii: Array
+    following: Index
+    positions: Array
+    opposite: Array
+
+    @property
+    def middles(self) -> Array:
+        """Middles (n, 2) of the circles, mm: points of the medial axis."""
+        return self.feet + self.radii[:, None] * self.directions
+
+
+class _Border(NamedTuple):
+    """Edges of all borders. starts, chords (n, 2) mm; left (n, 2): unit normals into the region;
+    previous, following (n,): adjacent edges; turns (n,): rad at the start of each.
+    """
+
+    starts: Array
+    chords: Array
+    left: Array
+    previous: Index
+    following: Index
+    turns: Array
+
+
+class _Pieces(NamedTuple):
+    """Short pieces of the border, with a tree of their middles. edges (m,); shares (m, 2) of the
+    edge at both ends.
+    """
+
+    tree: cKDTree
+    edges: Index
+    shares: Array
+
+
+class _Places(NamedTuple):
+    """Places on the border. edges (n,), shares (n,) of the edge; fans (n,): at a reflex corner the
+    share of its turn, from the previous edge (0) to its own (1).
+    """
+
+    edges: Index
+    shares: Array
+    fans: Array
+
+    def select(self, chosen: Index | Mask) -> _Places:
+        return _Places(self.edges[chosen], self.shares[chosen], self.fans[chosen])
+
+
+def find_spokes(region: Region, step: float, tolerance: float, turn: float, cap: float) -> Spokes:
+    """Find the spokes of a region.
+
+    Parameters
+    ----------
+    region : Region
+        Plane region with its holes, mm.
+    step : float
+        Greatest distance between feet on an edge, mm.
+    tolerance : float
+        Error of the radius between spokes, mm, where it is interpolated linearly.
+    turn : float
+        Greatest angle between two spokes at a reflex corner, rad.
+    cap : float
+        Greatest length of a spoke, mm; circles larger than that touch the border only once.
+    """
+    border = _border_of(region)
+    pieces = _cut_pieces(border, step)
+    places = _first_places(border, step, turn)
+    radii, opposite = _measure(border, pieces, places, cap)
+    places, radii, opposite = _refine(border, pieces, places, radii, opposite, tolerance, cap)
+    feet, directions = _locate(border, places)
+    return Spokes(
+        feet,
+        directions,
+        radii,
+        _following(border, places),
+        places.edges + places.shares,
+        opposite,
+    )
+
+
+def _border_of(region: Region) -> _Border:
+    rings = region.borders()
+    counts = np.array([len(ring) for ring in rings])
+    firsts = np.cumsum(counts) - counts
+    starts = np.vstack(rings)
+    number = np.arange(len(starts))
+    ring = np.repeat(np.arange(len(rings)), counts)
+    following = firsts[ring] + (number - firsts[ring] + 1) % counts[ring]
+    previous = firsts[ring] + (number - firsts[ring] - 1) % counts[ring]
+    chords = starts[following] - starts
+    unit = chords / np.maximum(np.hypot(*chords.T), 1e-300)[:, None]
+    before = unit[previous]
+    turns = np.arctan2(
+        before[:, 0] * unit[:, 1] - before[:, 1] * unit[:, 0], (before * unit).sum(axis=1)
+    )
+    return _Border(
+        starts, chords, np.stack([-unit[:, 1], unit[:, 0]], axis=1), previous, following, turns
+    )
+
+
+def _cut_pieces(border: _Border, step: float) -> _Pieces:
+    lengths = np.hypot(*border.chords.T)
+    counts = np.maximum(np.ceil(lengths / step - 1e-9), 1.0).astype(np.intp)
+    edges = np.repeat(np.arange(len(counts)), counts)
+    number = np.arange(len(edges)) - np.repeat(np.cumsum(counts) - counts, counts)
+    shares = np.stack([number, number + 1], axis=1) / counts[edges][:, None]
+    middles = border.starts[edges] + shares.mean(axis=1)[:, None] * border.chords[edges]
+    return _Pieces(cKDTree(middles), edges, shares)
+
+
+def _first_places(border: _Border, step: float, turn: float) -> _Places:
+    """The corners, fans at reflex ones, and places between corners at most `step` mm apart."""
+    number = np.arange(len(border.starts))
+    lengths = np.hypot(*border.chords.T)
+    counts = np.maximum(np.ceil(lengths / step - 1e-9), 1.0).astype(np.intp)
+    edges = np.repeat(number, counts)
+    shares = (
+        np.arange(len(edges)) - np.repeat(np.cumsum(counts) - counts, counts) + 0.5
+    ) / counts[edges]
+    is_reflex = border.turns < -SMOOTH_TURN
+    fan_counts = np.where(is_reflex, np.ceil(-border.turns / turn).astype(np.intp) + 1, 1)
+    corners = np.repeat(number, fan_counts)
+    ranks = np.arange(len(corners)) - np.repeat(np.cumsum(fan_counts) - fan_counts, fan_counts)
+    fans = np.where(
+        is_reflex[corners], ranks / np.maximum(fan_counts[corners] - 1, 1), 0.5
+    )
+    return _ordered(
+        _Places(
+            np.r_[edges, corners], np.r_[shares, np.zeros(len(corners))], np.r_[0.5 + 0 * shares, fans]
+        )
+    )
+
+
+def _ordered(places: _Places) -> _Places:
+    return places.select(np.lexsort((places.fans, places.shares, places.edges)))
+
+
+def _locate(border: _Border, places: _Places) -> tuple[Array, Array]:
+    """Feet (n, 2) and directions (n, 2) of spokes.
+
+    Near a corner of a curve they turn evenly, over half of the shorter edge on either side.
+    """
+    edges, shares = places.edges, places.shares
+    feet = border.starts[edges] + shares[:, None] * border.chords[edges]
+    lengths = np.hypot(*border.chords.T)
+    blend = 0.5 * np.minimum(lengths, lengths[border.previous])  # mm, at the start of each edge
+    half_turns = np.where(np.abs(border.turns) < SMOOTH_TURN, 0.5 * border.turns, 0.0)
+    ends = border.following[edges]
+    from_start = 1.0 - shares * lengths[edges] / blend[edges]
+    from_end = 1.0 - (1.0 - shares) * lengths[edges] / blend[ends]
+    angle = half_turns[ends] * np.maximum(from_end, 0.0) - half_turns[edges] * np.maximum(
+        from_start, 0.0
+    )
+    at_corner = (shares == 0.0) & (half_turns[edges] == 0.0)
+    angle = np.where(at_corner, (places.fans - 1.0) * border.turns[edges], angle)
+    return feet, _rotated(border.left[edges], angle)
+
+
+def _rotated(vectors: Array, angles: Array) -> Array:
+    cos, sin = np.cos(angles), np.sin(angles)
+    return np.stack(
+        [
+            vectors[:, 0] * cos - vectors[:, 1] * sin,
+            vectors[:, 0] * sin + vectors[:, 1] * cos,
+        ],
+        axis=1,
+    )
+
+
+def _measure(
+    border: _Border, pieces: _Pieces, places: _Places, cap: float
+) -> tuple[Array, Array]:
+    """Radii (n,) mm of the circles, and positions (n,) where they touch the border again."""
+    feet, directions = _locate(border, places)
+    radii = np.full(len(feet), float(cap))
+    same_place = SAME_PLACE * float(np.abs(border.chords).max())
+    opposite = np.full(len(feet), np.nan)
+    convex = (places.shares == 0.0) & (border.turns[places.edges] > SMOOTH_TURN)
+    radii[convex] = 0.0
+    open_ = np.flatnonzero(~convex)
+    for _ in range(MAX_SHRINKS):
+        if not len(open_):
+            break
+        foot, direction, radius = feet[open_], directions[open_], radii[open_]
+        middles = foot + radius[:, None] * direction
+        points, positions, numbers = _nearest_border(border, pieces, middles)
+        chord = points - foot[:, None]
+        ahead = (chord * direction[:, None]).sum(axis=2)
+        square = (chord * chord).sum(axis=2)
+        facing = (border.left[numbers] * direction[:, None]).sum(axis=2)
+        is_opposite = facing < math.cos(SMOOTH_TURN)
+        is_opposite |= ahead > math.sin(0.5 * SMOOTH_TURN) * np.sqrt(square)
+        is_opposite &= (ahead > 0.0) & (square > same_place**2)
+        shrunk = np.where(is_opposite, square / np.maximum(2.0 * ahead, 1e-300), np.inf)
+        best = np.argmin(shrunk, axis=1)
+        row = np.arange(len(best))
+        smaller = shrunk[row, best] < radius * (1.0 - SHRINK_TOLERANCE)
+        open_ = open_[smaller]
+        radii[open_] = shrunk[row, best][smaller]
+        opposite[open_] = positions[row, best][smaller]
+    return radii, opposite
+
+
+def _nearest_border(
+    border: _Border, pieces: _Pieces, points: Array
+) -> tuple[Array, Array, Index]:
+    """Places (n, k, 2) on the pieces of the border about nearest to points (n, 2), their
+    positions (n, k) and edges (n, k).
+    """
+    count = min(NEAREST_PIECES, len(pieces.edges))
+    _, numbers = pieces.tree.query(points, k=[*range(1, count + 1)])
+    edges, limits = pieces.edges[numbers], pieces.shares[numbers]
+    starts, chords = border.starts[edges], border.chords[edges]
+    gaps = points[:, None] - starts
+    shares = (gaps * chords).sum(axis=2) / np.maximum((chords * chords).sum(axis=2), 1e-300)
+    shares = np.clip(shares, limits[..., 0], limits[..., 1])
+    return starts + shares[..., None] * chords, edges + shares, edges
+
+
+def _refine(
+    border: _Border,
+    pieces: _Pieces,
+    places: _Places,
+    radii: Array,
+    opposite: Array,
+    tolerance: float,
+    cap: float,
+) -> tuple[_Places, Array, Array]:
+    """Spokes added where the radius between two is not linear."""
+    open_ = np.ones(len(radii), dtype=bool)
+    for _ in range(MAX_HALVINGS):
+        intervals = np.flatnonzero(open_)
+        if not len(intervals):
+            break
+        following = _following(border, places)[intervals]
+        added = _between(places, intervals, following)
+        is_new = added.edges >= 0
+        intervals, following, added = intervals[is_new], following[is_new], added.select(is_new)
+        added_radii, added_opposite = _measure(border, pieces, added, cap)
+        first, second = radii[intervals], radii[following]
+        bent = np.abs(added_radii - 0.5 * (first + second)) > tolerance
+        bent |= (added_radii > np.maximum(first, second)) | (
+            _near_summit(border, places, radii)[intervals] & (np.abs(first - second) > tolerance)
+        )
+        added = added.select(bent)
+        still_open = np.zeros(len(radii), dtype=bool)
+        still_open[intervals[bent]] = True
+        edges = np.r_[places.edges, added.edges]
+        shares = np.r_[places.shares, added.shares]
+        fans = np.r_[places.fans, added.fans]
+        order = np.lexsort((fans, shares, edges))
+        places = _Places(edges[order], shares[order], fans[order])
+        radii = np.r_[radii, added_radii[bent]][order]
+        opposite = np.r_[opposite, added_opposite[bent]][order]
+        open_ = np.r_[still_open, np.ones(len(added.edges), dtype=bool)][order]
+    return places, radii, opposite
+
+
+def _near_summit(border: _Border, places: _Places, radii: Array) -> Mask:
+    """Whether the interval after each spoke ends at one that is longer than its neighbours."""
+    following = _following(border, places)
+    previous = np.empty_like(following)
+    previous[following] = np.arange(len(following))
+    is_summit = (radii >= radii[previous]) & (radii >= radii[following])
+    return is_summit | is_summit[following]
+
+
+def _following(border: _Border, places: _Places) -> Index:
+    """The next spoke of each along its border."""
+    counts = np.bincount(places.edges, minlength=len(border.starts))
+    firsts = np.cumsum(counts) - counts
+    number = np.arange(len(places.edges))
+    is_last = number == firsts[places.edges] + counts[places.edges] - 1
+    return np.where(is_last, firsts[border.following[places.edges]], number + 1)
+
+
+def _between(places: _Places, first: Index, second: Index) -> _Places:
+    """Places halfway between consecutive ones; edges of -1 where there is nothing between."""
+    a, b = places.select(first), places.select(second)
+    same_corner = (a.edges == b.edges) & (a.shares == 0.0) & (b.shares == 0.0)
+    ends = np.where(a.edges == b.edges, b.shares, 1.0)
+    edges = np.where(same_corner & (a.fans == b.fans), -1, a.edges)
+    shares = np.where(same_corner, 0.0, 0.5 * (a.shares + ends))
+    fans = np.where(same_corner, 0.5 * (a.fans + b.fans), 0.5)
+    return _Places(edges, shares, fans)
