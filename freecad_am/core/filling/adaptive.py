@@ -17,6 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.plane_curve import arcs, length
@@ -25,13 +27,13 @@ from ..geometry.regions.spokes import Spokes, find_spokes
 from ..types import Array, Index, Mask
 from .centre import Beads, PlaneCurve, dot, long_enough, start_curve
 
-MAX_WEDGE = math.radians(80.0)  # sides of a wedge that opens more belong to a corner
+MAX_WEDGE = math.radians(86.0)  # sides of a wedge that opens more belong to a corner
 STEP = 0.5  # of the spacing, between spokes
 RADIUS_TOLERANCE = 0.01  # of the spacing
 SHORTEST_CENTRE = 1.0  # of the spacing; where the axis of a thick place is shorter, pairs fill it
 SUMMIT = 0.1  # of the spacing; summits that near to each other are one
 SHORT_CHANGE = 2.0  # of the spacing; where another number of beads holds for less, it does not
-RAMP = 1.0  # of the spacing, along a bead to either side, over which its depth is averaged
+RAMP = 1.5  # of the spacing, along a bead, over which its depth changes with the number of beads
 MOUTH = 0.35  # of the spacing; how far inside a thick place its beads turn before a thin one
 SHARE_TOLERANCE = 0.02  # of the usual width; shares within this of a straight line need no point
 SAME = 1e-9  # of the spacing
@@ -115,14 +117,37 @@ class BeadLaw:
         return depth, np.where(pair < usual_pairs, 1.0, share)
 
 
+class _Transition(NamedTuple):
+    """Spokes (m,) on the side with fewer beads of a change, and how far (m,) they follow it, 0 to 1;
+    low, high: the spokes next to it on either side.
+    """
+
+    spokes: Index
+    low: int
+    high: int
+    weights: Array
+
+
 class _Thickness(NamedTuple):
     """What the beads at each spoke follow. radii: (n,) mm, of the place that decides; counts: (n,) beads
-    across; is_central: (n,) whether the axis there runs between two sides.
+    across; is_central: (n,) whether the axis there runs between two sides; transitions: where the
+    number of beads changes.
     """
 
     radii: Array
     counts: Index
     is_central: Mask
+    transitions: list[_Transition]
+
+    def depths(self, law: BeadLaw, pair: int) -> tuple[Array, Array]:
+        """As `BeadLaw.depths` for all spokes (n,), without jumps where the number of beads changes."""
+        depths, shares = law.depths(pair, self.counts, self.radii)
+        ramped_depths, ramped_shares = depths.copy(), shares.copy()
+        for spokes, low, high, weights in self.transitions:
+            if self.counts[low] >= 2 * pair + 2:
+                ramped_depths[spokes] += weights * (depths[high] - depths[low])
+                ramped_shares[spokes] += weights * (shares[high] - shares[low])
+        return ramped_depths, ramped_shares
 
 
 class _Crossing(NamedTuple):
@@ -175,7 +200,7 @@ def adapt_contours(region: Region, beads: Beads, law: BeadLaw, walls: float) -> 
     free = spokes.radii - 0.5 * (law.width - law.spacing)  # half the room for a bead in the middle
     for pair in range(deepest):
         has_pair = (thickness.counts >= 2 * pair + 2) & ~(is_thick & (pair >= walls))
-        depths, shares = law.depths(pair, thickness.counts, thickness.radii)
+        depths, shares = thickness.depths(law, pair)
         curves += _rings(spokes, thickness, has_pair, depths, shares, beads, pair, law)
         innermost = thickness.counts // 2 == pair + 1
         free = np.where(innermost, spokes.radii - depths - 0.5 * law.spacing * shares, free)
@@ -205,13 +230,51 @@ def _thickness(spokes: Spokes, law: BeadLaw) -> _Thickness:
     is_central = np.zeros(len(radii), dtype=bool)
     is_central[is_level] = True
     is_central[following[is_level]] = True
-    deciding, in_pairs = _carry_uphill(spokes, is_central, SUMMIT * law.spacing)
+    deciding, in_pairs, summit = _carry_uphill(spokes, is_central, SUMMIT * law.spacing)
     counts = law.count_beads(deciding, in_pairs)
     even = law.count_beads(deciding, np.ones(len(radii), dtype=bool))
     _level_short_changes(
         counts, even, distance, following, is_central, SHORT_CHANGE * law.spacing
     )
-    return _Thickness(deciding, counts, is_central)
+    transitions = _transitions(
+        counts, distance, following, is_central, summit, RAMP * law.spacing
+    )
+    return _Thickness(deciding, counts, is_central, transitions)
+
+
+def _transitions(
+    counts: Index,
+    distance: Array,
+    following: Index,
+    is_central: Mask,
+    summit: Index,
+    reach: float,
+) -> list[_Transition]:
+    """Where numbers of beads change: over `reach` mm of the axis on the side with fewer beads, and in the
+    corners that belong there.
+    """
+    transitions = []
+    for cycle in _cycles(following):
+        for run in _runs(is_central[cycle]):
+            if len(run) < len(cycle):
+                run = np.r_[run[0] - 1, run, (run[-1] + 1) % len(cycle)]
+            members = cycle[run]
+            arc = np.r_[0.0, np.cumsum(distance[members[:-1]])]
+            for k in np.flatnonzero(np.diff(counts[members])).tolist():
+                falls = counts[members[k]] > counts[members[k + 1]]
+                low, high = members[[k + 1, k] if falls else [k, k + 1]].tolist()
+                ahead = arc - arc[k + 1] if falls else arc[k] - arc
+                near = is_central[members] & (ahead >= 0.0) & (ahead < reach)
+                spokes, weights = members[near], 1.0 - ahead[near] / reach
+                corner = np.flatnonzero(~is_central & np.isin(summit, spokes))
+                order = np.argsort(spokes)
+                source = order[np.searchsorted(spokes[order], summit[corner])]
+                transitions.append(
+                    _Transition(
+                        np.r_[spokes, corner], low, high, np.r_[weights, weights[source]]
+                    )
+                )
+    return transitions
 
 
 def _level_short_changes(
@@ -267,8 +330,11 @@ def _runs(mask: Mask) -> list[Index]:
     return [order[a:b] for a, b in zip(starts.tolist(), ends.tolist())]
 
 
-def _carry_uphill(spokes: Spokes, is_central: Mask, reach: float) -> tuple[Array, Mask]:
-    """The radius (n,) that decides at each spoke, and whether (n,) beads there come in pairs only.
+def _carry_uphill(
+    spokes: Spokes, is_central: Mask, reach: float
+) -> tuple[Array, Mask, Index]:
+    """The radius (n,) that decides at each spoke, whether (n,) beads there come in pairs only, and the
+    spoke (n,) at the summit.
 
     A spoke in a corner follows the greatest circle uphill of it along the axis, its summit. Of several
     summits in a row, which small facets make, a lower one between two higher ones follows the lower of
@@ -292,14 +358,23 @@ def _carry_uphill(spokes: Spokes, is_central: Mask, reach: float) -> tuple[Array
             deciding[inner] = level[uphill[used]]
             summit[inner] = cycle[span[uphill[used]]]
             in_pairs[inner] = whole or not ends_high
-    tops = np.unique(summit[~is_central])
-    for a, b in cKDTree(spokes.middles[tops]).query_pairs(reach) if len(tops) else ():
-        first, second = summit == tops[a], summit == tops[b]
-        either = (first | second) & ~is_central
-        if either.any():
-            deciding[either] = deciding[either].max()
-            in_pairs[either] = in_pairs[either].all()
-    return deciding, in_pairs
+    corner = np.flatnonzero(~is_central)
+    tops, number = np.unique(summit[corner], return_inverse=True)
+    if len(tops):
+        group = _groups(spokes.middles[tops], reach)[number]
+        highest = np.zeros(len(tops))
+        np.maximum.at(highest, group, deciding[corner])
+        has_odd = np.zeros(len(tops), dtype=bool)
+        np.logical_or.at(has_odd, group, ~in_pairs[corner])
+        deciding[corner], in_pairs[corner] = highest[group], ~has_odd[group]
+    return deciding, in_pairs, summit
+
+
+def _groups(points: Array, reach: float) -> Index:
+    """Numbers (n,) of groups of points (n, 2), each within `reach` mm of another of its group."""
+    pairs = cKDTree(points).query_pairs(reach, output_type="ndarray")
+    links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(points), len(points)))
+    return np.asarray(connected_components(links, directed=False)[1], dtype=np.intp)
 
 
 def _summits(values: Array) -> tuple[Array, Index]:
@@ -331,7 +406,7 @@ def _rings(
     law: BeadLaw,
 ) -> list[PlaneCurve]:
     """The closed beads of a pair: along the border where it has the pair, and back on the other side
-    where it ends. Writes the depths and shares that they have in the end to `depths` and `shares`.
+    where it ends.
     """
     is_valid = has_pair & (depths <= spokes.radii + SAME * law.spacing)
     runs: list[tuple[_Crossing | None, Index, _Crossing | None]] = []
@@ -348,7 +423,7 @@ def _rings(
     curves = []
     for chain in _chains([(entry, leave) for entry, _, leave in runs], law.spacing):
         points, chain_shares = _trace(
-            spokes, [runs[number] for number in chain], thickness.counts, depths, shares, beads, law
+            spokes, [runs[number] for number in chain], depths, shares, beads, law
         )
         if len(points) > 2:
             curves.append(PlaneCurve(points, True, "contour", pair, share=chain_shares))
@@ -449,7 +524,6 @@ def _match(leaves: Array, entries: Array, spacing: float) -> Index:
 def _trace(
     spokes: Spokes,
     runs: Sequence[tuple[_Crossing | None, Index, _Crossing | None]],
-    counts: Index,
     depths: Array,
     shares: Array,
     beads: Beads,
@@ -469,24 +543,6 @@ def _trace(
             )
         )
         parts += [_of_crossing(leave)] if leave is not None else []
-    count = np.concatenate(
-        [
-            counts[
-                np.r_[
-                    members[:1] if entry is not None else [],
-                    members,
-                    members[-1:] if leave is not None else [],
-                ].astype(np.intp)
-            ]
-            for entry, members, leave in runs
-        ]
-    )
-    numbers = np.concatenate(
-        [
-            np.r_[[-1] if entry is not None else [], members, [-1] if leave is not None else []]
-            for entry, members, leave in runs
-        ]
-    ).astype(np.intp)
     feet, directions, radii, depth, share = (
         np.concatenate(columns) for columns in zip(*parts)
     )
@@ -496,16 +552,9 @@ def _trace(
     feet, directions, radii, depth, share = (
         column[is_kept] for column in (feet, directions, radii, depth, share)
     )
-    points, numbers, count = points[is_kept], numbers[is_kept], count[is_kept]
+    points = points[is_kept]
     if len(points) < 3:
         return points, None
-    if np.ptp(count) > 0:
-        depth, share = (
-            _ramp_jumps(points, values, count, RAMP * law.spacing) for values in (depth, share)
-        )
-        depths[numbers[numbers >= 0]] = depth[numbers >= 0]
-        shares[numbers[numbers >= 0]] = share[numbers >= 0]
-        points = feet + np.minimum(depth, radii)[:, None] * directions
     return _thinned(points, share, True, beads)
 
 
@@ -517,21 +566,6 @@ def _of_crossing(crossing: _Crossing) -> tuple[Array, Array, Array, Array, Array
         np.array([crossing.depth]),
         np.array([crossing.share]),
     )
-
-
-def _ramp_jumps(points: Array, values: Array, counts: Index, reach: float) -> Array:
-    """Values (n,) at the points (n, 2) of a ring, whose jumps where the number of beads changes are
-    spread over `reach` mm to either side.
-    """
-    jumps = np.flatnonzero(counts != np.roll(counts, -1))
-    arc = arcs(points, True)
-    total = float(arc[-1])
-    reach = min(reach, 0.25 * total)
-    middles = 0.5 * (arc[jumps] + arc[jumps + 1])
-    heights = np.roll(values, -1)[jumps] - values[jumps]
-    ahead = (arc[:-1, None] - middles + 0.5 * total) % total - 0.5 * total
-    ramp = 0.5 * np.clip(1.0 - np.abs(ahead) / reach, 0.0, None) * -np.sign(ahead)
-    return np.asarray(values + ramp @ heights)
 
 
 def _thinned(
@@ -609,7 +643,7 @@ def _middle_pieces(
             for neighbour, member, last in ((before, members[0], False), (after, members[-1], True)):
                 goes_on = bool(thickness.is_central[neighbour] and is_first_side[neighbour])
                 has_more = bool(counts[neighbour] // 2 > counts[member] // 2)
-                meets.append(goes_on and has_more)
+                meets.append(has_more)
                 if goes_on:
                     share = _share_of_end(thickness, member, neighbour, law, shares)
                     end = middles[member] + share * (middles[neighbour] - middles[member])
