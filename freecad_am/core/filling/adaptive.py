@@ -38,6 +38,8 @@ MOUTH = 0.35  # of the spacing; how far inside a thick place its beads turn befo
 SHARE_TOLERANCE = 0.02  # of the usual width; shares within this of a straight line need no point
 SAME = 1e-9  # of the spacing
 SHORTEST_PIECE = 0.1  # of the spacing; shorter pieces of the axis are ends of branches into corners
+CAP = 0.8  # of the radius of a bead's round end that is kept off the bead that it ends on
+MEET = 0.8  # of the usual width; about as wide are beads that others end on
 JOINT = 1.3  # steps; ends of middle beads that near to each other meet
 
 
@@ -143,7 +145,11 @@ class _Thickness(NamedTuple):
         """As `BeadLaw.depths` for all spokes (n,), without jumps where the number of beads changes."""
         depths, shares = law.depths(pair, self.counts, self.radii)
         ramped_depths, ramped_shares = depths.copy(), shares.copy()
+        total = np.zeros(len(depths))
+        for spokes, _, _, weights in self.transitions:
+            np.add.at(total, spokes, weights)
         for spokes, low, high, weights in self.transitions:
+            weights = weights / np.maximum(total[spokes], 1.0)
             if self.counts[low] >= 2 * pair + 2:
                 ramped_depths[spokes] += weights * (depths[high] - depths[low])
                 ramped_shares[spokes] += weights * (shares[high] - shares[low])
@@ -236,14 +242,17 @@ def _thickness(spokes: Spokes, law: BeadLaw) -> _Thickness:
     _level_short_changes(
         counts, even, distance, following, is_central, SHORT_CHANGE * law.spacing
     )
+    follows = ~is_central & is_central[summit]
+    counts[follows], deciding[follows] = counts[summit[follows]], deciding[summit[follows]]
     transitions = _transitions(
-        counts, distance, following, is_central, summit, RAMP * law.spacing
+        counts, deciding, distance, following, is_central, summit, RAMP * law.spacing
     )
     return _Thickness(deciding, counts, is_central, transitions)
 
 
 def _transitions(
     counts: Index,
+    deciding: Array,
     distance: Array,
     following: Index,
     is_central: Mask,
@@ -260,12 +269,17 @@ def _transitions(
                 run = np.r_[run[0] - 1, run, (run[-1] + 1) % len(cycle)]
             members = cycle[run]
             arc = np.r_[0.0, np.cumsum(distance[members[:-1]])]
-            for k in np.flatnonzero(np.diff(counts[members])).tolist():
-                falls = counts[members[k]] > counts[members[k + 1]]
+            jumps = np.diff(counts[members]) != 0
+            jumps |= ~is_central[members[1:]] | ~is_central[members[:-1]]
+            for k in np.flatnonzero(jumps).tolist():
+                here, ahead_ = ((counts[j], deciding[j]) for j in members[k : k + 2])
+                falls = here > ahead_
                 low, high = members[[k + 1, k] if falls else [k, k + 1]].tolist()
                 ahead = arc - arc[k + 1] if falls else arc[k] - arc
-                near = is_central[members] & (ahead >= 0.0) & (ahead < reach)
-                spokes, weights = members[near], 1.0 - ahead[near] / reach
+                length_of_few = _stretch_length(counts[members], arc, k if not falls else k + 1)
+                ramp = min(reach, 0.5 * length_of_few)
+                near = is_central[members] & (ahead >= 0.0) & (ahead < ramp)
+                spokes, weights = members[near], 1.0 - ahead[near] / max(ramp, 1e-300)
                 corner = np.flatnonzero(~is_central & np.isin(summit, spokes))
                 order = np.argsort(spokes)
                 source = order[np.searchsorted(spokes[order], summit[corner])]
@@ -288,14 +302,27 @@ def _level_short_changes(
             members = cycle[run]
             cuts = np.flatnonzero(np.diff(counts[members])) + 1
             stretches = np.split(members, cuts)
-            for before, stretch, after in zip(stretches, stretches[1:], stretches[2:]):
-                low, here, high = (int(counts[part[0]]) for part in (before, stretch, after))
+            for number, stretch in enumerate(stretches):
                 if distance[stretch].sum() >= shortest:
                     continue
+                here = int(counts[stretch[0]])
+                low, high = (
+                    int(counts[stretches[beside][0]]) if 0 <= beside < len(stretches) else here
+                    for beside in (number - 1, number + 1)
+                )
                 if (here - low) * (here - high) > 0:
                     counts[stretch] = min(low, high) if here < low else max(low, high)
-                elif here % 2 == 1 and here > 1:
+                elif here % 2 == 1 and here > 1 and len(stretches) > 1:
                     counts[stretch] = even[stretch]
+
+
+def _stretch_length(counts: Index, arc: Array, member: int) -> float:
+    """How long (mm) the stretch of the axis is that has as many beads as a member of it."""
+    changes = np.flatnonzero(counts != counts[member])
+    before, after = changes[changes < member], changes[changes > member]
+    start = before[-1] + 1 if len(before) else 0
+    end = after[0] - 1 if len(after) else len(counts) - 1
+    return float(arc[end] - arc[start])
 
 
 def _in_short_runs(is_level: Mask, distance: Array, following: Index, shortest: float) -> Mask:
@@ -367,6 +394,11 @@ def _carry_uphill(
         has_odd = np.zeros(len(tops), dtype=bool)
         np.logical_or.at(has_odd, group, ~in_pairs[corner])
         deciding[corner], in_pairs[corner] = highest[group], ~has_odd[group]
+        central = np.flatnonzero(is_central)
+        if len(central):
+            away, nearest_ = cKDTree(spokes.middles[central]).query(spokes.middles[summit[corner]])
+            near = away < reach
+            summit[corner[near]] = central[nearest_[near]]
     return deciding, in_pairs, summit
 
 
@@ -615,7 +647,9 @@ def _centres(
     for points, closed_shares in closed:
         thin_points, thin_shares = _thinned(points, closed_shares, True, beads)
         curves.append(PlaneCurve(thin_points, True, "centre", 0, share=thin_shares))
-    for piece in _join_middles(pieces, JOINT * STEP * law.spacing, law):
+    for piece in _join_middles(
+        pieces, JOINT * STEP * law.spacing, law, beads.shortest
+    ):
         if len(piece.points) < 2 or length(piece.points, False) < SAME * law.spacing:
             continue
         thin_points, thin_shares = _thinned(piece.points, piece.shares, False, beads)
@@ -668,7 +702,9 @@ def _share_of_end(
     return min(max((float(shares[inside]) - law.narrowest) / max(fall, 1e-300), 0.0), 1.0)
 
 
-def _join_middles(pieces: list[_Middle], reach: float, law: BeadLaw) -> list[_Middle]:
+def _join_middles(
+    pieces: list[_Middle], reach: float, law: BeadLaw, shortest: float
+) -> list[_Middle]:
     """Pieces joined where they meet, the straightest pair of several; ends on other beads cut back."""
     least = SHORTEST_PIECE * law.spacing
     joined = [piece for piece in pieces if length(piece.points, False) > least]
@@ -686,7 +722,21 @@ def _join_middles(pieces: list[_Middle], reach: float, law: BeadLaw) -> list[_Mi
     for a, b in pairs.tolist():
         meets[a] |= partner[a] < 0 and partner[b] >= 0
         meets[b] |= partner[b] < 0 and partner[a] >= 0
-    return _walk(joined, partner, meets, law)
+    meets |= (partner < 0) & _on_others(joined, reach)
+    return _walk(joined, partner, meets, law, shortest)
+
+
+def _on_others(pieces: list[_Middle], reach: float) -> Mask:
+    """Which ends of pieces, two each, lie within `reach` mm of the inside of another piece."""
+    points = np.vstack([piece.points[1:-1] for piece in pieces])
+    owner = np.repeat(np.arange(len(pieces)), [len(piece.points) - 2 for piece in pieces])
+    ends = np.array([piece.points[at] for piece in pieces for at in (0, -1)])
+    if not len(points):
+        return np.zeros(len(ends), dtype=bool)
+    near = cKDTree(points).query_ball_point(ends, reach)
+    return np.array(
+        [bool((owner[numbers] != end // 2).any()) for end, numbers in enumerate(near)]
+    )
 
 
 def _outward(points: Array, at: int) -> Array:
@@ -697,7 +747,9 @@ def _outward(points: Array, at: int) -> Array:
     return np.asarray(out / max(float(np.hypot(*out)), 1e-300))
 
 
-def _walk(pieces: list[_Middle], partner: Index, meets: Mask, law: BeadLaw) -> list[_Middle]:
+def _walk(
+    pieces: list[_Middle], partner: Index, meets: Mask, law: BeadLaw, shortest: float
+) -> list[_Middle]:
     """Chains of pieces from open end to open end, and those that close."""
     is_left = np.ones(len(pieces), dtype=bool)
     starts = [end for end in range(2 * len(pieces)) if partner[end] < 0]
@@ -721,17 +773,20 @@ def _walk(pieces: list[_Middle], partner: Index, meets: Mask, law: BeadLaw) -> l
         chain = _Middle(
             np.vstack(points), np.concatenate(shares), (bool(meets[start]), bool(meets[far]))
         )
-        chains.append(_cut_back(chain, law))
+        chains.append(_cut_back(chain, law, shortest))
     return chains
 
 
-def _cut_back(piece: _Middle, law: BeadLaw) -> _Middle:
-    """A piece without its ends that lie on other beads."""
+def _cut_back(piece: _Middle, law: BeadLaw, shortest: float) -> _Middle:
+    """A piece without its ends that lie on other beads; `shortest` mm remain."""
     points, shares = piece.points, piece.shares
     for turned in range(2):
         if piece.meets[turned]:
             points, shares = points[::-1], shares[::-1]
-            points, shares = _shortened(points, shares, 0.5 * law.spacing * float(shares[-1]))
+            radius = 0.5 * law.spacing * float(shares[-1])
+            excess = length(points, False) - shortest
+            back = min(CAP * radius + 0.5 * law.spacing * MEET, max(excess, 0.0))
+            points, shares = _shortened(points, shares, back)
             points, shares = points[::-1], shares[::-1]
         points, shares = points[::-1], shares[::-1]
     return piece._replace(points=points, shares=shares)
