@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -22,12 +22,13 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.plane_curve import arcs, length
-from ..geometry.regions.region import Region, regions, select_significant, simplified
+from ..geometry.regions.region import Region, along, regions, select_significant, simplified
 from ..geometry.regions.spokes import Spokes, find_spokes
 from ..types import Array, Index, Mask
 from .centre import Beads, PlaneCurve, dot, long_enough, start_curve
 
-MAX_WEDGE = math.radians(86.0)  # sides of a wedge that opens more belong to a corner
+MAX_WEDGE = math.radians(60.0)  # sides of a wedge that opens more belong to a corner
+GAP_WEDGE = math.radians(120.0)  # the same in a gap between beads
 STEP = 0.5  # of the spacing, between spokes
 RADIUS_TOLERANCE = 0.01  # of the spacing
 SHORTEST_CENTRE = 1.0  # of the spacing; where the axis of a thick place is shorter, pairs fill it
@@ -38,7 +39,7 @@ MOUTH = 0.35  # of the spacing; how far inside a thick place its beads turn befo
 SHARE_TOLERANCE = 0.02  # of the usual width; shares within this of a straight line need no point
 SAME = 1e-9  # of the spacing
 SHORTEST_PIECE = 0.1  # of the spacing; shorter pieces of the axis are ends of branches into corners
-CAP = 0.8  # of the radius of a bead's round end that is kept off the bead that it ends on
+CAP = 0.4  # of the radius of a bead's round end that is kept off the bead that it ends on
 MEET = 0.8  # of the usual width; about as wide are beads that others end on
 JOINT = 1.3  # steps; ends of middle beads that near to each other meet
 
@@ -177,6 +178,44 @@ class Adaptive(NamedTuple):
 
 
 def adapt_contours(region: Region, beads: Beads, law: BeadLaw, walls: float) -> Adaptive:
+    """Fill a region with contours, with beads along its middle, and with beads in what these leave open.
+
+    Parameters and returns as of `_adapt`.
+    """
+    curves, interior = _adapt(region, beads, law, walls)
+    if not curves:
+        return Adaptive(curves, interior)
+    bands = _bands(curves, law, beads.chord_error)
+    least = law.narrowest * law.width
+    for gap in region.without([*bands, *interior], wide=least, least_area=least * beads.shortest):
+        middles = _adapt(gap, beads, law, math.inf, GAP_WEDGE, beads.shortest).curves
+        curves += [replace(curve, kind="closing", ring=0) for curve in middles]
+    return Adaptive(curves, interior)
+
+
+def _bands(curves: Sequence[PlaneCurve], law: BeadLaw, chord_error: float) -> tuple[Region, ...]:
+    """What beads cover."""
+    lines, halves = [], []
+    for curve in curves:
+        points, shares = curve.closed_points()
+        if shares is None:
+            lines.append((points, False))
+            halves.append(0.5 * law.width)
+            continue
+        means = 0.5 * (shares[1:] + shares[:-1])
+        lines += [(points[k : k + 2], False) for k in range(len(means))]
+        halves += (0.5 * law.width * means).tolist()
+    return along(lines, np.array(halves), chord_error)
+
+
+def _adapt(
+    region: Region,
+    beads: Beads,
+    law: BeadLaw,
+    walls: float,
+    max_wedge: float = MAX_WEDGE,
+    shortest_centre: float = 0.0,
+) -> Adaptive:
     """Fill a region with contours, and with beads along its middle.
 
     Parameters
@@ -199,7 +238,9 @@ def adapt_contours(region: Region, beads: Beads, law: BeadLaw, walls: float) -> 
         min(max(turn, 0.02), 0.5),
         float(reach),
     )
-    thickness = _thickness(spokes, law)
+    thickness = _thickness(
+        spokes, law, max_wedge, shortest_centre or SHORTEST_CENTRE * law.spacing
+    )
     deepest = int(thickness.counts.max(initial=0)) // 2
     is_thick = thickness.counts > 2.0 * walls + 2.0
     curves: list[PlaneCurve] = []
@@ -223,16 +264,18 @@ def adapt_contours(region: Region, beads: Beads, law: BeadLaw, walls: float) -> 
     return Adaptive(curves, interior)
 
 
-def _thickness(spokes: Spokes, law: BeadLaw) -> _Thickness:
+def _thickness(
+    spokes: Spokes, law: BeadLaw, max_wedge: float, shortest_centre: float
+) -> _Thickness:
     """Carry the thickness of places between two sides into the corners that belong to them."""
     radii, following = spokes.radii, spokes.following
     middles = spokes.middles
     rise = radii[following] - radii
     distance = np.hypot(*(middles[following] - middles).T)
     tiny = SAME * law.spacing
-    is_steep = np.abs(rise) > np.maximum(math.sin(0.5 * MAX_WEDGE) * distance, tiny)
+    is_steep = np.abs(rise) > np.maximum(math.sin(0.5 * max_wedge) * distance, tiny)
     is_level = ~is_steep & (distance > tiny)
-    is_level &= ~_in_short_runs(is_level, distance, following, SHORTEST_CENTRE * law.spacing)
+    is_level &= ~_in_short_runs(is_level, distance, following, shortest_centre)
     is_central = np.zeros(len(radii), dtype=bool)
     is_central[is_level] = True
     is_central[following[is_level]] = True
@@ -784,7 +827,7 @@ def _cut_back(piece: _Middle, law: BeadLaw, shortest: float) -> _Middle:
         if piece.meets[turned]:
             points, shares = points[::-1], shares[::-1]
             radius = 0.5 * law.spacing * float(shares[-1])
-            excess = length(points, False) - shortest
+            excess = length(points, False) - 1.01 * shortest
             back = min(CAP * radius + 0.5 * law.spacing * MEET, max(excess, 0.0))
             points, shares = _shortened(points, shares, back)
             points, shares = points[::-1], shares[::-1]
