@@ -25,13 +25,17 @@ from ..geometry.curves.plane_curve import arcs, length
 from ..geometry.regions.region import Region, along, regions, select_significant, simplified
 from ..geometry.regions.spokes import Spokes, find_spokes
 from ..types import Array, Index, Mask
-from .centre import Beads, PlaneCurve, dot, long_enough, start_curve
+from .centre import Beads, PlaneCurve, long_enough, start_curve
 
 MAX_WEDGE = math.radians(60.0)  # sides of a wedge that opens more belong to a corner
 GAP_WEDGE = math.radians(120.0)  # the same in a gap between beads
 STEP = 0.5  # of the spacing, between spokes
 RADIUS_TOLERANCE = 0.01  # of the spacing
 SHORTEST_CENTRE = 1.0  # of the spacing; where the axis of a thick place is shorter, pairs fill it
+FORK_RATIO, FORK = (
+    4.0,
+    0.5,
+)  # times the way along the axis, and of the spacing: a jump that is greater
 SUMMIT = 0.1  # of the spacing; summits that near to each other are one
 SHORT_CHANGE = 2.0  # of the spacing; where another number of beads holds for less, it does not
 RAMP = 1.5  # of the spacing, along a bead, over which its depth changes with the number of beads
@@ -238,9 +242,7 @@ def _adapt(
         min(max(turn, 0.02), 0.5),
         float(reach),
     )
-    thickness = _thickness(
-        spokes, law, max_wedge, shortest_centre or SHORTEST_CENTRE * law.spacing
-    )
+    thickness = _thickness(spokes, law, max_wedge, shortest_centre or SHORTEST_CENTRE * law.spacing)
     deepest = int(thickness.counts.max(initial=0)) // 2
     is_thick = thickness.counts > 2.0 * walls + 2.0
     curves: list[PlaneCurve] = []
@@ -256,9 +258,11 @@ def _adapt(
     if is_thick.any():
         depth = law.usual_radius(1) + (walls - 0.5) * law.spacing if walls else 0.0
         depths = np.full(len(spokes.radii), float(depth))
-        loops = _rings(
-            spokes, thickness, is_thick, depths, np.ones(len(depths)), beads, 0, law
-        ) if walls else []
+        loops = (
+            _rings(spokes, thickness, is_thick, depths, np.ones(len(depths)), beads, 0, law)
+            if walls
+            else []
+        )
         interior = regions([loop.points for loop in loops]) if walls else (region,)
     curves = [start_curve(curve, beads) for curve in long_enough(curves, beads.shortest)]
     return Adaptive(curves, interior)
@@ -275,7 +279,8 @@ def _thickness(
     tiny = SAME * law.spacing
     is_steep = np.abs(rise) > np.maximum(math.sin(0.5 * max_wedge) * distance, tiny)
     is_level = ~is_steep & (distance > tiny)
-    is_level &= ~_in_short_runs(is_level, distance, following, shortest_centre)
+    forks = _forks(spokes, distance, law.spacing)
+    is_level &= ~_in_short_runs(is_level, forks, distance, following, shortest_centre)
     is_central = np.zeros(len(radii), dtype=bool)
     is_central[is_level] = True
     is_central[following[is_level]] = True
@@ -283,7 +288,7 @@ def _thickness(
     counts = law.count_beads(deciding, in_pairs)
     even = law.count_beads(deciding, np.ones(len(radii), dtype=bool))
     _level_short_changes(
-        counts, even, distance, following, is_central, SHORT_CHANGE * law.spacing
+        counts, even, forks, distance, following, is_central, SHORT_CHANGE * law.spacing
     )
     follows = ~is_central & is_central[summit]
     counts[follows], deciding[follows] = counts[summit[follows]], deciding[summit[follows]]
@@ -327,15 +332,19 @@ def _transitions(
                 order = np.argsort(spokes)
                 source = order[np.searchsorted(spokes[order], summit[corner])]
                 transitions.append(
-                    _Transition(
-                        np.r_[spokes, corner], low, high, np.r_[weights, weights[source]]
-                    )
+                    _Transition(np.r_[spokes, corner], low, high, np.r_[weights, weights[source]])
                 )
     return transitions
 
 
 def _level_short_changes(
-    counts: Index, even: Index, distance: Array, following: Index, is_central: Mask, shortest: float
+    counts: Index,
+    even: Index,
+    forks: Mask,
+    distance: Array,
+    following: Index,
+    is_central: Mask,
+    shortest: float,
 ) -> None:
     """Write to `counts` the number of the neighbours where another one holds for less than a length,
     mm, of the axis; and an even number from `even` where an odd one between others does.
@@ -343,20 +352,27 @@ def _level_short_changes(
     for cycle in _cycles(following):
         for run in _runs(is_central[cycle]):
             members = cycle[run]
-            cuts = np.flatnonzero(np.diff(counts[members])) + 1
-            stretches = np.split(members, cuts)
-            for number, stretch in enumerate(stretches):
-                if distance[stretch].sum() >= shortest:
-                    continue
-                here = int(counts[stretch[0]])
-                low, high = (
-                    int(counts[stretches[beside][0]]) if 0 <= beside < len(stretches) else here
-                    for beside in (number - 1, number + 1)
-                )
-                if (here - low) * (here - high) > 0:
-                    counts[stretch] = min(low, high) if here < low else max(low, high)
-                elif here % 2 == 1 and here > 1 and len(stretches) > 1:
-                    counts[stretch] = even[stretch]
+            for branch in np.split(members, np.flatnonzero(forks[members]) + 1):
+                _level_branch(counts, even, distance, branch, shortest)
+
+
+def _level_branch(
+    counts: Index, even: Index, distance: Array, branch: Index, shortest: float
+) -> None:
+    """As `_level_short_changes`, for a branch of the axis between two forks."""
+    stretches = np.split(branch, np.flatnonzero(np.diff(counts[branch])) + 1)
+    for number, stretch in enumerate(stretches):
+        if not len(stretch) or distance[stretch].sum() >= shortest:
+            continue
+        here = int(counts[stretch[0]])
+        low, high = (
+            int(counts[stretches[beside][0]]) if 0 <= beside < len(stretches) else here
+            for beside in (number - 1, number + 1)
+        )
+        if (here - low) * (here - high) > 0:
+            counts[stretch] = min(low, high) if here < low else max(low, high)
+        elif here % 2 == 1 and here > 1 and len(stretches) > 1:
+            counts[stretch] = even[stretch]
 
 
 def _stretch_length(counts: Index, arc: Array, member: int) -> float:
@@ -368,14 +384,23 @@ def _stretch_length(counts: Index, arc: Array, member: int) -> float:
     return float(arc[end] - arc[start])
 
 
-def _in_short_runs(is_level: Mask, distance: Array, following: Index, shortest: float) -> Mask:
-    """Which level stretches of the axis are shorter than a length, mm."""
+def _forks(spokes: Spokes, distance: Array, spacing: float) -> Mask:
+    """After which spokes (n,) the axis forks: the place that the circle touches jumps."""
+    jump = np.hypot(*(spokes.touching[spokes.following] - spokes.touching).T)
+    return np.asarray(np.nan_to_num(jump) > FORK_RATIO * distance + FORK * spacing)
+
+
+def _in_short_runs(
+    is_level: Mask, forks: Mask, distance: Array, following: Index, shortest: float
+) -> Mask:
+    """Which level stretches of the axis, from fork to fork, are shorter than a length, mm."""
     short = np.zeros(len(is_level), dtype=bool)
     for cycle in _cycles(following):
         for run in _runs(is_level[cycle]):
-            members = cycle[run]
-            if distance[members].sum() < shortest:
-                short[members] = True
+            cuts = np.flatnonzero(forks[cycle[run]]) + 1
+            for members in np.split(cycle[run], cuts):
+                if distance[members].sum() < shortest:
+                    short[members] = True
     return short
 
 
@@ -400,9 +425,7 @@ def _runs(mask: Mask) -> list[Index]:
     return [order[a:b] for a, b in zip(starts.tolist(), ends.tolist())]
 
 
-def _carry_uphill(
-    spokes: Spokes, is_central: Mask, reach: float
-) -> tuple[Array, Mask, Index]:
+def _carry_uphill(spokes: Spokes, is_central: Mask, reach: float) -> tuple[Array, Mask, Index]:
     """The radius (n,) that decides at each spoke, whether (n,) beads there come in pairs only, and the
     spoke (n,) at the summit.
 
@@ -429,20 +452,47 @@ def _carry_uphill(
             summit[inner] = cycle[span[uphill[used]]]
             in_pairs[inner] = whole or not ends_high
     corner = np.flatnonzero(~is_central)
-    tops, number = np.unique(summit[corner], return_inverse=True)
-    if len(tops):
-        group = _groups(spokes.middles[tops], reach)[number]
-        highest = np.zeros(len(tops))
-        np.maximum.at(highest, group, deciding[corner])
-        has_odd = np.zeros(len(tops), dtype=bool)
-        np.logical_or.at(has_odd, group, ~in_pairs[corner])
-        deciding[corner], in_pairs[corner] = highest[group], ~has_odd[group]
-        central = np.flatnonzero(is_central)
-        if len(central):
-            away, nearest_ = cKDTree(spokes.middles[central]).query(spokes.middles[summit[corner]])
-            near = away < reach
-            summit[corner[near]] = central[nearest_[near]]
+    if len(corner):
+        summit = _join_summits(spokes, deciding, summit, corner, reach)
+        highest, number = np.unique(summit[corner], return_inverse=True)
+        has_odd = np.zeros(len(highest), dtype=bool)
+        np.logical_or.at(has_odd, number, ~in_pairs[corner])
+        deciding[corner], in_pairs[corner] = deciding[summit[corner]], ~has_odd[number]
     return deciding, in_pairs, summit
+
+
+def _join_summits(
+    spokes: Spokes, deciding: Array, summit: Index, corner: Index, reach: float
+) -> Index:
+    """The summit (n,) of each spoke: one for all within `reach` mm, and a higher one where another
+    stretch of the axis passes there and climbs on.
+    """
+    middles, following = spokes.middles, spokes.following
+    tops, number = np.unique(summit[corner], return_inverse=True)
+    group = _groups(middles[tops], reach)
+    order = np.lexsort((deciding[tops], group))
+    last = np.flatnonzero(np.diff(group[order], append=-1))
+    joined = summit.copy()
+    joined[corner] = tops[order[last]][group][number]
+    lengths = np.hypot(*(middles[following] - middles).T)
+    counts = np.ceil(lengths / reach).astype(np.intp) + 1
+    owners = np.repeat(np.arange(len(counts)), counts)
+    shares = (np.arange(len(owners)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[
+        owners
+    ]
+    points = middles[owners] + shares[:, None] * (middles[following] - middles)[owners]
+    parent = np.arange(len(summit))
+    tops = tops[order[last]]
+    for top, near in zip(tops.tolist(), cKDTree(points).query_ball_point(middles[tops], reach)):
+        passing = np.unique(np.r_[owners[near], following[owners[near]]])
+        is_own = joined[passing] == passing  # between two sides
+        heights = deciding[joined[passing]] + np.where(is_own, 1e-3 * reach, 0.0)
+        highest = joined[passing[np.argmax(heights)]]
+        if heights.max() > deciding[top] * (1.0 + SAME) and highest != top:
+            parent[top] = highest
+    for _ in range(16):
+        parent = parent[parent]
+    return np.asarray(parent[joined])
 
 
 def _groups(points: Array, reach: float) -> Index:
@@ -618,9 +668,7 @@ def _trace(
             )
         )
         parts += [_of_crossing(leave)] if leave is not None else []
-    feet, directions, radii, depth, share = (
-        np.concatenate(columns) for columns in zip(*parts)
-    )
+    feet, directions, radii, depth, share = (np.concatenate(columns) for columns in zip(*parts))
     points = feet + depth[:, None] * directions
     chord = points - np.roll(points, 1, axis=0)
     is_kept = np.hypot(*chord.T) > 1e-6 * law.spacing
@@ -643,9 +691,7 @@ def _of_crossing(crossing: _Crossing) -> tuple[Array, Array, Array, Array, Array
     )
 
 
-def _thinned(
-    points: Array, share: Array, closed: bool, beads: Beads
-) -> tuple[Array, Array | None]:
+def _thinned(points: Array, share: Array, closed: bool, beads: Beads) -> tuple[Array, Array | None]:
     """The points and shares that the tolerances ask for; no shares where all are usual."""
     if closed:
         points = np.vstack([points, points[:1]])
@@ -690,9 +736,7 @@ def _centres(
     for points, closed_shares in closed:
         thin_points, thin_shares = _thinned(points, closed_shares, True, beads)
         curves.append(PlaneCurve(thin_points, True, "centre", 0, share=thin_shares))
-    for piece in _join_middles(
-        pieces, JOINT * STEP * law.spacing, law, beads.shortest
-    ):
+    for piece in _join_middles(pieces, JOINT * STEP * law.spacing, law, beads.shortest):
         if len(piece.points) < 2 or length(piece.points, False) < SAME * law.spacing:
             continue
         thin_points, thin_shares = _thinned(piece.points, piece.shares, False, beads)
@@ -717,7 +761,10 @@ def _middle_pieces(
             before, after = cycle[run[0] - 1], cycle[(run[-1] + 1) % len(cycle)]
             points, widths = middles[members], shares[members]
             meets = []
-            for neighbour, member, last in ((before, members[0], False), (after, members[-1], True)):
+            for neighbour, member, last in (
+                (before, members[0], False),
+                (after, members[-1], True),
+            ):
                 goes_on = bool(thickness.is_central[neighbour] and is_first_side[neighbour])
                 has_more = bool(counts[neighbour] // 2 > counts[member] // 2)
                 meets.append(has_more)
@@ -777,9 +824,7 @@ def _on_others(pieces: list[_Middle], reach: float) -> Mask:
     if not len(points):
         return np.zeros(len(ends), dtype=bool)
     near = cKDTree(points).query_ball_point(ends, reach)
-    return np.array(
-        [bool((owner[numbers] != end // 2).any()) for end, numbers in enumerate(near)]
-    )
+    return np.array([bool((owner[numbers] != end // 2).any()) for end, numbers in enumerate(near)])
 
 
 def _outward(points: Array, at: int) -> Array:

@@ -8,7 +8,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..geometry.curves.plane_curve import arcs, cut_at_length, doubled_area, length, nearest, start_at
+from ..geometry.curves.plane_curve import (
+    arcs,
+    cut_at_length,
+    doubled_area,
+    length,
+    nearest,
+    start_at,
+)
 from ..geometry.regions.medial import spine
 from ..geometry.regions.region import Region, along, simplified
 from ..geometry.regions.several import (

@@ -47,6 +47,8 @@ class Spokes:
         Of the feet along all borders: the number of the edge and the share of it.
     opposite : ndarray, shape (n,)
         Position of the other place that the circle touches; nan where it touches none.
+    touching : ndarray, shape (n, 2)
+        That place, mm.
     """
 
     feet: Array
@@ -55,6 +57,7 @@ class Spokes:
     following: Index
     positions: Array
     opposite: Array
+    touching: Array
 
     @property
     def middles(self) -> Array:
@@ -127,7 +130,14 @@ def find_spokes(region: Region, step: float, tolerance: float, turn: float, cap:
         _following(border, places),
         places.edges + places.shares,
         opposite,
+        _points_at(border, opposite),
     )
+
+
+def _points_at(border: _Border, positions: Array) -> Array:
+    """Places (n, 2) on the border by positions (n,); nan where those are."""
+    edges = np.minimum(np.nan_to_num(positions).astype(np.intp), len(border.starts) - 1)
+    return np.asarray(border.starts[edges] + (positions - edges)[:, None] * border.chords[edges])
 
 
 def _border_of(region: Region) -> _Border:
@@ -166,19 +176,19 @@ def _first_places(border: _Border, step: float, turn: float) -> _Places:
     lengths = np.hypot(*border.chords.T)
     counts = np.maximum(np.ceil(lengths / step - 1e-9), 1.0).astype(np.intp)
     edges = np.repeat(number, counts)
-    shares = (
-        np.arange(len(edges)) - np.repeat(np.cumsum(counts) - counts, counts) + 0.5
-    ) / counts[edges]
+    shares = (np.arange(len(edges)) - np.repeat(np.cumsum(counts) - counts, counts) + 0.5) / counts[
+        edges
+    ]
     is_reflex = border.turns < -SMOOTH_TURN
     fan_counts = np.where(is_reflex, np.ceil(-border.turns / turn).astype(np.intp) + 1, 1)
     corners = np.repeat(number, fan_counts)
     ranks = np.arange(len(corners)) - np.repeat(np.cumsum(fan_counts) - fan_counts, fan_counts)
-    fans = np.where(
-        is_reflex[corners], ranks / np.maximum(fan_counts[corners] - 1, 1), 0.5
-    )
+    fans = np.where(is_reflex[corners], ranks / np.maximum(fan_counts[corners] - 1, 1), 0.5)
     return _ordered(
         _Places(
-            np.r_[edges, corners], np.r_[shares, np.zeros(len(corners))], np.r_[0.5 + 0 * shares, fans]
+            np.r_[edges, corners],
+            np.r_[shares, np.zeros(len(corners))],
+            np.r_[0.5 + 0 * shares, fans],
         )
     )
 
@@ -219,9 +229,7 @@ def _rotated(vectors: Array, angles: Array) -> Array:
     )
 
 
-def _measure(
-    border: _Border, pieces: _Pieces, places: _Places, cap: float
-) -> tuple[Array, Array]:
+def _measure(border: _Border, pieces: _Pieces, places: _Places, cap: float) -> tuple[Array, Array]:
     """Radii (n,) mm of the circles, and positions (n,) where they touch the border again."""
     feet, directions = _locate(border, places)
     radii = np.full(len(feet), float(cap))
@@ -253,9 +261,7 @@ def _measure(
     return radii, opposite
 
 
-def _nearest_border(
-    border: _Border, pieces: _Pieces, points: Array
-) -> tuple[Array, Array, Index]:
+def _nearest_border(border: _Border, pieces: _Pieces, points: Array) -> tuple[Array, Array, Index]:
     """Places (n, k, 2) on the pieces of the border about nearest to points (n, 2), their
     positions (n, k) and edges (n, k).
     """
