@@ -37,13 +37,14 @@ FORK_RATIO, FORK = (
     0.5,
 )  # times the way along the axis, and of the spacing: a jump that is greater
 SUMMIT = 0.1  # of the spacing; summits that near to each other are one
+BRIDGE = 0.99  # of the radius at its ends; where a stretch gets narrower it runs into a corner
 SHORT_CHANGE = 2.0  # of the spacing; where another number of beads holds for less, it does not
 RAMP = 1.5  # of the spacing, along a bead, over which its depth changes with the number of beads
 MOUTH = 0.35  # of the spacing; how far inside a thick place its beads turn before a thin one
 SHARE_TOLERANCE = 0.02  # of the usual width; shares within this of a straight line need no point
 SAME = 1e-9  # of the spacing
 SHORTEST_PIECE = 0.1  # of the spacing; shorter pieces of the axis are ends of branches into corners
-CAP = 0.4  # of the radius of a bead's round end that is kept off the bead that it ends on
+CAP = 0.7  # of the radius of a bead's round end that is kept off the bead that it ends on
 MEET = 0.8  # of the usual width; about as wide are beads that others end on
 JOINT = 1.3  # steps; ends of middle beads that near to each other meet
 
@@ -217,7 +218,7 @@ def _adapt(
     beads: Beads,
     law: BeadLaw,
     walls: float,
-    max_wedge: float = MAX_WEDGE,
+    max_wedge: float = 0.0,
     shortest_centre: float = 0.0,
 ) -> Adaptive:
     """Fill a region with contours, and with beads along its middle.
@@ -242,7 +243,7 @@ def _adapt(
         min(max(turn, 0.02), 0.5),
         float(reach),
     )
-    thickness = _thickness(spokes, law, max_wedge, shortest_centre or SHORTEST_CENTRE * law.spacing)
+    thickness = _thickness(spokes, law, max_wedge or MAX_WEDGE, shortest_centre or SHORTEST_CENTRE * law.spacing)
     deepest = int(thickness.counts.max(initial=0)) // 2
     is_thick = thickness.counts > 2.0 * walls + 2.0
     curves: list[PlaneCurve] = []
@@ -290,6 +291,7 @@ def _thickness(
     _level_short_changes(
         counts, even, forks, distance, following, is_central, SHORT_CHANGE * law.spacing
     )
+    _bridge(radii, counts, distance, following, is_central, SHORT_CHANGE * law.spacing)
     follows = ~is_central & is_central[summit]
     counts[follows], deciding[follows] = counts[summit[follows]], deciding[summit[follows]]
     transitions = _transitions(
@@ -382,6 +384,25 @@ def _stretch_length(counts: Index, arc: Array, member: int) -> float:
     start = before[-1] + 1 if len(before) else 0
     end = after[0] - 1 if len(after) else len(counts) - 1
     return float(arc[end] - arc[start])
+
+
+def _bridge(
+    radii: Array, counts: Index, distance: Array, following: Index, is_central: Mask, longest: float
+) -> None:
+    """Mark short stretches between two places between sides, as where ribs cross, that run into no
+    corner.
+    """
+    for cycle in _cycles(following):
+        for run in _runs(~is_central[cycle]):
+            if len(run) == len(cycle):
+                continue
+            ends = cycle[[run[0] - 1, (run[-1] + 1) % len(cycle)]]
+            members = cycle[run]
+            is_corner = radii[members].min() < BRIDGE * radii[ends].min()
+            is_short = distance[np.r_[ends[0], members]].sum() < longest
+            if is_short and not is_corner and counts[ends[0]] == counts[ends[1]] < 3:
+                is_central[members] = True
+                counts[members] = counts[ends[0]]
 
 
 def _forks(spokes: Spokes, distance: Array, spacing: float) -> Mask:
