@@ -190,26 +190,28 @@ def adapt_contours(region: Region, beads: Beads, law: BeadLaw, walls: float) -> 
     curves, interior = _adapt(region, beads, law, walls)
     if not curves:
         return Adaptive(curves, interior)
-    bands = _bands(curves, law, beads.chord_error)
     least = law.narrowest * law.width
-    for gap in region.without([*bands, *interior], wide=least, least_area=least * beads.shortest):
+    bands = [*covered_regions(curves, law.width, beads.chord_error), *interior]
+    for gap in region.without(bands, wide=least, least_area=least * beads.shortest):
         middles = _adapt(gap, beads, law, math.inf, GAP_WEDGE, beads.shortest).curves
         curves += [replace(curve, kind="closing", ring=0) for curve in middles]
     return Adaptive(curves, interior)
 
 
-def _bands(curves: Sequence[PlaneCurve], law: BeadLaw, chord_error: float) -> tuple[Region, ...]:
-    """What beads cover."""
+def covered_regions(
+    curves: Sequence[PlaneCurve], width: float, chord_error: float
+) -> tuple[Region, ...]:
+    """What beads of a usual width, mm, cover with the shares that they have."""
     lines, halves = [], []
     for curve in curves:
         points, shares = curve.closed_points()
         if shares is None:
             lines.append((points, False))
-            halves.append(0.5 * law.width)
+            halves.append(0.5 * width)
             continue
         means = 0.5 * (shares[1:] + shares[:-1])
         lines += [(points[k : k + 2], False) for k in range(len(means))]
-        halves += (0.5 * law.width * means).tolist()
+        halves += (0.5 * width * means).tolist()
     return along(lines, np.array(halves), chord_error)
 
 
@@ -234,7 +236,7 @@ def _adapt(
     walls : float
         Number of contours round thick places, whose inside is left; infinity fills them.
     """
-    reach = law.usual_radius(2.0 * walls + 3.0) if math.isfinite(walls) else region.extent
+    reach = law.usual_radius(int(2.0 * walls) + 3) if math.isfinite(walls) else region.extent
     turn = 2.0 * math.acos(max(1.0 - beads.chord_error / max(float(reach), beads.chord_error), 0.0))
     spokes = find_spokes(
         region,
@@ -243,7 +245,9 @@ def _adapt(
         min(max(turn, 0.02), 0.5),
         float(reach),
     )
-    thickness = _thickness(spokes, law, max_wedge or MAX_WEDGE, shortest_centre or SHORTEST_CENTRE * law.spacing)
+    thickness = _thickness(
+        spokes, law, max_wedge or MAX_WEDGE, shortest_centre or SHORTEST_CENTRE * law.spacing
+    )
     deepest = int(thickness.counts.max(initial=0)) // 2
     is_thick = thickness.counts > 2.0 * walls + 2.0
     curves: list[PlaneCurve] = []

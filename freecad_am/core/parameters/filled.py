@@ -216,6 +216,22 @@ class FilledParameters(LayerParameters):
         high=1.0,
         advanced=True,
     )
+    widths: str = f.parameter(
+        "adaptive",
+        f.CHOICE,
+        "Width of contours in planes: it follows the thickness of the region where that covers "
+        "the region better (adaptive), or is the usual width between beads (fixed).",
+        choices=("adaptive", "fixed"),
+        advanced=True,
+    )
+    widest: float = f.parameter(
+        1.5,
+        f.RATIO,
+        "Greatest width of adaptive beads, as a share of their usual width.",
+        low=1.0,
+        high=2.0,
+        advanced=True,
+    )
 
     def __post_init__(self) -> None:
         if self.walls == math.inf:
@@ -261,6 +277,18 @@ class FilledParameters(LayerParameters):
     def share_of_cut(self) -> float:
         """How many layer heights above the surface of a layer the part is cut."""
         return 0.0
+
+    @property
+    def adapts_widths(self) -> bool:
+        """Whether the widths of contours may follow the thickness of a region."""
+        return (
+            self.widths == "adaptive"
+            and self.narrowest < 1.0
+            and self.spacing_range == (1.0, 1.0)
+            and self.thin == "single"
+            and self.fill_density == 1.0
+            and (self.fill == "contours" or self.rounds == math.inf)
+        )
 
     @property
     def thick(self) -> int:

@@ -11,6 +11,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from ...filling.adaptive import BeadLaw, adapt_contours, covered_regions
 from ...filling.centre import OVER, Beads, PlaneCurve, bare_parts
 from ...filling.cover import Cover, measure_cover, total
 from ...filling.fill import Gaps, fill, open_places
@@ -37,6 +38,8 @@ MOST_FED = 1.5  # of the room in a layer; beads that overlap by a third
 USUAL_SPACING = (
     0.738  # of a width, at which the surface between beads is flat (Ding, Pan, Cuiuri, Li 2015)
 )
+WELL_COVERED = 0.02  # of a region; where beads of the usual width miss or repeat less, they stay
+BETTER = 0.8  # of the faults of beads of the usual width; others must have fewer to be used
 OVERLAP_SHARE = 0.03  # of a region, deposited over its other beads
 FULL_RANGE = (1.0, 1.0)  # widths that all beads have
 
@@ -265,11 +268,45 @@ class Pictures:
                 curves, filling.beads, angle, strategy.narrowest
             )  # no wider than their room, and centred in it
             cover = measure_cover(region, curves, filling.beads)
+        if strategy.adapts_widths and flat and isinstance(region, Region):
+            adapted = _adapt_widths(region, curves, cover, filling.beads, strategy)
+            curves, cover, gaps = adapted or (curves, cover, gaps)
         bare = [] if sparse or not isinstance(region, Region) else bare_parts(region, curves, beads)
         bare_places = [
             Bare(bare_part.area, bare_part.width, bare_part.inside()) for bare_part, _ in bare
         ]
         return _Picture(region, filling, curves, gaps, cover, bare_places)
+
+
+def _adapt_widths(
+    region: Region,
+    curves: Sequence[PlaneCurve],
+    cover: Cover,
+    beads: Beads,
+    strategy: FilledParameters,
+) -> tuple[Sequence[PlaneCurve], Cover, Gaps] | None:
+    """Contours of adaptive width, their cover and the gaps they leave; None where they cover a region no
+    better than its curves.
+    """
+    fault = _fault(curves, cover, beads)
+    if fault < WELL_COVERED * cover.area:
+        return None
+    law = BeadLaw(2.0 * beads.inset, beads.spacing, strategy.narrowest, strategy.widest)
+    adapted = adapt_contours(region, beads, law, math.inf).curves
+    if not adapted:
+        return None
+    adapted_cover = measure_cover(region, adapted, beads)
+    if _fault(adapted, adapted_cover, beads) > BETTER * fault:
+        return None
+    covered = covered_regions(adapted, law.width, beads.chord_error)
+    gaps = [(gap.inside(), gap.width) for gap in region.without(covered, wide=beads.gap)]
+    return adapted, adapted_cover, [gap for gap in gaps if gap[1] > beads.gap]
+
+
+def _fault(curves: Sequence[PlaneCurve], cover: Cover, beads: Beads) -> float:
+    """Area, mm^2, that beads miss, deposit outside of a region, or deposit twice."""
+    twice = max(cover.over(beads.spacing * math.fsum(map(_weighed, curves))), 0.0)
+    return cover.missed + cover.outside + twice
 
 
 def _no_bead(layer: Slice, bare: Sequence[Bare]) -> Issue:
