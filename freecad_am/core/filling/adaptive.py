@@ -107,7 +107,7 @@ class BeadLaw:
         """The share of the usual width (n,) of the inner beads."""
         room = np.maximum(self._variable_radius(counts), SAME)
         share = 1.0 + (radii - self.usual_radius(counts)) / room
-        return np.clip(share, self.narrowest, self.widest)
+        return np.asarray(np.clip(share, self.narrowest, self.widest))
 
     def depths(self, pair: int, counts: Index, radii: Array) -> tuple[Array, Array]:
         """How deep (n,), mm, the middles of a pair of beads lie, and their share (n,) of the width.
