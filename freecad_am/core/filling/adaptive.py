@@ -81,6 +81,10 @@ class BeadLaw:
         even = 2 + 2 * np.searchsorted(self._limits(pairs, 2), radii, side="right")
         return np.where(in_pairs & (counts > 1), even, counts).astype(np.intp)
 
+    def least_radius(self, count: int) -> float:
+        """Half the thickness, mm, from which on a number of beads lies side by side."""
+        return float(self._limits(np.array([count - 1]), 1)[0])
+
     def _limits(self, counts: Index, step: int) -> Array:
         """Half a thickness (n,), mm, from which on there are more beads than `counts`, by a step."""
         few, many = self.usual_radius(counts), self.usual_radius(counts + step)
@@ -614,19 +618,12 @@ def _crossing(
 
 
 def _share_of_change(thickness: _Thickness, inside: int, outside: int, law: BeadLaw) -> float:
-    """Where between two spokes the number of beads changes, by halving."""
-    low, high = 0.0, 1.0
-    start, end = thickness.radii[inside], thickness.radii[outside]
-    for _ in range(20):
-        middle = 0.5 * (low + high)
-        count = law.count_beads(
-            np.array([start + middle * (end - start)]), np.zeros(1, dtype=bool)
-        )[0]
-        if count // 2 >= thickness.counts[inside] // 2:
-            low = middle
-        else:
-            high = middle
-    return low
+    """Where between two spokes of the axis the pair of the first ends."""
+    start, end = float(thickness.radii[inside]), float(thickness.radii[outside])
+    limit = law.least_radius(int(thickness.counts[inside]) // 2 * 2)
+    if start == end:
+        return 1.0
+    return min(max((start - limit) / (start - end), 0.0), 1.0)
 
 
 def _chains(
