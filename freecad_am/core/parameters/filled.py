@@ -279,6 +279,11 @@ class FilledParameters(LayerParameters):
         return 0.0
 
     @property
+    def has_direction(self) -> bool:
+        """Whether the fill depends on an angle."""
+        return not self.rounds_alone or self.fill_density < 1.0
+
+    @property
     def adapts_widths(self) -> bool:
         """Whether the widths of contours may follow the thickness of a region."""
         return (

@@ -34,6 +34,7 @@ Same = TypeVar("Same", bound=FilledParameters)
 
 TOLERANCE_MM = 1e-6  # mm; regions whose borders are no farther apart are equal
 DEFAULT_WIDTH_MM = ProcessParameters().bead_width  # mm; a width that is other than that was given
+AREA_STEP = 0.01  # mm^2; areas of regions equal within TOLERANCE_MM differ by less
 MOST_FED = 1.5  # of the room in a layer; beads that overlap by a third
 USUAL_SPACING = (
     0.738  # of a width, at which the surface between beads is flat (Ding, Pan, Cuiuri, Li 2015)
@@ -83,6 +84,20 @@ class _Picture(NamedTuple):
     bare: list[Bare]
 
 
+class _Outline(NamedTuple):
+    """What equal regions have in common: the numbers of points of their borders, and their area, in
+    steps of AREA_STEP.
+    """
+
+    point_counts: tuple[int, ...]
+    area_steps: int
+
+
+def _outline(region: Region) -> _Outline:
+    counts = tuple(sorted(len(border) for border in region.borders()))
+    return _Outline(counts, round(region.area / AREA_STEP))
+
+
 class Pictures:
     """Fills layers. Solids that differ by a turn about the hub's axis have equal regions up to rounding: the beads of the first
     serve for all within TOLERANCE_MM.
@@ -95,7 +110,9 @@ class Pictures:
         self._strategy = strategy
         self._process = process
         self._width = width
-        self._pictures: defaultdict[Period | None, list[_Picture]] = defaultdict(list)
+        self._pictures: defaultdict[tuple[Period | None, _Outline], list[_Picture]] = (
+            defaultdict(list)
+        )
 
     def filled(self, layer: Slice, name: str) -> Filled:
         """The beads of a layer, with a name for messages; every other curve is reversed if directions of closed ones alternate, or
@@ -224,14 +241,19 @@ class Pictures:
             return self._fill_region(
                 region, filling._replace(infill=Infill()) if layer.buried == () else filling, flat
             )
-        for picture in self._pictures[layer.surface.period]:
-            assert isinstance(picture.region, Region)
-            if _same(picture.filling, filling) and _equal(
-                picture.region.borders(), region.borders()
-            ):
-                return picture
-        self._pictures[layer.surface.period].append(self._fill_region(region, filling, flat))
-        return self._pictures[layer.surface.period][-1]
+        period, outline = layer.surface.period, _outline(region)
+        has_direction = self._strategy.has_direction
+        for step in (0, -1, 1):  # equal regions may be on either side of a step of area
+            similar = outline._replace(area_steps=outline.area_steps + step)
+            for picture in self._pictures.get((period, similar), ()):
+                assert isinstance(picture.region, Region)
+                if _same(picture.filling, filling, has_direction) and _equal(
+                    picture.region.borders(), region.borders()
+                ):
+                    return picture
+        picture = self._fill_region(region, filling, flat)
+        self._pictures[period, outline].append(picture)
+        return picture
 
     def _fill_region(self, region: Region | Strip, filling: _Filling, flat: bool) -> _Picture:
         """Fill a region; open places are not reported if room is left on purpose. flat: no curve goes round the surface."""
@@ -471,10 +493,11 @@ def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> l
     ]
 
 
-def _same(filling: _Filling, other_filling: _Filling) -> bool:
-    """Whether equal regions are filled in the same way."""
+def _same(filling: _Filling, other_filling: _Filling, has_direction: bool) -> bool:
+    """Whether equal regions are filled in the same way. has_direction: whether the angle matters."""
+    between = filling.angle - other_filling.angle if has_direction else 0.0
     turned = max(
-        abs(filling.angle - other_filling.angle),
+        abs(math.remainder(between, 2.0 * math.pi)),
         np.abs(np.subtract(filling.beads.start, other_filling.beads.start)).max(),
     )
     if turned >= 1e-9 or filling.beads.spread != other_filling.beads.spread:
