@@ -304,6 +304,11 @@
         <translation>G-code : mouvements à déposer : part, all, ou des groupes et types du trancheur, séparés par des virgules, comme part, support. Jupe, bordure, radeau, support, tours, lissage et lignes de purge ne font pas partie de part.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Greatest width of adaptive beads, as a share of their usual width. (%)</source>
+        <translation>Largeur maximale des cordons adaptatifs, en part de leur largeur habituelle. (%)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Group output, H word, register or analogue output for it; for KUKA the first of eight outputs.</source>
         <translation>Sortie de groupe, mot H, registre ou sortie analogique qui le transmet ; chez KUKA la première de huit sorties.</translation>
@@ -1322,6 +1327,11 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Widest gap allowed between beads, as a share of the bead spacing. (%)</source>
         <translation>Plus large jour qui peut rester ouvert entre les cordons, en part de la distance des cordons. (%)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Width of contours in planes: it follows the thickness of the region where that covers the region better (adaptive), or is the usual width (fixed).</source>
+        <translation>Largeur des contours dans les plans : elle suit l&apos;épaisseur de la région là où cela couvre mieux la région (adaptatif), ou c&apos;est la largeur habituelle (fixe).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -3180,6 +3190,11 @@
         <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Go to {}</source>
         <translation>Aller à {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Greatest width of adaptive beads, as a share of their usual width.</source>
+        <translation>Largeur maximale des cordons adaptatifs, en part de leur largeur habituelle.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -6773,6 +6788,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Widest</source>
+        <translation>Le plus large</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Widest gap allowed between beads, as a share of the bead spacing.</source>
         <translation>Plus large jour qui peut rester ouvert entre les cordons, en part de la distance des cordons.</translation>
     </message>
@@ -6785,6 +6805,11 @@
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Width of beads</source>
         <translation>Largeur des cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Width of contours in planes: it follows the thickness of the region where that covers the region better (adaptive), or is the usual width (fixed).</source>
+        <translation>Largeur des contours dans les plans : elle suit l&apos;épaisseur de la région là où cela couvre mieux la région (adaptatif), ou c&apos;est la largeur habituelle (fixe).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -6800,6 +6825,11 @@
         <location filename="../../freecad_am/objects/inspection.py"/>
         <source>Width of the narrowest zone between two spheres that holds all points.</source>
         <translation>Largeur de la zone la plus étroite entre deux sphères qui contient tous les points.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Widths</source>
+        <translation>Largeurs</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -7460,6 +7490,11 @@
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>acceleration</source>
         <translation>accélération</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>adaptive</source>
+        <translation>adaptatif</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>

@@ -220,7 +220,7 @@ class FilledParameters(LayerParameters):
         "adaptive",
         f.CHOICE,
         "Width of contours in planes: it follows the thickness of the region where that covers "
-        "the region better (adaptive), or is the usual width between beads (fixed).",
+        "the region better (adaptive), or is the usual width (fixed).",
         choices=("adaptive", "fixed"),
         advanced=True,
     )

@@ -21,7 +21,7 @@ from scipy.spatial import cKDTree
 from ...types import Array, Index, Mask
 from .region import Region
 
-NEAREST_PIECES = 8  # whose middles are nearest; among them is the nearest piece of the border
+NEAREST_PIECES = 16  # whose middles are nearest; among them is the nearest piece of the border
 SMOOTH_TURN = 0.3  # rad; a corner that turns less is part of a curve, without an axis of its own
 SAME_PLACE = 1e-9  # of the longest edge
 MAX_SHRINKS = 40

@@ -110,8 +110,8 @@ class Pictures:
         self._strategy = strategy
         self._process = process
         self._width = width
-        self._pictures: defaultdict[tuple[Period | None, _Outline], list[_Picture]] = (
-            defaultdict(list)
+        self._pictures: defaultdict[tuple[Period | None, _Outline], list[_Picture]] = defaultdict(
+            list
         )
 
     def filled(self, layer: Slice, name: str) -> Filled:

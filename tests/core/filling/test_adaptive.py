@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Contours of adaptive width: cover, place, volume and independence of pose, judged by shapely."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from shapely import affinity
+from shapely.geometry import LineString, Point, Polygon, box
+from shapely.geometry.polygon import orient
+from shapely.ops import unary_union
+
+from freecad_am.core.filling.adaptive import BeadLaw, adapt_contours
+from freecad_am.core.filling.centre import Beads
+from freecad_am.core.geometry.regions.region import regions
+from freecad_am.core.geometry.regions.spokes import find_spokes
+
+WIDTH = 4.0  # mm
+LAW = BeadLaw(WIDTH, WIDTH, 0.3, 1.5)
+BEADS = Beads(WIDTH, 0.2 * WIDTH, 2.0, chord_error=0.02)
+
+
+def region_of(shape):
+    shape = orient(shape)
+    loops = [np.array(ring.coords)[:-1] for ring in (shape.exterior, *shape.interiors)]
+    return max(regions(loops), key=lambda region: region.area)
+
+
+def swept(curve):
+    """A bead as the union of short strokes as wide as it is there."""
+    points, shares = curve.closed_points()
+    shares = np.ones(len(points)) if shares is None else shares
+    strokes = []
+    for k in range(len(points) - 1):
+        parts = max(1, int(abs(shares[k + 1] - shares[k]) / 0.02))
+        share = np.linspace(0.0, 1.0, parts + 1)
+        line = points[k] + share[:, None] * (points[k + 1] - points[k])
+        widths = WIDTH * (shares[k] + share * (shares[k + 1] - shares[k]))
+        strokes += [
+            LineString(line[j : j + 2]).buffer(0.25 * (widths[j] + widths[j + 1]), 8)
+            for j in range(parts)
+        ]
+    return unary_union(strokes)
+
+
+def faults(shape):
+    """Shares of a shape that beads miss where the narrowest fits, deposit twice, and deposit outside."""
+    curves = adapt_contours(region_of(shape), BEADS, LAW, math.inf).curves
+    beads = [swept(curve) for curve in curves]
+    union = unary_union(beads)
+    reach = 0.5 * LAW.narrowest * WIDTH + 0.02
+    wide_enough = shape.buffer(-reach).buffer(reach)
+    return (
+        wide_enough.difference(union).area / shape.area,
+        (sum(bead.area for bead in beads) - union.area) / shape.area,
+        union.difference(shape.buffer(0.01)).area / shape.area,
+    )
+
+
+def wall(count, length=60.0):
+    return box(0.0, 0.0, length, count * WIDTH)
+
+
+@pytest.mark.parametrize("count", [0.5, 1.0, 1.3, 1.5, 1.7, 2.0, 2.2, 2.6, 3.1, 3.5, 4.0])
+def test_walls_of_any_thickness_are_covered(count):
+    missed, twice, outside = faults(wall(count))
+    corners = 4 * (1.0 - 0.25 * math.pi) * WIDTH**2  # most that round beads leave in square corners
+    assert missed * wall(count).area < corners
+    assert twice < 0.003
+    assert outside < 0.001
+
+
+def test_a_wall_of_one_and_a_half_beads_gets_two_of_three_quarters():
+    (ring,) = adapt_contours(region_of(wall(1.5)), BEADS, LAW, math.inf).curves
+    assert ring.closed
+    assert ring.share == pytest.approx(0.75, abs=0.01)
+    assert region_of(wall(1.5)).nearest(ring.points)[1] == pytest.approx(1.5, abs=0.01)
+
+
+def test_a_taper_is_followed_to_where_it_is_narrower_than_the_narrowest():
+    length, root = 57.0, 4.0
+    fin = Polygon([(0.0, -0.5 * root), (length, 0.0), (0.0, 0.5 * root)])
+    curves = adapt_contours(region_of(fin), BEADS, LAW, math.inf).curves
+    tip = max(float(curve.points[:, 0].max()) for curve in curves)
+    narrow = length * (1.0 - LAW.narrowest * WIDTH / root)  # as wide as the narrowest there
+    assert narrow - 1.5 < tip < narrow + 1.0
+
+
+SHAPES = {
+    "ring": Point(0, 0).buffer(30, 32).difference(Point(0, 0).buffer(20, 32)),
+    "disc": Point(0, 0).buffer(13, 32),
+    "bracket": Polygon([(0, 0), (60, 0), (60, 12), (14, 12), (14, 50), (0, 50)]),
+    "taper": Polygon([(0, 0), (80, 6), (80, 8), (0, 14)]),
+    "dumbbell": unary_union([box(0, 0, 20, 20), box(20, 7, 45, 12), box(45, 0, 65, 20)]),
+}
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_shapes_are_covered_once(name):
+    missed, twice, outside = faults(SHAPES[name])
+    assert missed < 0.025
+    assert twice < 0.015
+    assert outside < 0.005
+
+
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("turn, mirrored", [(17.0, False), (90.0, False), (211.0, True)])
+def test_beads_move_with_the_shape(name, turn, mirrored):
+    """The same faults, and the same length of beads of the same volume, in another pose."""
+
+    def moved(shape):
+        shape = affinity.scale(shape, xfact=-1.0, origin=(0, 0)) if mirrored else shape
+        return affinity.translate(affinity.rotate(shape, turn, origin=(0, 0)), 123.4, -56.7)
+
+    shape = SHAPES[name]
+    here, there = (
+        adapt_contours(region_of(each), BEADS, LAW, math.inf).curves
+        for each in (shape, moved(shape))
+    )
+    assert len(here) == len(there)
+    covered = moved(unary_union([swept(curve) for curve in here]))
+    covered_there = unary_union([swept(curve) for curve in there])
+    assert covered.symmetric_difference(covered_there).area < 1e-3 * shape.area
+
+
+def random_shape(rng):
+    """Polygons, walls, wedges, strokes as of letters, plates with holes."""
+    kind = rng.integers(0, 5)
+    if kind == 0:
+        angle, radius = np.sort(rng.uniform(0, 2 * np.pi, 9)), rng.uniform(8, 40, 9)
+        shape = Polygon(np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1))
+    elif kind == 1:
+        line = LineString(np.cumsum(rng.normal(0, 18, (3, 2)), axis=0))
+        shape = line.buffer(rng.uniform(0.25, 2.0) * WIDTH, join_style=2, cap_style=2)
+    elif kind == 2:
+        length = rng.uniform(20, 80)
+        ends = rng.uniform(0, 10), rng.uniform(10, 20), rng.uniform(2, 25)
+        shape = Polygon([(0, 0), (length, ends[0]), (length, ends[1]), (0, ends[2])])
+    elif kind == 3:
+        shape = unary_union(
+            [
+                LineString(rng.uniform(0, 50, (2, 2))).buffer(
+                    rng.uniform(0.4, 1.6) * WIDTH, cap_style=2
+                )
+                for _ in range(4)
+            ]
+        )
+    else:
+        holes = [Point(*rng.uniform(5, 60, 2)).buffer(rng.uniform(2, 8)) for _ in range(5)]
+        shape = box(0, 0, 70, 50).difference(unary_union(holes))
+    shape = shape.buffer(0)
+    return max(getattr(shape, "geoms", [shape]), key=lambda part: part.area)
+
+
+def test_random_shapes_are_covered_and_beads_stay_inside():
+    figures = np.array([faults(random_shape(np.random.default_rng(seed))) for seed in range(40)])
+    assert (np.median(figures, axis=0) < (0.02, 0.03, 0.002)).all()
+    assert (np.percentile(figures, 90, axis=0) < (0.03, 0.1, 0.005)).all()
+    assert (figures.max(axis=0) < (0.08, 0.2, 0.02)).all()
+
+
+def test_spokes_reach_the_medial_axis():
+    """The circle about the end of a spoke is empty and touches the border: by distances of shapely."""
+    for seed in range(12):
+        shape = random_shape(np.random.default_rng(seed))
+        spokes = find_spokes(region_of(shape), 2.0, 0.04, 0.3, 1e3)
+        border = shape.boundary
+        distance = np.array([border.distance(Point(*point)) for point in spokes.middles])
+        assert distance == pytest.approx(spokes.radii, abs=0.02 * WIDTH, rel=0.02)
