@@ -1331,7 +1331,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Width of contours in planes: it follows the thickness of the region where that covers the region better (adaptive), or is the usual width (fixed).</source>
-        <translation>Largeur des contours dans les plans : elle suit l&apos;épaisseur de la région là où cela couvre mieux la région (adaptatif), ou c&apos;est la largeur habituelle (fixe).</translation>
+        <translation>Largeur des contours dans les plans : elle suit l&apos;épaisseur de la région là où cela couvre mieux la région (adaptatif), ou c&apos;est la largeur habituelle (fixe).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -6809,7 +6809,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Width of contours in planes: it follows the thickness of the region where that covers the region better (adaptive), or is the usual width (fixed).</source>
-        <translation>Largeur des contours dans les plans : elle suit l&apos;épaisseur de la région là où cela couvre mieux la région (adaptatif), ou c&apos;est la largeur habituelle (fixe).</translation>
+        <translation>Largeur des contours dans les plans : elle suit l&apos;épaisseur de la région là où cela couvre mieux la région (adaptatif), ou c&apos;est la largeur habituelle (fixe).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>

@@ -292,7 +292,7 @@ class FilledParameters(LayerParameters):
             and self.spacing_range == (1.0, 1.0)
             and self.thin == "single"
             and self.fill_density == 1.0
-            and (self.fill == "contours" or self.rounds == math.inf)
+            and (FILLS[self.fill].adapts_widths or self.rounds == math.inf)
         )
 
     @property

@@ -12,16 +12,18 @@ class Fill:
 
     follows_border: beads run along the border everywhere, so that there are no contours around
     them. can_be_sparse: it can fill a share of the area. all_round: the fill in its place in a
-    layer all around a hub, where its beads would have no ends; '' for none.
+    layer all around a hub, where its beads would have no ends; '' for none. adapts_widths: the
+    widths of its contours may follow the thickness of a region.
     """
 
     follows_border: bool = False
+    adapts_widths: bool = False
     can_be_sparse: bool = True
     all_round: str = ""
 
 
 FILLS = {
-    "contours": Fill(follows_border=True),
+    "contours": Fill(follows_border=True, adapts_widths=True),
     "connected": Fill(follows_border=True, can_be_sparse=False, all_round="contours"),
     "lines": Fill(),
     "spiral": Fill(follows_border=True, can_be_sparse=False, all_round="contours"),
