@@ -7872,12 +7872,12 @@
         <translation>l&apos;axe {0} est à {1} deg, où une position cartésienne n&apos;a pas de numéro de tour sûr ; utilisez `motion: joint`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/turns/locked.py"/>
+        <location filename="../../freecad_am/core/planning/turns/directed.py"/>
         <source>axis {0} is locked at {1} deg; the tool is up to {2} deg off the requested direction</source>
         <translation>l&apos;axe {0} est bloqué à {1} deg ; l&apos;outil s&apos;écarte jusqu&apos;à {2} deg de la direction demandée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/turns/locked.py"/>
+        <location filename="../../freecad_am/core/planning/turns/directed.py"/>
         <source>axis {0} is locked at {1} deg; the tool is up to {2} deg off the requested direction, more than joints.max_residual allows ({3} deg); lock the other axis, use another position or none</source>
         <translation>l&apos;axe {0} est bloqué à {1} deg ; l&apos;outil s&apos;écarte jusqu&apos;à {2} deg de la direction demandée, plus que joints.max_residual ne permet ({3} deg) ; bloquez l&apos;autre axe, à une autre position, ou aucun</translation>
     </message>
@@ -11567,7 +11567,7 @@
         <translation>retraits, transferts et approches menés à nouveau, en {0} points distants de {1} mm, contre les corps, le plateau et les cordons avec leur largeur et leur hauteur du moment</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/turns/locked.py"/>
+        <location filename="../../freecad_am/core/planning/turns/directed.py"/>
         <source>robots need all their axes; only five-axis machines can work with four; use none</source>
         <translation>les robots ont besoin de tous leurs axes ; seules les machines à axes rotatifs peuvent se contenter de quatre ; utilisez none</translation>
     </message>
@@ -13852,7 +13852,7 @@
         <translation>theta, d, a et alpha doivent être des nombres ; donnez les quatre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/neighbour.py"/>
+        <location filename="../../freecad_am/interop/export.py"/>
         <source>this FreeCAD has no {0} workbench; install it or {1} instead</source>
         <translation>ce FreeCAD n&apos;a pas d&apos;atelier {0} ; installez-le, ou {1}</translation>
     </message>
