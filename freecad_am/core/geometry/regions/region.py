@@ -343,13 +343,23 @@ def _union(regions: Sequence[Region]) -> Any:
 def join(parts: Sequence[Region], width: float) -> tuple[Region, ...]:
     """Regions of one plane without the slits in and between them that are thinner than `width` mm; the same regions where
     there are none, or only short ones."""
-    shape = shapely().ops.unary_union(
-        [_buffered(part.shape, 0.5 * width, FINE_SLIT * width) for part in parts]
-    )
-    shape = _buffered(shape, -0.5 * width, FINE_SLIT * width)
+    error = FINE_SLIT * width
+    grown = [_buffered(part.shape, 0.5 * width, error) for part in parts]
+    shape = shapely().ops.unary_union(grown)
+    if len(_polygons(shape)) == len(parts) and not any(
+        _has_slit(part.shape, wider, width) for part, wider in zip(parts, grown)
+    ):
+        return tuple(parts)  # rounding of the corners of many parts is no slit
+    shape = _buffered(shape, -0.5 * width, error)
     if sum(part.shape.length for part in parts) - shape.length < LONG_SLIT * width:
         return tuple(parts)
     return _parts(shape, SLIVER * shape.area)
+
+
+def _has_slit(shape: Any, wider: Any, width: float) -> bool:
+    """Whether a polygon has a long slit thinner than `width` mm. wider: the polygon grown by half of that."""
+    closed = _buffered(wider, -0.5 * width, FINE_SLIT * width)
+    return bool(shape.length - closed.length >= LONG_SLIT * width)
 
 
 def _bends(line: Array) -> list[Array]:
