@@ -59,7 +59,7 @@ def frames(saved: str) -> list[dict[str, object]]:
     spin = coin.SbRotation(coin.SbVec3f(0, 0, 1), 0.05)
     plain = Lines()
     view.getSceneGraph().addChild(plain.node)
-    slider = dock._dock.form.to.slider
+    slider = dock.only.dock.form.to.slider
 
     def turn() -> None:
         camera.orientation = spin * camera.orientation.getValue()
@@ -74,7 +74,7 @@ def frames(saved: str) -> list[dict[str, object]]:
             drawing.style(toolpath.ViewObject)
             plain.set(drawing.rows.points, [OF_LAYER] * (count // OF_LAYER))
             plain.paint(colours)
-            dock._dock.fill()
+            dock.only.dock.fill()
             view.viewIsometric()
             view.fitAll()
             settle(0.5)
@@ -91,7 +91,7 @@ def frames(saved: str) -> list[dict[str, object]]:
                 ours += [drawn.after(turn), drawn.after(turn)]
                 last = slider.maximum() - 1 - frame % max(1, slider.maximum() // 4)
                 moved.append(drawn.after(lambda last=last: slider.setValue(last)))
-            dock._dock._show_all()
+            dock.only.dock._show_all()
             for what, took in (
                 (look, ours),
                 ("slider" if look == "lines" else "slider, tubes", moved),

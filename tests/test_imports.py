@@ -171,7 +171,11 @@ FOREIGN = {
     "gui": {"numpy", "FreeCAD", "FreeCADGui", "PySide", "pivy"},
 }
 # single files that may use more
-ALONE = {"core/geometry/regions/region": {"shapely"}, "core/one_thread": {"threadpoolctl"}}
+ALONE = {
+    "core/geometry/regions/region": {"shapely"},
+    "core/one_thread": {"threadpoolctl"},
+    "gui/plots/view": {"matplotlib"},
+}
 
 
 def modules():

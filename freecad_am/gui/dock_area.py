@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 import FreeCAD as App
 import FreeCADGui as Gui
@@ -37,6 +37,23 @@ class Follower:
         if self.target is not None and self.target[0] != document.Name:
             self.target = None
         QtCore.QTimer.singleShot(0, self.fill)
+
+
+D = TypeVar("D")
+
+
+class OnlyDock(Generic[D]):
+    """Holds the only dock of its kind; `dock` is None until it is first opened."""
+
+    def __init__(self, make: Callable[[], D]) -> None:
+        self._make = make
+        self.dock: D | None = None
+
+    def provide(self) -> D:
+        """Return the dock, made at the first call."""
+        if self.dock is None:
+            self.dock = self._make()
+        return self.dock
 
 
 class Shown(Protocol):

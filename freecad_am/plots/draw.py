@@ -105,12 +105,24 @@ class Place:
 def figure(
     charts: Sequence[Chart], look: Look, width: int, height: int, window: Window | None = None
 ) -> tuple[Figure, tuple[Place, ...]]:
-    """Charts one below the other, width times height pixels at 100 to the inch; where they count the same across, only the
-    last one has the numbers. The same charts make the same figure."""
-    window = window or Window()
-    drawing = Figure(
-        figsize=(width / DPI, height / DPI), dpi=DPI, facecolor=look.paper, edgecolor="none"
-    )
+    """Return a figure of width times height pixels at 100 to the inch with the charts, and where
+    their frames are. The same charts make the same figure."""
+    drawing = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, edgecolor="none")
+    return drawing, fill(drawing, charts, look, window or Window())
+
+
+def fill(drawing: Figure, charts: Sequence[Chart], look: Look, window: Window) -> tuple[Place, ...]:
+    """Draw charts one below the other over the whole figure, in the axes that it has, in place of
+    what was drawn there. Where they share x, only the last one has numbers below.
+
+    Animated artists, such as those of matplotlib's cursors, stay.
+    """
+    width, height = (round(float(size) * DPI, 6) for size in drawing.get_size_inches())
+    drawing.set_facecolor(look.paper)
+    for owner in (drawing, *drawing.axes):
+        for artist in [*owner.lines, *owner.patches, *owner.texts]:
+            if not artist.get_animated():
+                artist.remove()
     shared = share(charts)
     across = (
         (min(chart.across()[0] for chart in charts), max(chart.across()[1] for chart in charts))
@@ -145,10 +157,11 @@ def figure(
                 window.up.get(number) or chart.up(),
             ),
         )
-        _Frame(drawing, chart, look, panel, width, height, numbered, numbers[number]).draw()
+        frame = _Frame(drawing, chart, look, panel, width, height, numbered, numbers[number])
+        frame.draw(drawing.axes[number] if number < len(drawing.axes) else None)
         panels.append(panel)
         top += above[number] + tall + (BOTTOM_MARGIN if numbered else BARE_MARGIN)
-    return drawing, tuple(panels)
+    return tuple(panels)
 
 
 def share(charts: Sequence[Chart]) -> bool:
@@ -207,18 +220,25 @@ class _Frame:
     chart: Chart
     look: Look
     panel: Place
-    width: int
-    height: int
+    width: float
+    height: float
     numbered: bool
     layers: bool
 
-    def draw(self) -> None:
+    def draw(self, axes: Any) -> None:
+        """Draw in the given axes; None for new ones."""
         panel = self.panel
         bottom = 1.0 - (panel.top + panel.height) / self.height
-        axes = self.figure.add_axes(
-            (panel.left / self.width, bottom, panel.width / self.width, panel.height / self.height),
-            facecolor="none",
+        box = (
+            panel.left / self.width,
+            bottom,
+            panel.width / self.width,
+            panel.height / self.height,
         )
+        if axes is None:
+            axes = self.figure.add_axes(box, facecolor="none")
+        else:
+            axes.set_position(box)
         axes.set_xlim(*panel.across)
         axes.set_ylim(*panel.up)
         self._scales(axes)

@@ -11,7 +11,6 @@ from html import escape
 
 import matplotlib
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
@@ -118,16 +117,6 @@ def image(figure: Figure, kind: str) -> bytes:
             metadata=_UNDATED[kind],
         )
     return stream.getvalue()
-
-
-def pixels(figure: Figure, ratio: float = 1.0) -> tuple[bytes, int, int]:
-    """The figure as width times height pixels of four bytes, red, green, blue and opacity; ratio:
-    output pixels per pixel of the figure."""
-    figure.set_dpi(ratio * figure.dpi)
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    width, height = canvas.get_width_height()
-    return bytes(canvas.buffer_rgba()), int(width), int(height)
 
 
 def inline(figure: Figure, title: str) -> str:

@@ -2642,11 +2642,6 @@
         <translation>Dessin (*.svg)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/canvas.py"/>
-        <source>Drawing…</source>
-        <translation>Dessin en cours…</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/panels/stage.py"/>
         <source>Driven by the expression {}</source>
         <translation>Mené par l&apos;expression {}</translation>
@@ -4097,6 +4092,11 @@
         <translation>Montage</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/plots/view.py"/>
+        <source>Move the picture by dragging</source>
+        <translation>Déplacer l&apos;image à la souris</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/place.py"/>
         <source>Moves</source>
         <translation>Déplace</translation>
@@ -5207,7 +5207,7 @@
         <translation>Fils en STEP</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <location filename="../../freecad_am/gui/plots/view.py"/>
         <source>Save as an image (PNG, SVG, PDF), or the values (CSV)</source>
         <translation>Enregistrer comme image (PNG, SVG, PDF), ou les valeurs (CSV)</translation>
     </message>
@@ -5242,7 +5242,7 @@
         <translation>Enregistrer le graphique</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Save…</source>
         <translation>Enregistrer…</translation>
     </message>
@@ -5397,7 +5397,7 @@
         <translation>Tout montrer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <location filename="../../freecad_am/gui/plots/view.py"/>
         <source>Show everything, also with a double click</source>
         <translation>Montrer tout ; un double-clic aussi</translation>
     </message>
@@ -5415,6 +5415,16 @@
         <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>Show the machine</source>
         <translation>Montrer la machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/view.py"/>
+        <source>Show the next view</source>
+        <translation>Afficher la vue suivante</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/view.py"/>
+        <source>Show the previous view</source>
+        <translation>Afficher la vue précédente</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/dock.py"/>
@@ -6782,11 +6792,6 @@
         <translation>Quelle paroi d&apos;un solide est déposée ; middle court à mi-chemin entre l&apos;extérieure et l&apos;intérieure.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/dock.py"/>
-        <source>Whole</source>
-        <translation>Tout</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Widest</source>
         <translation>Le plus large</translation>
@@ -6932,19 +6937,9 @@
         <translation>Zéro</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/dock.py"/>
-        <source>Zoom in, also with Ctrl and the wheel</source>
-        <translation>Agrandir ; la molette aussi, avec Ctrl vers le haut et le bas</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/plots/dock.py"/>
-        <source>Zoom into a rectangle drawn with the mouse; otherwise dragging moves the picture</source>
-        <translation>Agrandir un rectangle tracé à la souris ; sinon elle déplace l&apos;image</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/plots/dock.py"/>
-        <source>Zoom out</source>
-        <translation>Réduire</translation>
+        <location filename="../../freecad_am/gui/plots/view.py"/>
+        <source>Zoom into a rectangle; the wheel zooms too, with Ctrl the vertical axis</source>
+        <translation>Agrandir un rectangle ; la molette agrandit aussi, avec Ctrl l&apos;axe vertical</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -10247,7 +10242,7 @@
         <translation>couche {0} point {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/canvas.py"/>
+        <location filename="../../freecad_am/gui/plots/reading.py"/>
         <source>layer {}</source>
         <translation>couche {}</translation>
     </message>
@@ -10347,7 +10342,7 @@
         <translation>limite {0} {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/canvas.py"/>
+        <location filename="../../freecad_am/gui/plots/reading.py"/>
         <source>limits up to {} {}</source>
         <translation>limite {} {}</translation>
     </message>
@@ -10357,7 +10352,7 @@
         <translation>limites {0} à {1} {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/canvas.py"/>
+        <location filename="../../freecad_am/gui/plots/reading.py"/>
         <source>limits {} to {} {}</source>
         <translation>limites {} à {} {}</translation>
     </message>
@@ -17397,7 +17392,7 @@
         <translation>{} : {} est maintenant {}. {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/canvas.py"/>
+        <location filename="../../freecad_am/gui/plots/reading.py"/>
         <source>{}: {} points beyond the limit</source>
         <translation>{} : {} points au-delà de la limite</translation>
     </message>

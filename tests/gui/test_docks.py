@@ -223,7 +223,7 @@ def test_a_click_on_the_map_leaves_it_in_front(person, hand, path):
     person.until(lambda: one.canvas.painted is not None, "the cells", 60)
     hand.click(one.canvas)
     person.until(lambda: path.ViewObject.Proxy.shown is not None, "the path to follow", 5)
-    assert in_front(dock) and not in_front(paths._dock.dock)
+    assert in_front(dock) and not in_front(paths.only.dock.dock)
     # and the path's dock tells it when its tab is clicked
     bar = next(
         bar
@@ -231,12 +231,12 @@ def test_a_click_on_the_map_leaves_it_in_front(person, hand, path):
         if bar.isVisible() and dock.windowTitle() in [bar.tabText(at) for at in range(bar.count())]
     )
     number = next(
-        at for at in range(bar.count()) if bar.tabText(at) == paths._dock.dock.windowTitle()
+        at for at in range(bar.count()) if bar.tabText(at) == paths.only.dock.dock.windowTitle()
     )
     middle = bar.mapToGlobal(bar.tabRect(number).center())
     hand.at((middle.x(), middle.y()))
-    assert in_front(paths._dock.dock)
-    assert person.field(paths._dock.dock, "to_spin").value() == path.ViewObject.Proxy.shown[1]
+    assert in_front(paths.only.dock.dock)
+    assert person.field(paths.only.dock.dock, "to_spin").value() == path.ViewObject.Proxy.shown[1]
 
 
 # ---- the language
@@ -263,13 +263,13 @@ def words(person, dock):
 
 
 def settled(person):
-    dock = plots._dock
+    dock = plots.only.dock
     person.until(lambda: dock.building.worker is None and dock.canvas.ready, "the plot", 20)
 
 
 def test_docks_that_are_open_follow_the_language(person, path, speak):
     docks = [opened(person, path, command) for command in (*BELOW, "RoboticAM_Simulate")]
-    one, simulation, plot = map_tool._open[0], simulations._open[0], plots._dock
+    one, simulation, plot = map_tool._open[0], simulations._open[0], plots.only.dock
     person.until(lambda: one.canvas.painted is not None, "the cells", 60)
     path_dock, plots_dock, map_dock, simulation_dock = docks
     path.ViewObject.Visibility = True

@@ -163,7 +163,7 @@ def test_a_slider_of_the_path_is_one_turn_of_the_window(person, joint_path):
             slider = person.field(panel, f"{name}_slider")
             most = slider.maximum() - 1
             assert turns.in_one(partial(slider.setValue, most - step) for step in range(FRAMES))
-    paths._dock._show_all()
+    paths.only.dock._show_all()
 
 
 def beads():

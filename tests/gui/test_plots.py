@@ -37,7 +37,7 @@ def panel(person, planned):
 
 
 def seen(person):
-    dock = docks._dock
+    dock = docks.only.dock
     timers = (dock.soon.timer, dock.changed.timer)
     person.until(
         lambda: (
@@ -55,9 +55,11 @@ def seen(person):
 def shown(person, as_wanted):
     """The range of the first chart, once it is as wanted."""
     person.until(
-        lambda: as_wanted(*docks._dock.canvas.drawn.places[0].across), "the range that is shown", 5
+        lambda: as_wanted(*docks.only.dock.canvas.view.places[0].across),
+        "the range that is shown",
+        5,
     )
-    return seen(person).canvas.drawn.places[0].across
+    return seen(person).canvas.view.places[0].across
 
 
 def take(person, panel, name):
@@ -77,7 +79,7 @@ def colours(person, widget, least=80):
 
 
 def test_every_picture_is_seen(person, planned, panel):
-    dock = docks._dock
+    dock = docks.only.dock
     assert person.field(panel, "plotted").currentText() == planned.Label
     for name, entry in catalogue.PICTURES.items():
         take(person, panel, name)
@@ -93,7 +95,7 @@ def test_every_picture_is_seen(person, planned, panel):
             assert dock.picture is None and "planar layers" in dock.canvas.text
         else:
             assert dock.picture.title == entry.title and colours(person, dock.canvas) > 200, name
-            assert len(dock.canvas.drawn.places) == len(dock.picture.charts)
+            assert len(dock.canvas.view.places) == len(dock.picture.charts)
     source = dock.source[1]
     motion = api.result(planned).motion
     take(person, panel, "angles")
@@ -125,8 +127,8 @@ def test_layers_chosen_of_one_job_are_not_those_of_another_with_its_names(
 def test_zoom_move_and_read_by_mouse(person, hand, planned, panel):
     dock = take(person, panel, "angles")
     canvas = dock.canvas
-    whole = canvas.drawn.places[0].across
-    place = canvas.drawn.places[0]
+    whole = canvas.view.places[0].across
+    place = canvas.view.places[0]
 
     def at(share, up=0.5):
         where = canvas.mapToGlobal(
@@ -151,7 +153,7 @@ def test_zoom_move_and_read_by_mouse(person, hand, planned, panel):
         person,
         lambda low, high: high - low == pytest.approx((whole[1] - whole[0]) / 1.25**2, rel=1e-6),
     )
-    assert canvas.drawn.places[1].across == (low, high)  # all charts together
+    assert canvas.view.places[1].across == (low, high)  # all charts together
     hand.do("mousemove", *at(0.5), "mousedown", 1, "mousemove", *at(0.4), "mouseup", 1)
     shown(person, lambda start, end: start > low and end - start == pytest.approx(high - low))
     hand.click(person.field(panel, "whole"))
@@ -176,13 +178,20 @@ def test_zoom_move_and_read_by_mouse(person, hand, planned, panel):
             ((np.array(ends) - whole[0]) / width).tolist() == pytest.approx([0.3, 0.6], abs=0.01)
         ),
     )
-    assert 0 in canvas.up
+    assert 0 in canvas.view.up
     person.screenshot("plots_zoomed")
     hand.click(person.field(panel, "rectangle"))
     hand.click(person.field(panel, "whole"))
     shown(person, lambda *ends: ends == whole)
-    hand.click(person.field(panel, "in"))
-    shown(person, lambda low, high: high - low == pytest.approx(width / 1.25**2))
+    hand.click(person.field(panel, "back"))
+    shown(
+        person,
+        lambda *ends: (
+            ((np.array(ends) - whole[0]) / width).tolist() == pytest.approx([0.3, 0.6], abs=0.01)
+        ),
+    )
+    hand.do("mousemove", *at(0.5), "click", "--repeat", 2, "--delay", 50, 1)
+    shown(person, lambda *ends: ends == whole)
 
 
 def test_layers_path_and_files(person, panel, planned, tmp_path, monkeypatch):

@@ -189,7 +189,7 @@ def test_what_is_drawn_and_told_follows_at_once(person, page, hemisphere):
     box.setCurrentIndex(box.findData("travel"))
 
     def drawn():
-        dock = plots._dock
+        dock = plots.only.dock
         person.until(
             lambda: (
                 dock.building.worker is None

@@ -420,9 +420,9 @@ def test_a_click_takes_the_simulation_and_the_path_there(person, hemisphere, han
     clicked = one.board.columns.points.position[column - pixel : column + pixel + 1]
     assert np.linalg.norm(clicked - motion.position[moment.row], axis=1).min() < 1e-6
     assert path.ViewObject.Proxy.shown[1] == layer
-    assert paths._dock.view() is path.ViewObject.Proxy
+    assert paths.only.dock.view() is path.ViewObject.Proxy
     assert one.bead == int(one.board.columns.bead[column])
-    paths._dock.dock.close()
+    paths.only.dock.dock.close()
     simulations._open[0].close()
 
 

@@ -93,7 +93,9 @@ def test_tools_take_the_stages_of_the_job_that_is_selected(person, jobs, which):
         5,
     )
     person.until(
-        lambda: plots._dock.building.worker is None and plots._dock.canvas.ready, "the picture", 20
+        lambda: plots.only.dock.building.worker is None and plots.only.dock.canvas.ready,
+        "the picture",
+        20,
     )
     panel.close()
     person.idle()
@@ -249,14 +251,14 @@ def test_a_new_job_is_seen_alone(person, hemisphere, coarse):
 def test_the_dock_of_paths_opens_with_the_path_of_what_is_selected(person, stages, jobs, kind):
     """Whether it is opened for the first time in a session or again."""
     person.select(jobs[0] if kind == "job" else stages[0][kind])
-    if paths._dock is not None:
-        paths._dock.target = None  # as in a new session
+    if paths.only.dock is not None:
+        paths.only.dock.target = None  # as in a new session
     person.click("RoboticAM_Path")
     choice = person.field(person.panel(paths.NAME), "path")
     wanted = "toolpath" if kind == "toolpath" else "joint path"
     assert choice.currentText() == f"First {wanted}"
     assert stages[0][wanted].ViewObject.Visibility
-    paths._dock.dock.close()
+    paths.only.dock.dock.close()
     person.select(jobs[1] if kind == "job" else stages[1][kind])
     person.click("RoboticAM_Path")
     assert choice.currentText() == f"Second {wanted}"
@@ -266,8 +268,8 @@ def test_a_program_shows_its_joint_path(person, stages, jobs):
     document = stages[0]["cell"].Document
     program = api.make_program(document, stages[0]["joint path"], "ONE")
     person.select(program)
-    if paths._dock is not None:
-        paths._dock.target = None
+    if paths.only.dock is not None:
+        paths.only.dock.target = None
     person.click("RoboticAM_Path")
     choice = person.field(person.panel(paths.NAME), "path")
     assert choice.currentText() == "First joint path"

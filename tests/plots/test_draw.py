@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from freecad_am.plots import catalogue, draw, files
 from freecad_am.plots.chart import Chart, Curve, Picture, Quantity
@@ -201,7 +202,7 @@ def test_names_of_curves_are_beside_or_above_their_frame_and_clear_of_each_other
     )
     chart = Chart("Width of beads", TIME, ANGLE, curves)
     figure, (place,) = draw.figure((chart,), LIGHT, width, 400)
-    renderer = files.FigureCanvasAgg(figure).get_renderer()
+    renderer = FigureCanvasAgg(figure).get_renderer()
     texts = {text.get_text(): text.get_window_extent(renderer) for text in figure.texts}
     boxes = [texts[curve.name] for curve in curves] + [texts["Width of beads"]]
     for number, box in enumerate(boxes):

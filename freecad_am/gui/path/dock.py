@@ -16,7 +16,7 @@ from ...core.toolpath import Bead
 from ...objects.fields.preferences import in_user_units, quantity_text
 from .. import dock_area
 from ..background import redraw
-from ..dock_area import Follower
+from ..dock_area import Follower, OnlyDock
 from ..picking.shape_inputs import job_selection
 from ..preferences import watch
 from ..texts.in_language import tr, translated
@@ -474,22 +474,15 @@ def _paths(document: Any = None) -> list[Any]:
     return [] if document is None else [obj for obj in document.Objects if _is_path(obj)]
 
 
-_dock: PathDock | None = None
+only = OnlyDock(PathDock)
 
 
 def show(obj: Any = None) -> None:
     """Open the dock for a path; by default the selected one, the path of the selected job or stage,
     or a visible path."""
-    _get_dock().open(obj or next(filter(_is_path, job_selection()), None))
+    only.provide().open(obj or next(filter(_is_path, job_selection()), None))
 
 
 def go_to(obj: Any, layer: int, bead: int | None, point: int | None) -> None:
     """Open the dock, and show a path up to a place, counted from 0."""
-    _get_dock().go_to(obj, layer, bead, point)
-
-
-def _get_dock() -> PathDock:
-    global _dock
-    if _dock is None:
-        _dock = PathDock()
-    return _dock
+    only.provide().go_to(obj, layer, bead, point)

@@ -226,28 +226,33 @@ def _colour(colour: Any) -> Any:
 
 # ---- which paths show theirs
 
-_watching: list[Any] = []
-_due = False
+
+class _Renewal:
+    """Updates all legends once after an event that asks for it, and watches what changes them."""
+
+    def __init__(self) -> None:
+        self.observer: _Observer | None = None
+        self.is_due = False
+
+    def ask(self) -> None:
+        """Update all legends after the current event."""
+        if self.observer is None:
+            self.observer = _Observer()
+            App.addDocumentObserver(self.observer)
+            watch.listen_to_language(self.ask)
+            colours.listen(self.ask)
+        if not self.is_due:
+            self.is_due = True
+            QtCore.QTimer.singleShot(0, self._renew)
+
+    def _renew(self) -> None:
+        self.is_due = False
+        for document in App.listDocuments().values():
+            _arrange(document)
 
 
-def renew_soon() -> None:
-    """Update all legends after the current event."""
-    global _due
-    if not _watching:
-        _watching.append(_Observer())
-        App.addDocumentObserver(_watching[0])
-        watch.listen_to_language(renew_soon)
-        colours.listen(renew_soon)
-    if not _due:
-        _due = True
-        QtCore.QTimer.singleShot(0, _renew)
-
-
-def _renew() -> None:
-    global _due
-    _due = False
-    for document in App.listDocuments().values():
-        _arrange(document)
+_renewal = _Renewal()
+renew_soon = _renewal.ask
 
 
 def _arrange(document: Any) -> None:

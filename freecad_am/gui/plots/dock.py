@@ -18,13 +18,13 @@ from ...plots.joints import OVER, PATH, TIME
 from ...plots.source import Source
 from .. import dock_area
 from ..background.worker import Background, Later, Worker
-from ..dock_area import Follower
+from ..dock_area import Follower, OnlyDock
 from ..picking.shape_inputs import job_selection
 from ..preferences import watch
 from ..texts.in_language import tr, translated_error
 from ..widgets.steady import Scrolled
 from . import canvas, saving
-from .canvas import STEP, Canvas
+from .canvas import Canvas
 from .saving import JOINT_PATH, PROGRAM, TOOLPATH, key_of, kind_of, made_from, maker_of, plottable
 
 
@@ -61,12 +61,13 @@ class PlotsDock(Follower):
         self.dock = dock_area.dock(NAME, dock_area.BELOW, high=HEIGHT)
         self.canvas = Canvas()
         self.canvas.setObjectName("canvas")
-        self.canvas.say = self._show_reading
         self.scroll = QtGui.QScrollArea()
         self.scroll.setWidgetResizable(True)
         self.scroll.setFrameShape(QtGui.QFrame.NoFrame)
         self.scroll.setWidget(self.canvas)
         self.scroll.setMinimumHeight(LEAST_HEIGHT)
+        self.reading = QtGui.QLabel()
+        self.toolbar = self._make_toolbar()
         self._build()
         self.building = Background(self.dock)
         self.soon, self.changed = Later(self.dock, self.fill), Later(self.dock, self.fill)
@@ -77,6 +78,15 @@ class PlotsDock(Follower):
         Gui.Selection.addObserver(self)
 
     # ---- the fields
+
+    def _make_toolbar(self) -> Any:
+        """matplotlib's toolbar; None without matplotlib."""
+        shown = self.canvas.provide_view()
+        if shown is None:
+            return None
+        from .view import Toolbar  # with matplotlib, whose import takes some time
+
+        return Toolbar(shown, self._save, self._show_reading)
 
     def _build(self) -> None:
         """The fields, in the language of the window, about the canvas."""
@@ -115,7 +125,6 @@ class PlotsDock(Follower):
             (name, getattr(self, name).maximum(), getattr(self, name).value())
             for name in ("first", "last")
         ]
-        rectangle = self.buttons["rectangle"].isChecked()
         self._build()
         for name, index in indices:
             combo = getattr(self, name)
@@ -128,7 +137,6 @@ class PlotsDock(Follower):
             box.setMaximum(maximum)
             box.setValue(value)
             box.blockSignals(blocked)
-        self.buttons["rectangle"].setChecked(rectangle)
         self.fill()
 
     def _combo(self, name: str, help: str, letters: int = 0) -> Any:
@@ -164,45 +172,10 @@ class PlotsDock(Follower):
                 line.addWidget(QtGui.QLabel(text))
             line.addWidget(widget)
         line.addStretch(1)
-        self.buttons = {}
-        for name, text, help, act in (
-            (
-                "rectangle",
-                "▭",
-                tr(
-                    "Zoom into a rectangle drawn with the mouse; otherwise dragging moves the "
-                    "picture"
-                ),
-                self._rectangle,
-            ),
-            (
-                "in",
-                "+",
-                tr("Zoom in, also with Ctrl and the wheel"),
-                lambda *_: self.canvas.zoom(STEP**2),
-            ),
-            ("out", "−", tr("Zoom out"), lambda *_: self.canvas.zoom(STEP**-2)),
-            (
-                "whole",
-                tr("Whole"),
-                tr("Show everything, also with a double click"),
-                lambda *_: self.canvas.show_all(),
-            ),
-            (
-                "save",
-                tr("Save…"),
-                tr("Save as an image (PNG, SVG, PDF), or the values (CSV)"),
-                self._save,
-            ),
-        ):
-            button = QtGui.QToolButton()
-            button.setObjectName(name)
-            button.setText(text)
-            button.setToolTip(help)
-            button.clicked.connect(act)
-            line.addWidget(button)
-            self.buttons[name] = button
-        self.buttons["rectangle"].setCheckable(True)
+        if self.toolbar is not None:
+            self.toolbar.speak()
+            self.toolbar.setParent(form)  # or PySide takes it for deleted with its earlier parent
+            line.addWidget(self.toolbar)
         below = QtGui.QHBoxLayout()
         below.addWidget(self.reading, 1)
         below.addWidget(self.note)
@@ -315,15 +288,12 @@ class PlotsDock(Follower):
 
     def _show(self, picture: Picture | None, text: str = "", keep: bool = False) -> None:
         self.picture = picture if picture is not None and picture.charts else None
-        for name in ("in", "out", "whole", "rectangle", "save"):
-            self.buttons[name].setEnabled(self.picture is not None)
+        if self.toolbar is not None:
+            self.toolbar.setEnabled(self.picture is not None)
         self._show_reading("")
         self.canvas.show_picture(self.picture, text, keep)
 
     # ---- what the user does
-
-    def _rectangle(self, *_: Any) -> None:
-        self.canvas.by_rectangle = self.buttons["rectangle"].isChecked()
 
     def _show_reading(self, text: str) -> None:
         self.reading.setText(text)
@@ -357,12 +327,9 @@ def _plottable() -> list[Any]:
     return [] if document is None else [obj for obj in document.Objects if plottable(obj)]
 
 
-_dock: PlotsDock | None = None
+only = OnlyDock(PlotsDock)
 
 
 def show(obj: Any = None) -> None:
     """Open the dock, of an object, of one that is selected, or of the latest."""
-    global _dock
-    if _dock is None:
-        _dock = PlotsDock()
-    _dock.open(obj or next(filter(plottable, job_selection()), None))
+    only.provide().open(obj or next(filter(plottable, job_selection()), None))

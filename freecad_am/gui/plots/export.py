@@ -11,7 +11,7 @@ from ...plots.chart import Picture
 from ...plots.draw import Range, Window, figure
 from ...plots.files import KINDS, image, values
 from ...plots.look import LIGHT
-from .canvas import frame_words
+from .reading import frame_words
 
 Ranges = Mapping[int, Range]
 CSV = "csv"

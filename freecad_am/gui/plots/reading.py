@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Text for the pointed position of a picture, and ranges after zooming and moving."""
+"""Texts and colours of charts in the window: at the pointer, and in frames."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 
 from ...plots.chart import DOTS, OUTLINE, STEP, Chart, Curve
+from ...plots.look import DARK, LIGHT, Look, Words
+from .. import colours
 from ..texts.in_language import tr
-
-Range = tuple[float, float]
-MIN_SHARE = 1e-6  # of the full range
 
 
 def text_at(chart: Chart, x: float) -> str:
@@ -40,21 +41,16 @@ def _nearest(curve: Curve, x: float) -> int:
     return index if curve.x[index] - x < x - curve.x[index - 1] else index - 1
 
 
-def zoomed(limits: Range, factor: float, share: float, full: Range | None) -> Range:
-    """Return a range 1 / factor as wide, with the position at `share` fixed; no wider than
-    `full`."""
-    low, high = limits
-    width = (high - low) / factor
-    if full is not None:
-        width = min(max(width, MIN_SHARE * (full[1] - full[0])), full[1] - full[0])
-    centre = low + share * (high - low)
-    return shift_range((centre - share * width, centre + (1.0 - share) * width), 0.0, full)
+def frame_words() -> Words:
+    """Return the texts of frames."""
+    return Words(
+        layer=tr("layer {}"),
+        beyond=tr("{}: {} points beyond the limit"),
+        limits=tr("limits {} to {} {}"),
+        limit=tr("limits up to {} {}"),
+    )
 
 
-def shift_range(limits: Range, by: float, full: Range | None) -> Range:
-    """A range moved, as far as `full` goes."""
-    low, high = limits[0] + by, limits[1] + by
-    if full is not None:
-        back = max(full[0] - low, 0.0) - max(high - full[1], 0.0)
-        low, high = low + back, high + back
-    return low, high
+def look_of() -> Look:
+    """The look of plots in the present theme of the window, and in its language."""
+    return replace(DARK if colours.is_dark() else LIGHT, words=frame_words())

@@ -125,7 +125,7 @@ _writing: list[Background] = []  # Python must keep them as long as they write
 def save(picture: Picture, metric: Picture, obj: Any, canvas: Canvas) -> None:
     """Ask for a file, and write to it the picture of an object as the canvas shows it, or its values, which are `metric`
     whatever the window's units are."""
-    size, across, up = (canvas.width(), canvas.height()), dict(canvas.across), dict(canvas.up)
+    size, (across, up) = (canvas.width(), canvas.height()), canvas.ranges()
 
     def content(ending: str) -> bytes:
         from . import export  # with matplotlib, whose import takes some time

@@ -133,7 +133,7 @@ def _simulation(obj: Any, layer: int, position: Array) -> bool:
 
 def _path(obj: Any, layer: int, position: Array) -> bool:
     """The view of the joint path shows the layer up to the point, where the path dock is open."""
-    opened, view = path_dock._dock, obj.ViewObject.Proxy
+    opened, view = path_dock.only.dock, obj.ViewObject.Proxy
     if (
         opened is None
         or not opened.dock.isVisible()

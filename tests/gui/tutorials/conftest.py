@@ -273,7 +273,9 @@ class Lesson:
         from freecad_am.gui.plots import dock
 
         self.person.until(
-            lambda: dock._dock.building.worker is None and dock._dock.canvas.ready, "the plot", 30
+            lambda: dock.only.dock.building.worker is None and dock.only.dock.canvas.ready,
+            "the plot",
+            30,
         )
         self.person.idle(0.5)
 

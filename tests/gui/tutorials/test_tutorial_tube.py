@@ -80,10 +80,10 @@ def test_the_tube(person, hand, lesson, tmp_path):
         dock, "picture"
     ).currentIndex():  # left there by a test before: a session begins with the angles
         lesson.choose(dock, "picture", person.field(dock, "picture").itemText(0))
-    person.until(lambda: drawn(plots._dock) > 1, "the angles", 20)
+    person.until(lambda: drawn(plots.only.dock) > 1, "the angles", 20)
     lesson.choose(dock, "picture", "Joint speeds in %")
     person.until(
-        lambda: drawn(plots._dock) == 1, "all speeds in one picture", 20
+        lambda: drawn(plots.only.dock) == 1, "all speeds in one picture", 20
     )  # angles have one for each axis
     lesson.picture("tube-plots")
     lesson.close("RoboticAM_Plots")
@@ -110,9 +110,7 @@ def test_the_tube(person, hand, lesson, tmp_path):
 
 def drawn(dock):
     """How many charts the canvas of the plots shows, 0 while they are being made."""
-    return (
-        len(dock.canvas.drawn.places) if dock.building.worker is None and dock.canvas.ready else 0
-    )
+    return len(dock.canvas.view.places) if dock.building.worker is None and dock.canvas.ready else 0
 
 
 def first_layer(person, panel):
