@@ -19,7 +19,7 @@ from typing import Any
 
 from freecad_am.batch import run as planning
 from freecad_am.batch import versions
-from freecad_am.batch.rows import table
+from freecad_am.batch.rows import row
 
 
 def main() -> None:
@@ -32,14 +32,14 @@ def main() -> None:
     os.dup2(null_device, 2)  # errors until now are the message of the worker
     answer = {"versions": versions.found_versions()}
     if request["order"] is not None:
-        answer["result"] = _plan(request["folder"], table.Order(**request["order"]))
+        answer["result"] = _plan(request["folder"], row.Order(**request["order"]))
     answers.write(json.dumps(answer) + "\n")
     answers.flush()
 
 
-def _plan(folder: str, order: table.Order) -> dict[str, Any]:
+def _plan(folder: str, order: row.Order) -> dict[str, Any]:
     """Return the result of an order. folder: of the batch."""
-    child = table.start_row(order)
+    child = row.start_row(order)
 
     def end(*_: Any) -> None:
         child.stop()
@@ -58,7 +58,7 @@ def _plan(folder: str, order: table.Order) -> dict[str, Any]:
     if worker_is_lost.is_set():
         shutil.rmtree(folder, ignore_errors=True)
         os._exit(1)
-    return table.row_result(child)
+    return row.row_result(child)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,15 @@ from ..core.process.deposit.spacing import local_distances
 from ..core.strategies.walls.comparison import Compared
 from ..core.toolpath import Toolpath
 from ..plots.source import Source
-from . import hub_figures, places, predicted_figures, scan_figures, units, view, wall_figures
+from . import (
+    hub_figures,
+    places,
+    predicted_figures,
+    scan_figures,
+    toolpath_picture,
+    units,
+    wall_figures,
+)
 from .of_feature import OfFeature
 from .pictures import MISSING, Pictures
 from .style import STYLE
@@ -28,8 +36,8 @@ from .tables import (
     pairs_of,
     table_of,
 )
-from .turned import columns
-from .turned.columns import build_viewer, policy, style
+from .viewer_3d import columns
+from .viewer_3d.columns import build_viewer, policy, style
 
 _PER_METHOD = (
     ("feasible", "feasible"),
@@ -98,7 +106,7 @@ def render(content: Content) -> str:
         f'<header><h1>{name}</h1><span class="status {status}">{status}</span></header>'
         f'<p class="sub">{escape(_subtitle(content))}</p>{_cards(report)}{places.findings(report["issues"], path_rows)}',
         f"<h2>Path</h2>{path.element}",
-        f'<figure id="path-still">{view.picture(toolpath, content.platform_diameter)}<figcaption>The beads, coloured by '
+        f'<figure id="path-still">{toolpath_picture.picture(toolpath, content.platform_diameter)}<figcaption>The beads, coloured by '
         "layer; short strokes show the build direction.</figcaption></figure>",
         places.preflight(report["preflight"], path_rows),
         "" if pictures.modules else f'<p class="sub">{MISSING}</p>',

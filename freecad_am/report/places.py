@@ -9,7 +9,7 @@ from typing import Any
 from ..core.preflight.promise import amount
 from . import units
 from .tables import figure_text
-from .turned.columns import Shown
+from .viewer_3d.columns import Shown
 
 _MOST_ISSUES = 200
 # mark of a promise: an unchecked promise is never green

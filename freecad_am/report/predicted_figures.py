@@ -16,7 +16,7 @@ from . import units
 from .places import place_of
 from .scan_figures import key_of
 from .tables import grid_of, pairs_of
-from .turned.columns import Shown
+from .viewer_3d.columns import Shown
 
 MM3 = 1000.0  # in a cm3
 

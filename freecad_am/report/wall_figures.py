@@ -11,7 +11,7 @@ from ..core.strategies.walls.comparison import METHODS, NORMAL, Compared
 from ..core.toolpath import Toolpath
 from ..core.types import Array
 from ..plots.look import shade
-from . import svg, view
+from . import svg, toolpath_picture
 
 TITLES = {
     "iso-parameter": "Iso-parameter",
@@ -107,7 +107,7 @@ def both_paths(compared: Sequence[Compared]) -> str:
                 [curves[i] for i in _some(len(curves), 40)],
             )
         )
-    return view.overlaid(groups)
+    return toolpath_picture.overlaid(groups)
 
 
 def _layers(

@@ -13,7 +13,7 @@ import struct
 import numpy as np
 import pytest
 
-from freecad_am.report.turned import columns
+from freecad_am.report.viewer_3d import columns
 from tests.batch.conftest import JOB, Workshop, make_cup
 
 FORMATS = {"u1": "B", "u2": "H", "i2": "h", "u4": "I", "f4": "f"}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Plans the rows of a table, some at the same time, and sums them up."""
+"""Runs a batch: plans the rows of a table, several at once, each in its process (`row.py`) or on a cluster."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from .. import run as planning
 from .. import versions
 from ..child import Child
 from ..console import Session, escaped
+from . import row as row_process
 from . import table
 
 FIGURES = (
@@ -113,19 +114,19 @@ def _planned_here(
         while waiting or running:
             while waiting and len(running) < how.processes:
                 row = waiting.pop()
-                order = table.Order(
+                order = row_process.Order(
                     row.label,
                     row.tree().values,
                     row.path,
                     os.path.join(folder, row.folder),
                     how.dry,
                 )
-                child = table.start_row(order)
+                child = row_process.start_row(order)
                 running[child.receiver] = (row, child)
             for receiver in multiprocessing.connection.wait(list(running)):
                 row, child = running[receiver]
                 if child.poll(0.0):
-                    result = table.row_result(child)
+                    result = row_process.row_result(child)
                     journal.keep(row, how.dry, result)
                     del running[receiver]
                     yield row, result

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The rows of a motion as columns of small whole numbers, which a page holds as text."""
+"""The path of the report in 3D: rows of a motion as columns of small whole numbers, and the HTML that draws them."""
 
 from __future__ import annotations
 
