@@ -124,7 +124,7 @@ def _add_batch(parser: Parser) -> None:
         "--scheduler", metavar="ADDRESS", help="plan on the workers of this Dask scheduler"
     )
     parser.add_argument(
-        "--resume", action="store_true", help="keep the rows that an earlier run has done"
+        "--resume", action="store_true", help="keep the rows that an earlier run completed"
     )
     parser.add_argument(
         "--dry-run", action="store_true", help="check all rows, and plan none of them"

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Child processes of a command, by multiprocessing: for a command that reads shapes, and for the
-rows of a batch.
+"""Child processes of a command, by multiprocessing: for commands that read shapes, and for the rows
+of a batch.
 
-FreeCAD may crash in a child; the parent reports it. A child reports the folders of its unfinished
-outputs, so that the parent can remove them, and ends with its parent.
+FreeCAD may crash in a child; the parent reports the crash. A child tells the parent the folders of
+its unfinished outputs, which the parent removes after a crash, and ends with its parent.
 """
 
 from __future__ import annotations
@@ -80,12 +80,12 @@ class Child(_CONTEXT.Process):  # type: ignore[misc]
         return False
 
     def interrupt(self, number: int = signal.SIGINT) -> None:
-        """Send a signal, without waiting."""
+        """Send a signal and do not wait."""
         if self.is_alive() and self.pid is not None:
             os.kill(self.pid, number)
 
     def stop(self) -> None:
-        """End the child; `result` is there if it was done."""
+        """End the child; `result` is set if it had finished."""
         self.interrupt()
         deadline = time.monotonic() + GRACE_S
         while not self.poll(POLL_S):
@@ -93,7 +93,7 @@ class Child(_CONTEXT.Process):  # type: ignore[misc]
                 self.kill()
 
     def _clean_up(self) -> None:
-        """Finish or remove unfinished outputs of a crash."""
+        """Finish or remove the unfinished outputs of a crashed child."""
         from .outputs import staging
 
         for folder, made_folders in [] if self.is_done else self._outputs:
@@ -141,25 +141,22 @@ def run_in_child(work: Callable[[], int], where: str, say: Callable[[str], None]
 
 
 def report_stopping() -> None:
-    """Report to the parent, if this is a child, that it notices the request to end."""
+    """In a child: report to the parent that the request to end was noticed."""
     process = multiprocessing.current_process()
     if isinstance(process, Child):
         process.report(STOPPING)
 
 
 def report_outputs(folder: str, made_folders: list[str]) -> None:
-    """Report to the parent, if this is a child, where unfinished outputs are, and the folders that
-    were made for them.
-    """
+    """In a child: report the folders of unfinished outputs, and those created for them, to the
+    parent."""
     process = multiprocessing.current_process()
     if isinstance(process, Child):
         process.report(OUTPUTS, (folder, made_folders))
 
 
 def crash(where: str, status: int | None) -> AmError:
-    """Return the error of a process that ended without its result, with the status as Popen gives
-    it.
-    """
+    """Return the error for a process that ended without a result. status: as in Popen."""
     if status == -signal.SIGKILL:
         message = "the system ended the command, for lack of memory most likely; free some, or plan less at the same time"
         return AmError("ENDED", where, message)
@@ -167,7 +164,7 @@ def crash(where: str, status: int | None) -> AmError:
     return InputError(
         "CRASHED",
         where,
-        "FreeCAD crashed ({}): the shape is damaged or exceeds its geometry kernel; check the "
+        "FreeCAD crashed ({}): the shape is damaged or too complex for its geometry kernel; check the "
         "part in FreeCAD (Part > Check geometry), repair it or export it again",
         names.get(status or 0, f"status {status}"),
     )

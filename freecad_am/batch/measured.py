@@ -369,7 +369,8 @@ def _opened(source: str, name: str, session: Any) -> tuple[Any, Any]:
         raise InputError(
             "USAGE",
             "freecad-am inspect",
-            "--object selects from FCStd documents; a job compares its own part: remove it",
+            "--object selects an object from FCStd documents; remove it: a job is compared with "
+            "its own part",
         )
     import FreeCAD
 

@@ -65,7 +65,7 @@ def make_feature_of(
     """Make a feature of any family, by its kind.
 
     links: by property name; the feature uses those of its family. `StartEdges` and `BaseFaces` only
-    contain names. parameters: dataclasses of its sections; values: single ones by key.
+    contain names. parameters: dataclasses of its sections; values: single parameters by key.
     """
     checked_document(doc)
     proxy = proxy_of(checked_text(kind, "kind"))

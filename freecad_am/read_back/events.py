@@ -120,9 +120,7 @@ def event_issues(planned: Planned, program: Program, text: ReadMoves) -> list[Is
         (event.row, event.kind) for event in due
     ]:
         issues.append(
-            Issue(
-                ERROR, "VERIFY_ORDER", "what happens between moves is in another order than planned"
-            )
+            Issue(ERROR, "VERIFY_ORDER", "events between moves are not in the planned order")
         )
     return issues
 

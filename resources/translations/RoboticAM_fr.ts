@@ -1712,6 +1712,21 @@
         <translation>Le long du temps du travail, ou le long de sa trajectoire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/families/surface.py"/>
+        <source>Also Ctrl+click the faces to deposit on {}.</source>
+        <translation>Cliquez aussi, avec Ctrl, sur les faces à déposer sur {}.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/families/developable.py"/>
+        <source>Also Ctrl+click the hub: a cylinder or cone.</source>
+        <translation>Sélectionnez aussi, avec Ctrl, le moyeu : un cylindre ou un cône.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/families/window.py"/>
+        <source>Also Ctrl+click the part it grows on.</source>
+        <translation>Sélectionnez aussi, avec Ctrl, la pièce sur laquelle il croît.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>Also write the moves between beads, on their own layer; toolpaths have none</source>
         <translation>Écrire aussi les mouvements entre les cordons, sur un calque à eux ; les trajectoires d&apos;outil n&apos;en ont pas</translation>
@@ -1808,8 +1823,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
-        <source>Axes on the pendant: -1 if the axis counts the other way; the value shown at zero</source>
-        <translation>Axes sur le pupitre : -1 si l&apos;axe compte dans l&apos;autre sens ; la valeur montrée à zéro</translation>
+        <source>Axes on the pendant: -1 if the axis is reversed; the value shown at zero</source>
+        <translation>Axes sur le pupitre : -1 si l&apos;axe est inversé ; la valeur montrée à zéro</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
@@ -2178,13 +2193,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/panel.py"/>
-        <source>Click the object to deposit, in the tree or the 3D view; then, with Ctrl, its substrate, if any.</source>
+        <source>Click the object to deposit in the tree or the 3D view, then Ctrl+click its substrate, if any.</source>
         <translation>Cliquez l&apos;objet à déposer, dans l&apos;arbre ou la vue 3D ; puis, avec Ctrl, son substrat, s&apos;il y en a un.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/families/cladding.py"/>
-        <source>Click, with Ctrl, the faces to cover.</source>
-        <translation>Cliquez, avec Ctrl, sur les faces à couvrir.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/program/window.py"/>
@@ -2345,6 +2355,11 @@
         <location filename="../../freecad_am/core/parameters/place.py"/>
         <source>Criterion for the best feasible pose: the largest minimum margin, the shortest time, or the largest clearance of the arm.</source>
         <translation>Ce qui fait d&apos;une pose réalisable la meilleure : la plus grande des plus petites marges, le temps le plus court, ou la plus grande distance du bras à tout le reste.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/families/cladding.py"/>
+        <source>Ctrl+click the faces to cover.</source>
+        <translation>Cliquez, avec Ctrl, sur les faces à couvrir.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
@@ -3452,9 +3467,39 @@
         <translation>Plus grand angle entre l&apos;axe de l&apos;outil et la verticale de la pièce.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Largest change of RX in either direction.</source>
+        <translation>Plus grand changement de RX dans chaque sens.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Largest change of RY in either direction.</source>
+        <translation>Plus grand changement de RY dans chaque sens.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Largest change of RZ in either direction.</source>
+        <translation>Plus grand changement de RZ dans chaque sens.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Largest change of the travel speed along a bead, in mm/s per second, where a bead model sets it.</source>
         <translation>Plus grande variation de la vitesse d&apos;avance le long d&apos;un cordon, en mm/s par seconde, là où un modèle de cordon la règle.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Largest change of x in either direction.</source>
+        <translation>Plus grand changement de x dans chaque sens.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Largest change of y in either direction.</source>
+        <translation>Plus grand changement de y dans chaque sens.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Largest change of z in either direction.</source>
+        <translation>Plus grand changement de z dans chaque sens.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -4982,21 +5027,6 @@
         <translation>Rampe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>Range of RX to either side.</source>
-        <translation>De combien son RX est changé de chaque côté.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>Range of RY to either side.</source>
-        <translation>De combien son RY est changé de chaque côté.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>Range of RZ to either side.</source>
-        <translation>De combien son RZ est changé de chaque côté.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Range of bead widths, as a share of the usual width and spacing, so that contours fill a region evenly and beads in thin places match its width.</source>
         <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces.</translation>
@@ -5010,21 +5040,6 @@
         <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>Range of each joint, its distance to the nearer limit, and its speed as a share of the maximum</source>
         <translation>Plage de chaque articulation, sa distance à la limite la plus proche, et sa vitesse en part du maximum</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>Range of x to either side.</source>
-        <translation>De combien son x est changé de chaque côté.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>Range of y to either side.</source>
-        <translation>De combien son y est changé de chaque côté.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>Range of z to either side.</source>
-        <translation>De combien son z est changé de chaque côté.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
@@ -5295,21 +5310,6 @@
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Section of the last layer</source>
         <translation>Section de la dernière couche</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/families/surface.py"/>
-        <source>Select also, with Ctrl, the faces to deposit on {}.</source>
-        <translation>Sélectionnez aussi, avec Ctrl, les faces à déposer sur {}.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/families/developable.py"/>
-        <source>Select also, with Ctrl, the hub: a cylinder or cone.</source>
-        <translation>Sélectionnez aussi, avec Ctrl, le moyeu : un cylindre ou un cône.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/families/window.py"/>
-        <source>Select also, with Ctrl, the part it grows on.</source>
-        <translation>Sélectionnez aussi, avec Ctrl, la pièce sur laquelle il croît.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
@@ -8575,6 +8575,11 @@
         <location filename="../../freecad_am/objects/staleness.py"/>
         <source>error</source>
         <translation>erreur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>events between moves are not in the planned order</source>
+        <translation>les événements entre les mouvements ne sont pas dans l&apos;ordre planifié</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -14272,11 +14277,6 @@
         <translation>des données de soudage ne sont pas encore reprises de la commande, ont deux vitesses ou une autre que déclarée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/events.py"/>
-        <source>what happens between moves is in another order than planned</source>
-        <translation>ce qui se passe entre les mouvements est dans un autre ordre que planifié</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>what the robot&apos;s own base is on, which no MACHINE_DEF gives</source>
         <translation>ce qui porte la base du robot lui-même, qu&apos;aucun MACHINE_DEF ne dit</translation>
@@ -17127,11 +17127,6 @@
         <translation>{} ne peut pas être écrit : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>{} counts the other way (sign)</source>
-        <translation>{} compte dans l&apos;autre sens (signe)</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/panels/features/curves.py"/>
         <source>{} curves, {:.4g} mm in all</source>
         <translation>{} courbes, {:.4g} mm en tout</translation>
@@ -17380,6 +17375,11 @@
         <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>{}: proposed for this job: {}; enter the values of your cell.</source>
         <translation>{} : proposé pour ce travail : {} ; saisissez ce que la vôtre a réellement.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>{}: reversed sign</source>
+        <translation>{} : signe inversé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/background/busy.py"/>

@@ -234,7 +234,7 @@ def test_figures_with_a_wrong_sign_are_found_out(person, hand, wizard):
     fill(person.field(wizard, "poses"), figures)
     verdict = person.field(wizard, "verdict")
     person.until(lambda: "It would if" in verdict.text(), "the verdict")
-    offer = "J5 counts the other way (sign), and the base frame is offset by 0, 0, 375 mm and rotated by 0 deg"
+    offer = "J5: reversed sign, and the base frame is offset by 0, 0, 375 mm and rotated by 0 deg"
     assert person.field(wizard, "suspect0").text() == offer
     hand.click(person.field(wizard, "suspect0"))
     person.until(

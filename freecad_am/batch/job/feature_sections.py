@@ -193,7 +193,8 @@ def _roles_as_text(section: dict[str, Any]) -> dict[str, Any]:
 
 
 def _base_as_text(section: dict[str, Any]) -> dict[str, Any]:
-    """The section with a base of `auto` left out, and the axis, a point and a direction, as the text of six numbers."""
+    """Return the section without `base: auto`, and with an axis, a point and a direction, as a text
+    of six numbers."""
     base = section.get("base")
     if base == "auto":
         return {key: value for key, value in section.items() if key != "base"}

@@ -192,7 +192,7 @@ def _files(folder: str) -> Iterator[str]:
 
 
 def results(stages: Any, programs: Sequence[str]) -> Any:
-    """What the stages came to, as far as they got, for the report."""
+    """Results of the completed stages, for the report."""
     from freecad_am import api
     from freecad_am.objects.checks import preflight
 

@@ -35,7 +35,7 @@ _WORST_FIRST = (1, 130, 2, 3, 0)
 @dataclass(frozen=True)
 class How:
     """How a batch is carried out. processes: rows at the same time on the local machine; scheduler:
-    address of a cluster's scheduler instead. resume: rows that an earlier run has done are kept.
+    address of a cluster's scheduler instead. resume: rows that an earlier run completed are kept.
     dry: rows are only checked.
     """
 

@@ -202,15 +202,15 @@ class WorkerEnded(RuntimeError):
 
 
 class WorkerLeft(Exception):
-    """The worker was gone before the call."""
+    """The worker had ended before the call."""
 
 
 class Worker:
-    """A Python that runs `host`. A thread listens to it, so that a waiting caller can be ended at
-    any moment.
+    """A Python that runs `host`. A thread reads its answers, so that a waiting caller can be ended
+    at any moment.
 
-    It ends at the latest when its last reference is gone: a thread that is ended may lose it
-    between any two steps.
+    The process ends at the latest with the last reference to this object: a thread that is ended
+    may lose its reference between any two steps.
     """
 
     def __init__(self, python: str) -> None:
@@ -342,7 +342,7 @@ def _listen(stream: Any, answers: queue.Queue[Any]) -> None:
 
 
 def _pythons() -> list[str]:
-    """Return paths that may be a plain Python of this version; FreeCAD's own program is none."""
+    """Return paths of possible plain Pythons of this version; FreeCAD's own program is not one."""
     version = "{}.{}".format(*sys.version_info)
     home = FreeCAD.getHomePath()
     candidates = [sys.executable or ""]
@@ -359,7 +359,7 @@ def _pythons() -> list[str]:
 
 
 def _search_path() -> list[str]:
-    """Return where the modules of this FreeCAD and of this package are."""
+    """Return the folders of the modules of this FreeCAD and of this package."""
     home = FreeCAD.getHomePath()
     part_folder = os.path.dirname(os.path.abspath(Part.__file__))
     return [

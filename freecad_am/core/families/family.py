@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What holds for every feature of a family, and for its toolpaths, whatever part and machine."""
+"""Facts about a family of features and its toolpaths, independent of part and machine."""
 
 from __future__ import annotations
 

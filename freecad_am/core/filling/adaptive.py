@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Contours whose widths adapt to the thickness of a region, so that they fill it without gaps.
+"""Contours whose bead widths adapt to the thickness of a region, so that they fill it without gaps.
 
 After T. Kuipers, E. Doubrovski, J. Wu, C. Wang, "A Framework for Adaptive Width Control of Dense
 Contour-Parallel Toolpaths in Fused Deposition Modeling", Computer-Aided Design 128 (2020): the
-thickness at each point of the medial axis decides the number of beads across and their widths.
-Where the axis runs into a corner, the beads of the thicker place go on into it. Instead of
-trapezoids between the border and a Voronoi diagram, spokes carry the decision to the border.
+thickness at each point of the medial axis determines the number of beads across and their widths.
+Where a branch of the axis runs into a corner, the corner takes over the beads of the thicker part.
+Where the paper uses trapezoids between the border and a Voronoi diagram, this module assigns bead
+numbers and widths to spokes.
 """
 
 from __future__ import annotations
@@ -67,13 +68,13 @@ class BeadLaw:
     widest: float
 
     def usual_radius(self, counts: Array | Index | int) -> Array:
-        """Half the thickness (n,), mm, that usual beads of a number fill."""
+        """Half the thickness (n,), mm, that a given number of usual beads fills."""
         return np.asarray(0.5 * (self.width + (np.asarray(counts) - 1.0) * self.spacing))
 
     def count_beads(self, radii: Array, in_pairs: Mask) -> Index:
-        """The number of beads (n,) across places with half a thickness of `radii` mm.
+        """Number of beads (n,) across places with half a thickness of `radii` mm.
 
-        in_pairs: places (n,) that have no room along their middle for a bead of its own.
+        in_pairs: places (n,) without room for a single bead along the middle.
         """
         highest = int(np.max(radii, initial=0.0) / (0.5 * self.spacing)) + 3
         counts = np.searchsorted(self._limits(np.arange(highest), 1), radii, side="right")
@@ -82,11 +83,11 @@ class BeadLaw:
         return np.where(in_pairs & (counts > 1), even, counts).astype(np.intp)
 
     def least_radius(self, count: int) -> float:
-        """Half the thickness, mm, from which on a number of beads lies side by side."""
+        """Smallest half thickness, mm, with room for this number of beads."""
         return float(self._limits(np.array([count - 1]), 1)[0])
 
     def _limits(self, counts: Index, step: int) -> Array:
-        """Half a thickness (n,), mm, from which on there are more beads than `counts`, by a step."""
+        """Half the thickness (n,), mm, at which the number of beads rises from `counts` by `step`."""
         few, many = self.usual_radius(counts), self.usual_radius(counts + step)
         limits = np.where(counts <= 4, np.sqrt(np.maximum(few, 0.0) * many), 0.5 * (few + many))
         limits = np.minimum(limits, self._radius_at(counts, self.widest))
@@ -97,26 +98,27 @@ class BeadLaw:
         )
 
     def _radius_at(self, counts: Index, share: float) -> Array:
-        """Half a thickness (n,), mm, that beads fill whose inner ones have a share of the usual width."""
+        """Half the thickness (n,), mm, that beads fill if the inner ones have this share of the
+        usual width."""
         usual = self.usual_radius(counts)
         return usual + (share - 1.0) * self._variable_radius(counts)
 
     def _variable_radius(self, counts: Index) -> Array:
-        """How much of half the thickness (n,), mm, beads of variable width fill: all of up to five, else
-        the inner four or five."""
+        """Part of half the thickness (n,), mm, that beads of variable width fill: the whole of it
+        with up to five beads, otherwise the inner four or five beads."""
         inner = np.where(np.asarray(counts) % 2 == 0, 2.0, 2.5) * self.spacing
         return np.where(np.asarray(counts) <= 5, self.usual_radius(counts), inner)
 
     def shares(self, counts: Index, radii: Array) -> Array:
-        """The share of the usual width (n,) of the inner beads."""
+        """Widths of the inner beads as shares (n,) of the usual width."""
         room = np.maximum(self._variable_radius(counts), SAME)
         share = 1.0 + (radii - self.usual_radius(counts)) / room
         return np.asarray(np.clip(share, self.narrowest, self.widest))
 
     def depths(self, pair: int, counts: Index, radii: Array) -> tuple[Array, Array]:
-        """How deep (n,), mm, the middles of a pair of beads lie, and their share (n,) of the width.
+        """Depths (n,), mm, of the middles of a pair of beads, and their widths as shares (n,).
 
-        pair: 0 for the outermost. counts, radii: (n,) as of `shares`.
+        pair: 0 for the outermost. counts, radii: (n,) as in `shares`.
         """
         share = self.shares(counts, radii)
         usual_pairs = np.where(counts <= 5, 0, counts // 2 - 2)
@@ -130,9 +132,8 @@ class BeadLaw:
 
 
 class _Transition(NamedTuple):
-    """Spokes (m,) on the side with fewer beads of a change, and how far (m,) they follow it, 0 to 1;
-    low, high: the spokes next to it on either side.
-    """
+    """A change of the number of beads. spokes: (m,) on the side with fewer beads; weights: (m,)
+    share of the change there, 0 to 1; low, high: the spokes on either side of the change."""
 
     spokes: Index
     low: int
@@ -180,16 +181,17 @@ class _Crossing(NamedTuple):
 
 
 class Adaptive(NamedTuple):
-    """Beads of a region; and the regions inside of the walls that are left for another pattern."""
+    """Beads of a region, and the regions inside its walls that are left for another pattern."""
 
     curves: list[PlaneCurve]
     interior: tuple[Region, ...]
 
 
 def adapt_contours(region: Region, beads: Beads, law: BeadLaw, walls: float) -> Adaptive:
-    """Fill a region with contours, with beads along its middle, and with beads in what these leave open.
+    """Fill a region with contours, with beads along its middle, and with beads in the remaining
+    gaps.
 
-    Parameters and returns as of `_adapt`.
+    Parameters and return value are those of `_adapt`.
     """
     curves, interior = _adapt(region, beads, law, walls)
     if not curves:
@@ -205,7 +207,7 @@ def adapt_contours(region: Region, beads: Beads, law: BeadLaw, walls: float) -> 
 def covered_regions(
     curves: Sequence[PlaneCurve], width: float, chord_error: float
 ) -> tuple[Region, ...]:
-    """What beads of a usual width, mm, cover with the shares that they have."""
+    """Regions that beads cover at their shares of a usual width, mm."""
     lines, halves = [], []
     for curve in curves:
         points, shares = curve.closed_points()
@@ -280,7 +282,7 @@ def _adapt(
 def _thickness(
     spokes: Spokes, law: BeadLaw, max_wedge: float, shortest_centre: float
 ) -> _Thickness:
-    """Carry the thickness of places between two sides into the corners that belong to them."""
+    """Determine the thickness at each spoke; corners take over that of the part they belong to."""
     radii, following = spokes.radii, spokes.following
     middles = spokes.middles
     rise = radii[following] - radii
@@ -317,9 +319,8 @@ def _transitions(
     summit: Index,
     reach: float,
 ) -> list[_Transition]:
-    """Where numbers of beads change: over `reach` mm of the axis on the side with fewer beads, and in the
-    corners that belong there.
-    """
+    """Changes of the number of beads: each extends over `reach` mm of the axis on the side with
+    fewer beads, and into the corners that belong to it."""
     transitions = []
     for cycle in _cycles(following):
         for run in _runs(is_central[cycle]):
@@ -356,8 +357,8 @@ def _level_short_changes(
     is_central: Mask,
     shortest: float,
 ) -> None:
-    """Write to `counts` the number of the neighbours where another one holds for less than a length,
-    mm, of the axis; and an even number from `even` where an odd one between others does.
+    """Remove short changes from `counts`: a number of beads that holds for less than a length, mm,
+    of the axis takes that of its neighbours; an odd number between others takes that of `even`.
     """
     for cycle in _cycles(following):
         for run in _runs(is_central[cycle]):
@@ -369,7 +370,7 @@ def _level_short_changes(
 def _level_branch(
     counts: Index, even: Index, distance: Array, branch: Index, shortest: float
 ) -> None:
-    """As `_level_short_changes`, for a branch of the axis between two forks."""
+    """Apply `_level_short_changes` to a branch of the axis between two forks."""
     stretches = np.split(branch, np.flatnonzero(np.diff(counts[branch])) + 1)
     for number, stretch in enumerate(stretches):
         if not len(stretch) or distance[stretch].sum() >= shortest:
@@ -386,7 +387,7 @@ def _level_branch(
 
 
 def _stretch_length(counts: Index, arc: Array, member: int) -> float:
-    """How long (mm) the stretch of the axis is that has as many beads as a member of it."""
+    """Length, mm, of the stretch of the axis that has the same number of beads as `member`."""
     changes = np.flatnonzero(counts != counts[member])
     before, after = changes[changes < member], changes[changes > member]
     start = before[-1] + 1 if len(before) else 0
@@ -397,9 +398,8 @@ def _stretch_length(counts: Index, arc: Array, member: int) -> float:
 def _bridge(
     radii: Array, counts: Index, distance: Array, following: Index, is_central: Mask, longest: float
 ) -> None:
-    """Mark short stretches between two places between sides, as where ribs cross, that run into no
-    corner.
-    """
+    """Mark short stretches between two central ones, such as where ribs cross, that do not run into
+    a corner."""
     for cycle in _cycles(following):
         for run in _runs(~is_central[cycle]):
             if len(run) == len(cycle):
@@ -414,7 +414,7 @@ def _bridge(
 
 
 def _forks(spokes: Spokes, distance: Array, spacing: float) -> Mask:
-    """After which spokes (n,) the axis forks: the place that the circle touches jumps."""
+    """Spokes (n,) after which the axis forks: the touching point of the circle jumps."""
     jump = np.hypot(*(spokes.touching[spokes.following] - spokes.touching).T)
     return np.asarray(np.nan_to_num(jump) > FORK_RATIO * distance + FORK * spacing)
 
@@ -422,7 +422,7 @@ def _forks(spokes: Spokes, distance: Array, spacing: float) -> Mask:
 def _in_short_runs(
     is_level: Mask, forks: Mask, distance: Array, following: Index, shortest: float
 ) -> Mask:
-    """Which level stretches of the axis, from fork to fork, are shorter than a length, mm."""
+    """Mask of level stretches of the axis, from fork to fork, that are shorter than a length, mm."""
     short = np.zeros(len(is_level), dtype=bool)
     for cycle in _cycles(following):
         for run in _runs(is_level[cycle]):
@@ -434,14 +434,14 @@ def _in_short_runs(
 
 
 def _cycles(following: Index) -> list[Index]:
-    """The spokes of each border in their order. Spokes of a border are consecutive numbers."""
+    """Numbers of the spokes of each border, in order. They are consecutive."""
     last = np.flatnonzero(following != np.arange(1, len(following) + 1))
     firsts = np.r_[0, last[:-1] + 1]
     return [np.arange(first, end + 1) for first, end in zip(firsts.tolist(), last.tolist())]
 
 
 def _runs(mask: Mask) -> list[Index]:
-    """Runs of True in a cyclic mask, each as consecutive places; a single one where all are True."""
+    """Runs of True in a cyclic mask, each as consecutive numbers; a single run if all are True."""
     if mask.all():
         return [np.arange(len(mask))]
     if not mask.any():
@@ -455,12 +455,12 @@ def _runs(mask: Mask) -> list[Index]:
 
 
 def _carry_uphill(spokes: Spokes, is_central: Mask, reach: float) -> tuple[Array, Mask, Index]:
-    """The radius (n,) that decides at each spoke, whether (n,) beads there come in pairs only, and the
-    spoke (n,) at the summit.
+    """Find the radius (n,) that decides at each spoke, whether (n,) beads there come in pairs only,
+    and the summit (n,), a spoke.
 
-    A spoke in a corner follows the greatest circle uphill of it along the axis, its summit. Of several
-    summits in a row, which small facets make, a lower one between two higher ones follows the lower of
-    these. Summits within `reach` mm of each other are one.
+    A spoke in a corner follows the largest circle uphill of it along the axis, its summit. Small
+    facets cause several summits in a row; one between two higher summits takes the lower of these.
+    Summits within `reach` mm of each other count as one.
     """
     radii = spokes.radii
     deciding, summit = radii.copy(), np.arange(len(radii))
@@ -493,9 +493,8 @@ def _carry_uphill(spokes: Spokes, is_central: Mask, reach: float) -> tuple[Array
 def _join_summits(
     spokes: Spokes, deciding: Array, summit: Index, corner: Index, reach: float
 ) -> Index:
-    """The summit (n,) of each spoke: one for all within `reach` mm, and a higher one where another
-    stretch of the axis passes there and climbs on.
-    """
+    """Summit (n,) of each spoke after joining: summits within `reach` mm become one, and a summit
+    that another stretch of the axis passes on its way up gives way to the higher one."""
     middles, following = spokes.middles, spokes.following
     tops, number = np.unique(summit[corner], return_inverse=True)
     group = _groups(middles[tops], reach)
@@ -525,16 +524,15 @@ def _join_summits(
 
 
 def _groups(points: Array, reach: float) -> Index:
-    """Numbers (n,) of groups of points (n, 2), each within `reach` mm of another of its group."""
+    """Group numbers (n,) of points (n, 2): points within `reach` mm of each other share a group."""
     pairs = cKDTree(points).query_pairs(reach, output_type="ndarray")
     links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(points), len(points)))
     return np.asarray(connected_components(links, directed=False)[1], dtype=np.intp)
 
 
 def _summits(values: Array) -> tuple[Array, Index]:
-    """The level (n,) to which each of values (n,) is raised between higher ones, and the place (n,) of
-    the summit uphill of each.
-    """
+    """Levels (n,) of values (n,) with dips between higher values filled, and the number (n,) of the
+    summit uphill of each value."""
     level = np.minimum(np.maximum.accumulate(values), np.maximum.accumulate(values[::-1])[::-1])
     number = np.arange(len(values))
     right = _walk_up(values)
@@ -543,7 +541,7 @@ def _summits(values: Array) -> tuple[Array, Index]:
 
 
 def _walk_up(values: Array) -> Index:
-    """The place (n,) that a walk to the right from each place climbs to."""
+    """Number (n,) of the place where a climb to the right from each place ends."""
     rising = np.r_[values[1:] >= values[:-1], False]
     ends = np.where(rising, len(values), np.arange(len(values)))
     return np.asarray(np.minimum.accumulate(ends[::-1])[::-1])
@@ -559,9 +557,8 @@ def _rings(
     pair: int,
     law: BeadLaw,
 ) -> list[PlaneCurve]:
-    """The closed beads of a pair: along the border where it has the pair, and back on the other side
-    where it ends.
-    """
+    """Closed beads of a pair: along the border as far as the pair extends, then back on the other
+    side."""
     is_valid = has_pair & (depths <= spokes.radii + SAME * law.spacing)
     runs: list[tuple[_Crossing | None, Index, _Crossing | None]] = []
     for cycle in _cycles(spokes.following):
@@ -594,7 +591,7 @@ def _crossing(
     shares: Array,
     law: BeadLaw,
 ) -> _Crossing:
-    """Where a bead that the spoke `inside` has ends before the spoke `outside`."""
+    """Point where a bead at the spoke `inside` ends before the spoke `outside`."""
     radii = spokes.radii[[inside, outside]]
     depth, share = float(depths[inside]), 1.0
     if has_pair[outside]:
@@ -618,7 +615,7 @@ def _crossing(
 
 
 def _share_of_change(thickness: _Thickness, inside: int, outside: int, law: BeadLaw) -> float:
-    """Where between two spokes of the axis the pair of the first ends."""
+    """Share of the way between two spokes of the axis at which the pair of the first ends."""
     start, end = float(thickness.radii[inside]), float(thickness.radii[outside])
     limit = law.least_radius(int(thickness.counts[inside]) // 2 * 2)
     if start == end:
@@ -629,7 +626,7 @@ def _share_of_change(thickness: _Thickness, inside: int, outside: int, law: Bead
 def _chains(
     ends: Sequence[tuple[_Crossing | None, _Crossing | None]], spacing: float
 ) -> list[list[int]]:
-    """Runs chained to rings: where a run ends, another begins on the other side of the axis."""
+    """Runs chained into rings: where a run ends, another begins on the other side of the axis."""
     open_runs = [number for number, (entry, leave) in enumerate(ends) if leave is not None]
     closed = [[number] for number, (_, leave) in enumerate(ends) if leave is None]
     if not open_runs:
@@ -651,7 +648,8 @@ def _chains(
 
 
 def _match(leaves: Array, entries: Array, spacing: float) -> Index:
-    """For each place (n, 2) the number of an entry (n, 2), one to one, at the least distances."""
+    """Number of the entry (n, 2) assigned to each place (n, 2), one to one, at the least total
+    distance."""
     count = len(leaves)
     successor = np.full(count, -1)
     following = np.roll(np.arange(count), -1)  # most gaps are corners, where the next run begins
@@ -714,7 +712,7 @@ def _of_crossing(crossing: _Crossing) -> tuple[Array, Array, Array, Array, Array
 
 
 def _thinned(points: Array, share: Array, closed: bool, beads: Beads) -> tuple[Array, Array | None]:
-    """The points and shares that the tolerances ask for; no shares where all are usual."""
+    """Points and shares, thinned to the tolerances; shares are None if all are usual."""
     if closed:
         points = np.vstack([points, points[:1]])
         share = np.r_[share, share[:1]]
@@ -730,16 +728,15 @@ def _thinned(points: Array, share: Array, closed: bool, beads: Beads) -> tuple[A
 
 
 def _kept_numbers(line: Array, tolerance: float) -> Index:
-    """Numbers of the points that remain of a line (n, 3) of points with their numbers."""
+    """Numbers of the points of a line (n, 3) that remain after x and y are simplified."""
     shape = simplified(line[:, :2], tolerance)
     order = {tuple(point): number for number, point in enumerate(line[:, :2].tolist())}
     return np.array([order[tuple(point)] for point in shape.tolist()] + [0, len(line) - 1])
 
 
 class _Middle(NamedTuple):
-    """A piece of the axis for a bead: points (n, 2), shares (n,); and whether its ends meet beads that begin
-    there.
-    """
+    """A piece of the axis for a bead: points (n, 2), shares (n,), and whether its ends meet beads
+    that begin there."""
 
     points: Array
     shares: Array
@@ -769,7 +766,8 @@ def _centres(
 def _middle_pieces(
     spokes: Spokes, thickness: _Thickness, law: BeadLaw, shares: Array
 ) -> tuple[list[_Middle], list[tuple[Array, Array]]]:
-    """Open pieces of the axis with room for a bead, each from one of its two sides, and closed ones."""
+    """Pieces of the axis with room for a bead: open ones, each from one of its sides, and closed
+    ones."""
     following, middles, counts = spokes.following, spokes.middles, thickness.counts
     has_room = thickness.is_central & (shares >= law.narrowest) & (counts > 0)
     is_first_side = (spokes.positions < spokes.opposite) & ~np.isnan(spokes.opposite)
@@ -805,9 +803,8 @@ def _middle_pieces(
 def _share_of_end(
     thickness: _Thickness, inside: int, outside: int, law: BeadLaw, shares: Array
 ) -> float:
-    """Where between two spokes a bead in the middle ends: where another pair begins, or where it would
-    get too narrow.
-    """
+    """Share of the way between two spokes at which a bead in the middle ends: where another pair
+    begins, or where it would become too narrow."""
     if thickness.counts[outside] // 2 > thickness.counts[inside] // 2:
         return 1.0 - _share_of_change(thickness, outside, inside, law)
     fall = float(shares[inside] - shares[outside])
@@ -817,7 +814,8 @@ def _share_of_end(
 def _join_middles(
     pieces: list[_Middle], reach: float, law: BeadLaw, shortest: float
 ) -> list[_Middle]:
-    """Pieces joined where they meet, the straightest pair of several; ends on other beads cut back."""
+    """Pieces joined where they meet, the straightest pair first; ends that overlap other beads are
+    cut back."""
     least = SHORTEST_PIECE * law.spacing
     joined = [piece for piece in pieces if length(piece.points, False) > least]
     ends = np.array([piece.points[at] for piece in joined for at in (0, -1)]).reshape(-1, 2)
@@ -860,7 +858,7 @@ def _outward(points: Array, at: int) -> Array:
 def _walk(
     pieces: list[_Middle], partner: Index, meets: Mask, law: BeadLaw, shortest: float
 ) -> list[_Middle]:
-    """Chains of pieces from open end to open end, and those that close."""
+    """Chains of pieces from open end to open end, and closed chains."""
     is_left = np.ones(len(pieces), dtype=bool)
     starts = [end for end in range(2 * len(pieces)) if partner[end] < 0]
     starts += list(range(0, 2 * len(pieces), 2))
@@ -888,7 +886,7 @@ def _walk(
 
 
 def _cut_back(piece: _Middle, law: BeadLaw, shortest: float) -> _Middle:
-    """A piece without its ends that lie on other beads; `shortest` mm remain."""
+    """Shorten a piece by its ends that overlap other beads; at least `shortest` mm remain."""
     points, shares = piece.points, piece.shares
     for turned in range(2):
         if piece.meets[turned]:
@@ -903,7 +901,7 @@ def _cut_back(piece: _Middle, law: BeadLaw, shortest: float) -> _Middle:
 
 
 def _shortened(points: Array, shares: Array, by: float) -> tuple[Array, Array]:
-    """A line (n, 2) with shares (n,) without the last `by` mm."""
+    """A line (n, 2) with shares (n,), shortened by `by` mm at its end."""
     arc = arcs(points)
     end = arc[-1] - by
     if end <= 0.0:

@@ -31,13 +31,19 @@ class PlaceParameters:
         "places the part.",
         choices=(AUTO, POINT, PLATFORM, POSITIONER),
     )
-    x: float = f.parameter(200.0, f.LENGTH, "Range of x to either side.", low=0.0, high=20_000.0)
-    y: float = f.parameter(200.0, f.LENGTH, "Range of y to either side.", low=0.0, high=20_000.0)
-    z: float = f.parameter(200.0, f.LENGTH, "Range of z to either side.", low=0.0, high=20_000.0)
+    x: float = f.parameter(
+        200.0, f.LENGTH, "Largest change of x in either direction.", low=0.0, high=20_000.0
+    )
+    y: float = f.parameter(
+        200.0, f.LENGTH, "Largest change of y in either direction.", low=0.0, high=20_000.0
+    )
+    z: float = f.parameter(
+        200.0, f.LENGTH, "Largest change of z in either direction.", low=0.0, high=20_000.0
+    )
     rx: float = f.parameter(
         0.0,
         f.ANGLE,
-        "Range of RX to either side.",
+        "Largest change of RX in either direction.",
         low=0.0,
         high=math.pi,
         advanced=True,
@@ -45,7 +51,7 @@ class PlaceParameters:
     ry: float = f.parameter(
         0.0,
         f.ANGLE,
-        "Range of RY to either side.",
+        "Largest change of RY in either direction.",
         low=0.0,
         high=math.pi,
         advanced=True,
@@ -53,7 +59,7 @@ class PlaceParameters:
     rz: float = f.parameter(
         0.0,
         f.ANGLE,
-        "Range of RZ to either side.",
+        "Largest change of RZ in either direction.",
         low=0.0,
         high=math.pi,
         advanced=True,

@@ -23,7 +23,7 @@ SEPARATOR = ";"  # separator of records in a text
 
 
 def entry(kind: str, default: Any = dataclasses.MISSING) -> Any:
-    """A field of a record, with its kind; without a default it must be given."""
+    """A field of a record, with its kind. A field without a default is required."""
     return dataclasses.field(default=default, metadata={"spec": f.Spec(kind, "")})
 
 
@@ -71,11 +71,11 @@ class Records:
         return records
 
     def text(self, records: Any) -> str:
-        """Return the notation of panels and macros, `NONE` without records."""
+        """Return the notation of panels and macros; `NONE` if there are no records."""
         return self.format(self._tuple(records)) or NONE
 
     def to_json(self, records: Any) -> str:
-        """Return the JSON of a property, `NONE` without records."""
+        """Return the JSON of a property; `NONE` if there are no records."""
         entries = [_outer_values(record) for record in self._tuple(records)]
         if not entries:
             return NONE
@@ -87,7 +87,7 @@ class Records:
         return () if records is None else (records,)
 
     def _from_json(self, text: str) -> tuple[Any, ...] | None:
-        """Return the records of JSON, None for every other text."""
+        """Return the records of JSON; None for any other text."""
         if not text.startswith('{"' if self.single else '[{"'):
             return None
         try:
@@ -133,7 +133,7 @@ def convert_texts(owner: Any) -> None:
 
 
 def split(text: str) -> list[str]:
-    """Return the texts of the records of a text, without blanks at their ends."""
+    """Return the texts of the records in a text, without surrounding blanks."""
     return [part.strip() for part in text.split(SEPARATOR) if part.strip()]
 
 
@@ -160,7 +160,7 @@ def inner_pose(values: Sequence[float]) -> Pose:
 
 
 def _outer_values(record: Any) -> dict[str, Any]:
-    """Return the values of a record in outer units, without those at their default."""
+    """Return the values of a record in outer units, except defaults."""
     values = {}
     for field in dataclasses.fields(record):
         value = getattr(record, field.name)
@@ -178,7 +178,7 @@ def _outer(kind: str, value: Any) -> Any:
 
 
 def _record(cls: type, values: dict[str, Any]) -> Any:
-    """Return a record of values in outer units. Raises TypeError and KeyError for other values."""
+    """Return the record of values in outer units. Raises TypeError or KeyError for invalid values."""
     kinds = {field.name: f.spec_of(field).kind for field in dataclasses.fields(cls)}
     return cls(**{name: _inner(kinds[name], value) for name, value in values.items()})
 

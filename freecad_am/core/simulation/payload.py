@@ -67,7 +67,7 @@ def issues(
 
 
 def finished(motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters) -> float:
-    """kg of the finished part, including the bodies that it grows on if they are closed."""
+    """Mass, kg, of the finished part, including the bodies that it grows on if they are closed."""
     deposited = np.nan_to_num(volumes(motion, process, toolpath)).sum()
     return float(KG * process.density * (deposited + enclosed_volume(toolpath.surroundings)[0]))
 

@@ -100,11 +100,11 @@ def _run(loop: Any, flags: Any) -> None:
 
 
 class _Dialog:
-    """Dialog with text, bar and Cancel, created when due; Esc and closing it cancel too.
+    """Dialog with text, bar and Cancel, shown after a delay; Esc and closing it cancel too.
 
-    FreeCAD, which may be recomputing, takes mouse and keys from all windows but modal messages and progress dialogs; of the
-    latter Esc is a shortcut, which comes before keys. So no event filter on the application is needed, which would
-    call Python for every event, even in the middle of FreeCAD's work.
+    While FreeCAD recomputes, it blocks mouse and keys except in modal messages and progress
+    dialogs. In a progress dialog Esc is a shortcut, which Qt handles before keys, so the
+    application needs no event filter, which would call Python for every event.
     """
 
     def __init__(self) -> None:

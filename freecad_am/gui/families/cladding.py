@@ -49,7 +49,5 @@ class CladdingWindow(FeatureWindow):
     def assign_roles(self, picks: Sequence[Pick], reason: str, layers: str) -> JobProposal:
         faces = picking.pick_of_faces(picks[0])
         is_solid = not picking.is_mesh(faces.obj) and bool(global_shape(faces.obj).Solids)
-        missing = (
-            tr("Click, with Ctrl, the faces to cover.") if is_solid and not faces.names else ""
-        )
+        missing = tr("Ctrl+click the faces to cover.") if is_solid and not faces.names else ""
         return JobProposal("cladding", reason, (faces,), second_ground(picks), missing)

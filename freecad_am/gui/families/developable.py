@@ -58,7 +58,7 @@ class DevelopableWindow(FeatureWindow):
         if len(picks) == 1:
             mesh = picking.is_mesh(picks[0].obj)
             lonely = mesh or (not faced and len(global_shape(picks[0].obj).Solids) < 2)
-            missing = tr("Select also, with Ctrl, the hub: a cylinder or cone.") if lonely else ""
+            missing = tr("Also Ctrl+click the hub: a cylinder or cone.") if lonely else ""
             ground = picking.pick_of_faces(faced[0]) if faced else None
             return JobProposal("developable", reason, (Pick(picks[0].obj),), ground, missing)
         hub = faced[0] if len(faced) == 1 else picks[-1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The side of the window of each family, imported at first need.
+"""What each family adds to the window, imported on first use.
 
 `core.families.registry` lists the families; the module here has the kind as its name.
 """
@@ -16,12 +16,12 @@ from .window import FeatureWindow
 
 @functools.cache
 def window_of(family: Family) -> FeatureWindow:
-    """Return the side of the window of a family."""
+    """Return the `FeatureWindow` of a family."""
     module = importlib.import_module(f"{__package__}.{family.kind}")
     window: FeatureWindow = getattr(module, f"{type(family).__name__}Window")()
     return window
 
 
 def feature_windows() -> list[FeatureWindow]:
-    """Return the sides of all families in the order of their tools."""
+    """Return the windows of all families in the order of their tools."""
     return sorted(map(window_of, FAMILIES), key=lambda window: window.rank)

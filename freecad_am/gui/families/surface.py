@@ -47,7 +47,7 @@ class SurfaceWindow(FeatureWindow):
     def assign_roles(self, picks: Sequence[Pick], reason: str, layers: str) -> JobProposal:
         wall, ground, unclear = picking.proposal(picks)
         if wall is None:
-            missing = unclear or tr("Select also, with Ctrl, the faces to deposit on {}.").format(
+            missing = unclear or tr("Also Ctrl+click the faces to deposit on {}.").format(
                 picks[0].obj.Label
             )
             return JobProposal("surface", reason, (), ground, missing)

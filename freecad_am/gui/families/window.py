@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The side of the window of a family: its tool, its panel and view, its entry in New Job."""
+"""What a family adds to the window: its tool, its panel and view, its entry in New Job."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def ground_missing(wall: Pick, ground: Pick | None) -> str:
     """Return what a wall lacks; a mesh may start on the platform."""
     if ground is not None or picking.is_mesh(wall.obj):
         return ""
-    return tr("Select also, with Ctrl, the part it grows on.")
+    return tr("Also Ctrl+click the part it grows on.")
 
 
 def several_elements(pick: Pick) -> Pick:

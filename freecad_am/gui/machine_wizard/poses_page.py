@@ -310,7 +310,7 @@ class PosesPage(Page):
         axes = " + ".join(names)
         now = suspect.shown
         if suspect.kind == pendant.SIGN and now.coupling == self.owner.draft.shown.coupling:
-            return tr("{} counts the other way (sign)").format(axes)
+            return tr("{}: reversed sign").format(axes)
         if suspect.kind == pendant.COUPLED:
             return tr("axis 3 is shown {}").format(
                 tr("relative to the horizontal")

@@ -71,12 +71,7 @@ class FramesPage(Page):
         self.column.addWidget(self.frames.widget)
         self.axes = FigureTable("axes", [tr("Sign"), tr("Shows at zero")], ["J1"])
         self.column.addWidget(
-            heading(
-                tr(
-                    "Axes on the pendant: -1 if the axis counts the other way; the value shown at "
-                    "zero"
-                )
-            )
+            heading(tr("Axes on the pendant: -1 if the axis is reversed; the value shown at zero"))
         )
         self.column.addWidget(self.axes.widget)
         self.coupling = choice(

@@ -315,7 +315,7 @@ class JobPanel:
             job.missing
             if self.picks
             else tr(
-                "Click the object to deposit, in the tree or the 3D view; then, with Ctrl, its "
+                "Click the object to deposit in the tree or the 3D view, then Ctrl+click its "
                 "substrate, if any."
             )
         )

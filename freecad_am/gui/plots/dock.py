@@ -29,7 +29,7 @@ from .saving import JOINT_PATH, PROGRAM, TOOLPATH, key_of, kind_of, made_from, m
 
 
 def in_units(picture: Picture) -> Picture:
-    """A picture in those units; axes of machines keep the units of their controllers."""
+    """Return a picture in the user's units; machine axes keep the units of their controllers."""
     return chart.in_units(picture, scale_of)
 
 

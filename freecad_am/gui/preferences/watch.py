@@ -28,7 +28,7 @@ class _Watch:
             group.Attach(self)
 
     def onChange(self, group: Any, name: str) -> None:
-        """Called by FreeCAD when an entry has changed or gone."""
+        """Called by FreeCAD when an entry has changed or was removed."""
         if name in (*SHOWN, SCHEME) and not self.is_scheduled:
             self.is_scheduled = True
             QtCore.QTimer.singleShot(0, self._notify)

@@ -164,7 +164,7 @@ class QuantityField:
         connect(self.line, "textChanged(QString)", self._show_mark)
 
     def read(self) -> float | str:
-        """Return the number in the field's unit, or the expression. InputError 'BAD_VALUE' for other text."""
+        """Return the number in the field's unit, or the expression. Raises InputError BAD_VALUE for other text."""
         text = str(self.line.text())
         if text == self.known_text:
             return self.shown

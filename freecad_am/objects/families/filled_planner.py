@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What solids in all layers have in common."""
+"""Planner of filled solids, common to all kinds of layers."""
 
 from __future__ import annotations
 

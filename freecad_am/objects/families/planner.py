@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What each family does with a feature of a document: layers and beads, a clear nozzle, checks on the part.
+"""How a family plans a feature of a document: layers and beads, clearance of the nozzle, checks
+against the part.
 
 A planner imports its strategy when a feature is planned: importing every family takes longer than
 planning a small part.
@@ -52,7 +53,7 @@ class FeaturePlanner:
     has_faces: ClassVar[bool] = True
 
     def plan_layers(self, inputs: Given) -> Toolpath:
-        """Return layers and beads. InputErrors of the family."""
+        """Return layers and beads. Raises InputErrors of the family."""
         raise NotImplementedError
 
     def keep_clear(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parts of revolution: directions are settled with the layers."""
+"""Parts of revolution: layers and build directions are determined together."""
 
 from __future__ import annotations
 
@@ -44,9 +44,8 @@ class RevolutionPlanner(FeaturePlanner):
     def keep_clear(
         self, toolpath: Toolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
     ) -> Toolpath:
-        """Check clearance to the surroundings; the rest was settled with the layers, except deposit
-        of other features.
-        """
+        """Check clearance to the surroundings and to other features; the strategy has kept clear of
+        the rest."""
         if feature is None:
             touch_issues = clearance_look.nozzle_issues(
                 toolpath, inputs.wall.surroundings, inputs.nozzle
@@ -63,7 +62,7 @@ class RevolutionPlanner(FeaturePlanner):
     def part_distances(
         self, toolpath: Toolpath, inputs: Given, sources: Sequence[Taken], places: on_part.Places
     ) -> PartDistances | None:
-        """Return distances from the faces; a middle wall is between two faces, on neither."""
+        """Return distances from the faces; a middle wall lies between two faces."""
         if inputs.strategy.wall != "middle":
             return super().part_distances(toolpath, inputs, sources, places)
         if not sources[0].shape.Solids:

@@ -129,7 +129,7 @@ def _read(file: Path) -> Body:
 
 
 def _torch(body: Body, nozzle: NozzleParameters) -> torch.Torch:
-    """The torch of a body, which is the same one as long as its file is."""
+    """The torch of a body, cached by the body, which stays the same while its file is unchanged."""
     for cached_body, cached_nozzle, cached_torch in _torches:
         if cached_body is body and cached_nozzle == nozzle:
             return cached_torch

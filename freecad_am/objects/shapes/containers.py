@@ -76,7 +76,7 @@ LINKS = ("App::Link", "App::LinkElement")
 
 
 def broken_link(value: Any) -> str:
-    """The label of a FreeCAD link that shows nothing because its object is gone, '' when all is well."""
+    """Label of the first FreeCAD link whose object is gone; '' if there is none."""
     for entry in value if isinstance(value, list) else [value]:
         linked = entry[0] if isinstance(entry, tuple) else entry
         if linked is not None and links_to_nothing(linked):

@@ -163,7 +163,8 @@ def _speeds(moves: Moves) -> Array:
 
 
 def poses(position: Array, rotation: Array) -> Array:
-    """x y z in m and the rotation vector in rad, (n, 6), as the text has them, of mm (n, 3) and (n, 3, 3)."""
+    """Return positions in m and rotation vectors in rad (n, 6), rounded as in the program, from
+    positions (n, 3) mm and rotations (n, 3, 3)."""
     values: Array = (
         np.round(np.hstack([0.001 * position, ROTATION_VECTOR.numbers(rotation)]), DECIMALS) + 0.0
     )

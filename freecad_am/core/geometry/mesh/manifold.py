@@ -110,8 +110,8 @@ def _angles(start: Array, end: Array, tips: Array) -> Array:
 def _across_solid(angles: Array, forward: Mask) -> list[tuple[int, int]]:
     """Pair the triangles about an edge that bound the same solid.
 
-    The normal of a triangle that runs forward along the edge points onwards about it, so the
-    solid extends from a triangle that runs backward to the next one that runs forward.
+    The normal of a triangle that runs forward along the edge points towards larger angles, so
+    the solid extends from a triangle that runs backward to the next one that runs forward.
     """
     order = np.lexsort((forward, angles)).tolist()
     pairs: list[tuple[int, int]] = []

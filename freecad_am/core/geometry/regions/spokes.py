@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Spokes of a region: straight lines from its border, square to it, to the medial axis.
+"""Spokes of a region: straight lines from its border, perpendicular to it, to the medial axis.
 
-The end of a spoke is the middle of the largest circle inside the region that touches the border
-at its foot. All spokes in their order along the border walk round the whole medial axis, each of
-its branches once on either side, so functions on the axis are functions of the spoke.
+The end of a spoke is the centre of the largest circle inside the region that touches the border at
+its foot. In their order along the border, spokes visit every branch of the medial axis once on each
+side, so a function on the axis is a function of the spoke.
 
 The circles come from shrinking balls: J. Ma, S. W. Bae, S. Choi, "3D medial axis point
 approximation using nearest neighbors and the normal field", The Visual Computer 28 (2012).
@@ -79,9 +79,8 @@ class _Border(NamedTuple):
 
 
 class _Pieces(NamedTuple):
-    """Short pieces of the border, with a tree of their middles. edges (m,); shares (m, 2) of the
-    edge at both ends.
-    """
+    """Short pieces of the border, with a search tree of their middles. edges: (m,); shares: (m, 2),
+    both ends of a piece as shares of its edge."""
 
     tree: cKDTree
     edges: Index
@@ -89,9 +88,8 @@ class _Pieces(NamedTuple):
 
 
 class _Places(NamedTuple):
-    """Places on the border. edges (n,), shares (n,) of the edge; fans (n,): at a reflex corner the
-    share of its turn, from the previous edge (0) to its own (1).
-    """
+    """Places on the border: edges (n,) and shares (n,) along them. fans (n,): at a reflex corner,
+    the direction between the normals of the previous edge (0) and of its own (1)."""
 
     edges: Index
     shares: Array
@@ -135,7 +133,7 @@ def find_spokes(region: Region, step: float, tolerance: float, turn: float, cap:
 
 
 def _points_at(border: _Border, positions: Array) -> Array:
-    """Places (n, 2) on the border by positions (n,); nan where those are."""
+    """Points (n, 2) of the border at positions (n,); nan where the position is nan."""
     edges = np.minimum(np.nan_to_num(positions).astype(np.intp), len(border.starts) - 1)
     return np.asarray(border.starts[edges] + (positions - edges)[:, None] * border.chords[edges])
 
@@ -171,7 +169,7 @@ def _cut_pieces(border: _Border, step: float) -> _Pieces:
 
 
 def _first_places(border: _Border, step: float, turn: float) -> _Places:
-    """The corners, fans at reflex ones, and places between corners at most `step` mm apart."""
+    """Corners, fans at reflex corners, and places between corners at most `step` mm apart."""
     number = np.arange(len(border.starts))
     lengths = np.hypot(*border.chords.T)
     counts = np.maximum(np.ceil(lengths / step - 1e-9), 1.0).astype(np.intp)
@@ -262,9 +260,8 @@ def _measure(border: _Border, pieces: _Pieces, places: _Places, cap: float) -> t
 
 
 def _nearest_border(border: _Border, pieces: _Pieces, points: Array) -> tuple[Array, Array, Index]:
-    """Places (n, k, 2) on the pieces of the border about nearest to points (n, 2), their
-    positions (n, k) and edges (n, k).
-    """
+    """Points (n, k, 2) on the pieces of the border nearest to points (n, 2), with their positions
+    (n, k) and edges (n, k)."""
     count = min(NEAREST_PIECES, len(pieces.edges))
     _, numbers = pieces.tree.query(points, k=[*range(1, count + 1)])
     edges, limits = pieces.edges[numbers], pieces.shares[numbers]
@@ -284,7 +281,7 @@ def _refine(
     tolerance: float,
     cap: float,
 ) -> tuple[_Places, Array, Array]:
-    """Spokes added where the radius between two is not linear."""
+    """Add spokes where the radius between two spokes is not linear."""
     open_ = np.ones(len(radii), dtype=bool)
     for _ in range(MAX_HALVINGS):
         intervals = np.flatnonzero(open_)
@@ -315,7 +312,7 @@ def _refine(
 
 
 def _near_summit(border: _Border, places: _Places, radii: Array) -> Mask:
-    """Whether the interval after each spoke ends at one that is longer than its neighbours."""
+    """Whether the interval after each spoke ends at a spoke longer than its neighbours."""
     following = _following(border, places)
     previous = np.empty_like(following)
     previous[following] = np.arange(len(following))
@@ -324,7 +321,7 @@ def _near_summit(border: _Border, places: _Places, radii: Array) -> Mask:
 
 
 def _following(border: _Border, places: _Places) -> Index:
-    """The next spoke of each along its border."""
+    """Number of the next spoke along the border."""
     counts = np.bincount(places.edges, minlength=len(border.starts))
     firsts = np.cumsum(counts) - counts
     number = np.arange(len(places.edges))
@@ -333,7 +330,7 @@ def _following(border: _Border, places: _Places) -> Index:
 
 
 def _between(places: _Places, first: Index, second: Index) -> _Places:
-    """Places halfway between consecutive ones; edges of -1 where there is nothing between."""
+    """Places halfway between consecutive places; edge -1 where no place is between."""
     a, b = places.select(first), places.select(second)
     same_corner = (a.edges == b.edges) & (a.shares == 0.0) & (b.shares == 0.0)
     ends = np.where(a.edges == b.edges, b.shares, 1.0)

@@ -41,7 +41,7 @@ class Nodes(NamedTuple):
     tangents: Array
 
     def reversed(self) -> Nodes:
-        """The same the other way."""
+        """The same curve in the opposite direction."""
         return Nodes(self.points[::-1], -self.tangents[::-1])
 
 

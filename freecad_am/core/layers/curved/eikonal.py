@@ -120,10 +120,10 @@ ROUNDS = 3  # in a band
 
 
 class Links(NamedTuple):
-    """Consecutively numbered nodes inside.
+    """Nodes inside the solid, numbered consecutively.
 
-    nodes: (n,) of the flat grid. neighbours: (6, n) behind and ahead along x, along y, along
-    z; n where there is no node inside.
+    nodes: (n,) in the flat grid. neighbours: (6, n) behind and ahead along x, y and z; n if that
+    node is outside.
     """
 
     nodes: Index

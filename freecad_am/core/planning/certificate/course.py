@@ -77,7 +77,7 @@ def _take_step(
     """Take a Newton step to allowed rotations with a lower sum.
 
     Returns the rotations and their joint steps, or None if no step succeeds. Points that would
-    break a constraint are fixed, one group after the other, and the others move on.
+    break a constraint are fixed, one group after another; the others keep moving.
     """
     value, blocked = float((current[0] ** 2 * scale).sum()), np.zeros(len(phi), dtype=bool)
     for _ in range(MAX_ACTIVE_SETS):

@@ -257,10 +257,10 @@ class _Near:
         )
 
     def least(self, to: Array, weights: Array) -> tuple[Array, Array, Array]:
-        """Return the least sum (n,), searched from offset `to`, its offset and the error of the sum
-        ahead.
+        """Return the least sum (n,) near offset `to`, the offset where it occurs, and the error of the
+        sum ahead.
 
-        The sum is NaN where unknown.
+        The sum is NaN if unknown.
         """
         x = self._minimised(to - self.shift, self.later, self.low, self.high, weights)
         doubt = np.where(np.abs(x) <= 1.0, INNER_ERROR, OUTER_ERROR) * self.doubt
