@@ -21,6 +21,7 @@ from freecad_am.core.parameters.scan import ScanParameters
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
+ROOMS = (ROOT, ROOT / "freecad_am", ROOT / "tests")  # file names in guides start in one of these
 SECTIONS = (
     *(("strategy", parameters) for parameters in [family.parameters for family in FAMILIES]),
     ("build_direction", BuildDirectionParameters),
@@ -208,6 +209,23 @@ def test_architecture_has_the_table_of_imports():
     assert {
         file: listed(more) for file, more in re.findall(r"`([^`]+)` has (`[^;]+`)", told)
     } == alone
+
+
+@pytest.mark.parametrize(
+    "page",
+    [DOCS / "architecture.md", *sorted((DOCS / "contributing").glob("*.md"))],
+    ids=lambda page: page.stem,
+)
+def test_files_named_in_guides_exist(page):
+    names = set(re.findall(r"`([\w./-]+\.py|[\w/]+/)`", page.read_text(encoding="utf-8")))
+    assert names
+    missing = [
+        name
+        for name in names
+        if not re.search("NAME|KIND", name)
+        and not any((room / name).exists() or [*room.rglob(name.strip("/"))] for room in ROOMS)
+    ]
+    assert not missing
 
 
 def test_decisions_are_numbered_and_whole():
