@@ -398,7 +398,7 @@ def read_cell(file: str) -> CellParameters:
 
 
 def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
-    """A feature at its defaults by the keys that `make_all` takes. InputError BAD_VALUE for another key."""
+    """A feature at its defaults by the keys that `make_all` takes. Raises InputError BAD_VALUE for another key."""
     allowed = (
         "source",
         "kind",

@@ -121,7 +121,7 @@ class Cluster:
         )
 
     def _make_ready(self) -> None:
-        """Report the versions of every worker. InputError without workers, or if one cannot plan."""
+        """Report the versions of every worker. Raises InputError without workers, or if one cannot plan."""
         from distributed import wait
 
         workers = sorted(self._workers())

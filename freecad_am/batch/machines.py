@@ -24,7 +24,7 @@ def listing() -> str:
 def chosen(maker: str | None, reach: str | None, payload: str | None, post: str | None) -> str:
     """The lines of `listing` for the machines that `machine_catalogue.chosen` finds, each with the
     reach, payload and posts of its file. `reach` is a length and `payload` a mass as users write
-    them; InputError for others.
+    them; raises InputError for others.
     """
     paths.require_freecad()
     from freecad_am.core.kinematics.machines import catalogue as machine_catalogue

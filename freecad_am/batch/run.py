@@ -230,7 +230,7 @@ def check(job: Job) -> Any:
 
 
 def resolved_cell(job: Job) -> Any:
-    """The cell of a job without its feature, or None. InputError as `core.kinematics.cell.resolve`."""
+    """The cell of a job without its feature, or None. Raises InputError as `core.kinematics.cell.resolve`."""
     if job.cell is None:
         return None
     import numpy as np

@@ -25,7 +25,7 @@ def curves_of(
     shape: Any, edges: Sequence[str], faces: Sequence[str], chord_error: float, label: str
 ) -> list[BeadCurve]:
     """The chains that named edges form, all edges of the shape without names, as points within the chord error. faces: whose
-    normals are the directions. InputError UNKNOWN_EDGE, UNKNOWN_FACE, NO_CURVES, OFF_FACE."""
+    normals are the directions. Raises InputError UNKNOWN_EDGE, UNKNOWN_FACE, NO_CURVES, OFF_FACE."""
     edges_by_name = {f"Edge{number + 1}": edge for number, edge in enumerate(shape.Edges)}
     faces_by_name = {f"Face{number + 1}": face for number, face in enumerate(shape.Faces)}
     for names, available, kind in ((edges, edges_by_name, "Edge"), (faces, faces_by_name, "Face")):
@@ -91,7 +91,7 @@ def _polyline(chain: Sequence[Any], chord_error: float, dense: bool) -> Array:
 
 
 def _normals(points: Array, faces: Sequence[Any], label: str) -> Array:
-    """Unit normals (n, 3) of the faces nearest to points. InputError OFF_FACE."""
+    """Unit normals (n, 3) of the faces nearest to points. Raises InputError OFF_FACE."""
     normals = np.empty_like(points)
     for k, point in enumerate(points.tolist()):
         vertex = Part.Vertex(*point)

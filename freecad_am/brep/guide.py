@@ -22,7 +22,7 @@ MIN_EDGE_MM = 1e-3  # mm; shorter edges are none
 
 def edges_of(shape: Any, names: Sequence[str], label: str) -> list[tuple[Array, Array]]:
     """Points and unit tangents (n, 3) of named edges of a shape; of every edge without names.
-    InputError UNKNOWN_EDGE, GUIDE_OPEN.
+    Raises InputError UNKNOWN_EDGE, GUIDE_OPEN.
     """
     edges_by_name = {f"Edge{number + 1}": edge for number, edge in enumerate(shape.Edges)}
     wrong = [name for name in names if name not in edges_by_name]
@@ -56,7 +56,7 @@ def _nodes(edge: Any) -> tuple[Array, Array]:
 
 def triangles_of_faces(shape: Any, names: Sequence[str], label: str, chord_error: float) -> Array:
     """Triangles (k, 3, 3) of faces of a shape, all where none are named, with the chord error of
-    solids. InputError NO_WALL, UNKNOWN_FACE.
+    solids. Raises InputError NO_WALL, UNKNOWN_FACE.
     """
     faces_of_names = faces_by_name(shape, names, label)
     selection = Part.makeCompound(

@@ -154,7 +154,7 @@ def make_trajectory(
 ) -> Any:
     """A Robot::TrajectoryObject through so few points that the path keeps within `tolerance` mm and `turn` rad.
 
-    Z of a waypoint points out of the nozzle. InputError NO_MODULE where this FreeCAD has no Robot workbench.
+    Z of a waypoint points out of the nozzle. Raises InputError NO_MODULE where this FreeCAD has no Robot workbench.
     """
     try:
         import Robot
@@ -200,7 +200,7 @@ DEPOSIT_ON, DEPOSIT_OFF = "(deposit on)", "(deposit off)"
 
 
 def add(document: Any, lines: Sequence[Line], label: str) -> Any:
-    """A Path::Feature of the document; InputError NO_MODULE where this FreeCAD has no CAM."""
+    """A Path::Feature of the document; raises InputError NO_MODULE where this FreeCAD has no CAM."""
     try:
         import Path
     except ImportError:

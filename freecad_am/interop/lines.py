@@ -226,7 +226,7 @@ _UNIT_OF_FILES, _SCHEMA_OF_FILES = "write.step.unit", "write.step.schema"
 
 
 def write_step(lines: Sequence[Line], path: str, label: str) -> None:
-    """Write the file; InputError NO_MODULE where this FreeCAD cannot."""
+    """Write the file; raises InputError NO_MODULE where this FreeCAD cannot."""
     try:
         import Import
     except ImportError:

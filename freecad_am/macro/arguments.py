@@ -97,7 +97,7 @@ def _plain(obj: Any, row: rows.Row, value: Any, where: str) -> Any:
 
 
 def checked_document(doc: Any, where: str = "doc") -> Any:
-    """The document. InputError BAD_INPUT for anything else, by the name of the argument."""
+    """The document. Raises InputError BAD_INPUT for anything else, by the name of the argument."""
     if not isinstance(doc, App.Document) or is_gone(doc):
         raise InputError(
             "BAD_INPUT",
@@ -109,7 +109,8 @@ def checked_document(doc: Any, where: str = "doc") -> Any:
 
 
 def checked_object(value: Any, where: str, doc: Any = None) -> Any:
-    """The object, of a document where that is given. InputError BAD_INPUT for anything else, by the name of the argument."""
+    """The object, of a document where that is given.
+    Raises InputError BAD_INPUT for anything else, by the name of the argument."""
     if isinstance(value, (tuple, list)) and value and isinstance(value[0], App.DocumentObject):
         raise InputError(
             "BAD_INPUT",
@@ -136,7 +137,7 @@ def checked_object(value: Any, where: str, doc: Any = None) -> Any:
 
 
 def checked_objects(values: Any, where: str, doc: Any = None) -> list[Any]:
-    """The objects of a list; none of None. InputError BAD_INPUT as `checked_object`."""
+    """The objects of a list; none of None. Raises InputError BAD_INPUT as `checked_object`."""
     if values is None:
         return []
     if not isinstance(values, Iterable) or isinstance(values, (str, bytes, Mapping)):
@@ -150,7 +151,7 @@ def checked_objects(values: Any, where: str, doc: Any = None) -> list[Any]:
 
 
 def checked_names(names: Any, where: str) -> list[str]:
-    """Names of faces and edges; a text is one name, and None is none. InputError BAD_INPUT for anything else."""
+    """Names of faces and edges; a text is one name, and None is none. Raises InputError BAD_INPUT for anything else."""
     texts = [names] if isinstance(names, str) else [] if names is None else names
     if not isinstance(texts, (list, tuple, set, frozenset)) or not all(map(is_text, texts)):
         raise InputError(
@@ -163,21 +164,21 @@ def checked_names(names: Any, where: str) -> list[str]:
 
 
 def checked_text(value: Any, where: str) -> str:
-    """The text. InputError BAD_INPUT for anything else, by the name of the argument."""
+    """The text. Raises InputError BAD_INPUT for anything else, by the name of the argument."""
     if not is_text(value):
         raise InputError("BAD_INPUT", where, "{} is not a text; put it in quotes", named(value))
     return value
 
 
 def checked_number(value: Any, where: str) -> float:
-    """The number. InputError BAD_INPUT for anything else, by the name of the argument."""
+    """The number. Raises InputError BAD_INPUT for anything else, by the name of the argument."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real) or math.isnan(value):
         raise InputError("BAD_INPUT", where, "{} is not a number; pass one such as 2", named(value))
     return float(value)
 
 
 def checked_keywords(values: Any, where: str) -> dict[str, Any]:
-    """Values by key, none of None. InputError BAD_INPUT for anything else, by the name of the argument."""
+    """Values by key, none of None. Raises InputError BAD_INPUT for anything else, by the name of the argument."""
     if values is None:
         return {}
     if not isinstance(values, Mapping) or not all(isinstance(key, str) for key in values):
@@ -188,7 +189,8 @@ def checked_keywords(values: Any, where: str) -> dict[str, Any]:
 
 
 def checked_list(values: Any, where: str) -> list[Any]:
-    """The values of a list, none of None. InputError BAD_INPUT for anything else, by the name of the argument."""
+    """The values of a list, none of None.
+    Raises InputError BAD_INPUT for anything else, by the name of the argument."""
     if values is None:
         return []
     if not isinstance(values, (list, tuple)):
@@ -212,7 +214,8 @@ def checked_target(path: Any, where: str) -> str:
 
 
 def checked_path(path: Any, where: str) -> str:
-    """The path of a file or folder as a text. InputError BAD_INPUT for anything else, by the name of the argument."""
+    """The path of a file or folder as a text.
+    Raises InputError BAD_INPUT for anything else, by the name of the argument."""
     text = os.fspath(path) if isinstance(path, os.PathLike) else path
     if not is_text(text):
         raise InputError(
@@ -377,7 +380,7 @@ def renew(obj: Any, force: bool = False) -> None:
 
 
 def checked_stage(obj: Any) -> stages.Stage:
-    """The proxy of a stage. InputError BAD_INPUT for any other object."""
+    """The proxy of a stage. Raises InputError BAD_INPUT for any other object."""
     proxy = None if is_gone(obj) else stages.stage_of(obj)
     if proxy is None:
         raise InputError("BAD_INPUT", named(obj), "it is not a stage of the workbench; choose one")

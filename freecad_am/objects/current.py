@@ -80,7 +80,8 @@ def reason_stale(obj: Any) -> str:
 
 
 def check_recomputed(obj: Any, code: str = "NO_RESULT") -> None:
-    """Check that FreeCAD has recomputed all that a stage is made of. InputError `code` naming the object that it has not."""
+    """Check that FreeCAD has recomputed all that a stage is made of.
+    Raises InputError `code` naming the object that it has not."""
     for source in _sources(obj):
         if "Touched" in source.State and not _is_from_another_version(source.Document):
             raise InputError(

@@ -102,7 +102,7 @@ class CurvesFeature(FeatureStage):
 
 
 def _source(obj: Any) -> tuple[Any, tuple[str, ...]]:
-    """The object of Source and the names of the edges and faces chosen. InputError NO_INPUT."""
+    """The object of Source and the names of the edges and faces chosen. Raises InputError NO_INPUT."""
     if not obj.Source:
         raise InputError(
             "NO_INPUT",

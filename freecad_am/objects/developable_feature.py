@@ -116,7 +116,7 @@ class _Given:
 
     @classmethod
     def of(cls, obj: Any) -> _Given:
-        """As the document has it. InputError NO_INPUT, BAD_FACES, NO_SHAPE."""
+        """As the document has it. Raises InputError NO_INPUT, BAD_FACES, NO_SHAPE."""
         source, faces = source_of(obj)
         base = (snapshot_of(obj.BaseFaces[0]), tuple(obj.BaseFaces[1])) if obj.BaseFaces else None
         return cls(
@@ -239,7 +239,7 @@ def _parts(source: Taken) -> list[Any]:
 
 
 def _faces(source: Taken, solid: Any = None) -> list[tuple[str, Any]]:
-    """All faces with names. InputError NO_BASE for a mesh, which has no exact ones."""
+    """All faces with names. Raises InputError NO_BASE for a mesh, which has no exact ones."""
     if source.shape is None:
         raise InputError(
             "NO_BASE",

@@ -231,7 +231,8 @@ def _figures(result: inspect.Inspected) -> tuple[tuple[str, Any], ...]:
 
 
 def files_of_figures(obj: Any) -> dict[str, bytes]:
-    """The figures of an inspection as a table and as JSON, and all points with their deviations. InputError NO_RESULT, also
+    """The figures of an inspection as a table and as JSON, and all points with their deviations.
+    Raises InputError NO_RESULT, also
     where they do not fit the document as it is now."""
     if obj.Key:
         check_current(obj)

@@ -183,7 +183,7 @@ def _refuse_trigger(by: str, no_trigger: str) -> None:
 
 
 def posted(job: Job) -> Posted:
-    """The files of a joint path, not read back. InputError for what cannot be written."""
+    """The files of a joint path, not read back. Raises InputError for what cannot be written."""
     post, parameters = catalogue.load(job.parameters.post), job.parameters
     post.program_name(job.name, "name")  # before anything takes long
     toolpath, planned = job.toolpath(), job.planned()
@@ -208,7 +208,8 @@ def posted(job: Job) -> Posted:
 
 
 def _write_program(job: Job, label: str) -> Outcome:
-    """The files of a joint path, written and read back. InputError; InfeasibleError NOT_VERIFIED naming `label`."""
+    """The files of a joint path, written and read back. InputError;
+    raises InfeasibleError NOT_VERIFIED naming `label`."""
     posted_job = posted(job)
     progress.report(0.5, "reading back and checking")
     checked = verification.verify(
@@ -246,7 +247,7 @@ def _run(motion: Motion, parameters: ProgramParameters) -> Motion:
 
 
 def files_of(obj: Any) -> dict[str, bytes]:
-    """The controller's files of a program object. InputError 'NO_PROGRAM', with the reason, if
+    """The controller's files of a program object. Raises InputError 'NO_PROGRAM', with the reason, if
     files are missing or do not fit the current document.
     """
     template = "no program fits its inputs ({}); mend that and recompute it"

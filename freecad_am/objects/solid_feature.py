@@ -172,7 +172,7 @@ def _select_elements(
 ) -> tuple[Any, tuple[str, ...], str] | None:
     """The linked shape of a feature, the names of its faces or edges (empty for all), and its
     label; None if nothing is chosen. is_used: whether the layers use the link; it is rejected otherwise.
-    InputError NOT_FOR_FAMILY, NO_SHAPE.
+    Raises InputError NOT_FOR_FAMILY, NO_SHAPE.
     """
     if not getattr(obj, name, None):
         return None

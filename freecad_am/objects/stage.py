@@ -140,7 +140,7 @@ class Stage(Stored):
             obj.SchemaVersion = SCHEMA_VERSION
 
     def parameters(self, obj: Any, cls: type) -> Any:
-        """The parameters dataclass of the object; InputError naming Label and property."""
+        """The parameters dataclass of the object; raises InputError naming Label and property."""
         prefix = next(section.prefix for section in self.sections if section.cls is cls)
         return properties.read(obj, cls, prefix)
 
@@ -364,7 +364,7 @@ def stage_of(obj: Any) -> Stage | None:
 
 def checked(obj: Any, link: Link) -> Any:
     """The linked stage, or a list for a link to many, checked for the right kind and a result; None
-    without one. InputError BAD_INPUT, INPUT_FAILED; InfeasibleError INPUT_INFEASIBLE.
+    without one. Raises InputError BAD_INPUT, INPUT_FAILED; raises InfeasibleError INPUT_INFEASIBLE.
     """
     linked = getattr(obj, link.name)
     return (

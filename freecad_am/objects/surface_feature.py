@@ -133,7 +133,7 @@ class SurfaceFeature(FeatureStage):
 
 
 def _start_edges(obj: Any) -> tuple[str, ...]:
-    """Names of the chosen edges. InputError 'BAD_EDGES' for edges of another object, and for other
+    """Names of the chosen edges. Raises InputError 'BAD_EDGES' for edges of another object, and for other
     elements.
     """
     if not obj.StartEdges:

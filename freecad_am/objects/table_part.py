@@ -35,7 +35,7 @@ class Points:
     def read(self, label: str, chord_error: float, roles: str, rotary: str) -> ReadCurves:
         """Its beads, arcs within the chord error (mm), and the content that is not read.
 
-        roles, rotary: for G-code, as in `gcode.read`. InputError BAD_TABLE, BAD_GCODE, BAD_ADA3DP;
+        roles, rotary: for G-code, as in `gcode.read`. Raises InputError BAD_TABLE, BAD_GCODE, BAD_ADA3DP;
         BAD_VALUE for missing roles; NOT_USED for roles and rotary words with other files.
         """
         if self.form == GCODE:
@@ -48,7 +48,7 @@ class Points:
 
 
 def open_points(document: Any, path: str) -> Any:
-    """A file of points as an object. InputError NO_FILE, BAD_FILE, and the errors of `Points.read`."""
+    """A file of points as an object. Raises InputError NO_FILE, BAD_FILE, and the errors of `Points.read`."""
     name = os.path.basename(path)
     content = _read(path, name, POINT_FILES[os.path.splitext(name)[1].lower()])
     curves = content.read(name, _DRAWN, gcode_roles.ALL, gcode.ANY_ROTARY).curves

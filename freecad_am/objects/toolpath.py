@@ -154,7 +154,7 @@ class Toolpath(Stage):
         return work
 
     def targets(self, obj: Any) -> list[Target]:
-        """The target of each feature, for work that does not touch the document. InputError."""
+        """The target of each feature, for work that does not touch the document. Raises InputError."""
         features = features_of(obj)
         cell = _cell(obj)
         from .checks.predicted_shape import Target
@@ -181,7 +181,7 @@ class Toolpath(Stage):
         return lambda toolpath: predicted_shape.add_shape_issues(toolpath, targets, allowance)
 
     def _fit(self, obj: Any) -> Callable[[CoreToolpath], CoreToolpath] | None:
-        """What fits the layers to a scan; None without one. InputError."""
+        """What fits the layers to a scan; None without one. Raises InputError."""
         parameters = self.parameters(obj, ScanParameters)
         if obj.Scan is None:
             return None
@@ -190,7 +190,7 @@ class Toolpath(Stage):
         return fit_of(obj, parameters)
 
     def processes(self, obj: Any) -> list[ProcessParameters]:
-        """The process of each feature. InputError for parameters that a feature cannot override."""
+        """The process of each feature. Raises InputError for parameters that a feature cannot override."""
         process = self.parameters(obj, ProcessParameters)
         texts = [*obj.FeatureProcess, *[""] * (1 + len(obj.Further))][: 1 + len(obj.Further)]
         feature_processes = []
@@ -290,7 +290,7 @@ class Toolpath(Stage):
 
 def own_process(process: ProcessParameters, of_job: ProcessParameters) -> str:
     """The differences of a feature's process from the job's, in the form of FeatureProcess.
-    InputError for parameters that a feature cannot override.
+    Raises InputError for parameters that a feature cannot override.
     """
     job = rows.flat(of_job)
     differences = {key: value for key, value in rows.flat(process).items() if value != job[key]}

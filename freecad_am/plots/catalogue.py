@@ -63,7 +63,7 @@ def picture(
 ) -> Picture:
     """A picture of PICTURES, over TIME or PATH where it is one along the job. layers: first and last, all when left out.
 
-    One that there is not has no charts and says why. InputError where a table of a bead model cannot be read.
+    One that there is not has no charts and says why. Raises InputError where a table of a bead model cannot be read.
     """
     entry = PICTURES[name]
     if entry.machine and source.cell is None:

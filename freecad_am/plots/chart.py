@@ -135,7 +135,7 @@ class Picture:
 
 
 def together(title: str, charts: Sequence[Chart]) -> Chart:
-    """The curves of several charts in one, without limits: those differ. Where units differ both are named."""
+    """Combine the curves of several charts in one, without limits, which differ. Different units are all named."""
     units = list(dict.fromkeys(chart.y.unit for chart in charts))
     curves = tuple(
         replace(curve, colour=number)

@@ -97,7 +97,8 @@ class Source:
 
     @cached_property
     def model(self) -> tuple[Measured, BeadModel] | None:
-        """The table of the bead model and its fit; None without one. InputError where the table cannot be read."""
+        """The table of the bead model and its fit; None without one.
+        Raises InputError where the table cannot be read."""
         if self.process.bead_model == "none":
             return None
         measured = wire.read_table(self.process.bead_model)

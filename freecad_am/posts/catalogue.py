@@ -247,7 +247,7 @@ def fitting(posts: Iterable[str], motion: str, setup: str) -> tuple[str, ...]:
 
 def motion_written(post: str, setup: str) -> str:
     """The default motion of a program: joint if the post supports it in the set-up, or supports
-    neither, else cartesian. InputError UNKNOWN_POST.
+    neither, else cartesian. Raises InputError UNKNOWN_POST.
     """
     load(post)
     return next((motion for motion in _MOTIONS if fitting((post,), motion, setup)), _MOTIONS[0])

@@ -24,7 +24,7 @@ from .part_source import PartSource, part_of
 
 
 def with_classes(section: dict[str, Any]) -> dict[str, Any]:
-    """The section `process` with its classes as records. InputError naming class and key."""
+    """The section `process` with its classes as records. Raises InputError naming class and key."""
     classes = section.get("classes")
     if classes in (None, {}, [], NO_RECORDS):
         return {key: value for key, value in section.items() if key != "classes"}
@@ -42,7 +42,7 @@ def with_classes(section: dict[str, Any]) -> dict[str, Any]:
 
 
 def _bead_class(class_section: Any, name: str) -> bead_classes.BeadClass:
-    """A class of its section. InputError naming class and key."""
+    """A class of its section. Raises InputError naming class and key."""
     where = f"{bead_classes.WHERE}.{name}"
     values = fields.mapping(_flat({} if class_section is None else class_section, name), where)
     fields.known_keys(values, bead_classes.SPECS, where)

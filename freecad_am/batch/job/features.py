@@ -43,7 +43,7 @@ def asked(section: Any) -> bool:
 def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, Any]:
     """The section with numbers in place of the words. The layer height is the height of a straight
     bead. The spacing is chosen so that spacing times layer height equals the wire volume per
-    millimetre of bead: then the fed wire fills the layer. InputError BAD_VALUE without a bead
+    millimetre of bead: then the fed wire fills the layer. Raises InputError BAD_VALUE without a bead
     model, or if the spacing would exceed the bead width.
     """
     key = HEIGHT if section.get(HEIGHT) == WORD else SPACING

@@ -37,7 +37,7 @@ class PartSource:
 
 
 def fixtures_of(section: Any) -> tuple[PartSource, ...]:
-    """The fixtures of a section `fixtures`. InputError naming key and what to do."""
+    """The fixtures of a section `fixtures`. Raises InputError naming key and what to do."""
     entries = [] if section is None else section
     if not isinstance(entries, list):
         raise InputError(
@@ -56,7 +56,8 @@ def fixtures_of(section: Any) -> tuple[PartSource, ...]:
 
 
 def part_of(section: dict[str, Any], key: str = "part") -> PartSource:
-    """The source of a section such as `part`, whose file has an absolute name. InputError naming key and what to do."""
+    """The source of a section such as `part`, whose file has an absolute name.
+    Raises InputError naming key and what to do."""
     further = ("start_edges", "edges") if key == "part" else ()
     fields.known_keys(section, ("file", "object", "solids", "faces", "set", "scale", *further), key)
     if "file" not in section:
@@ -100,7 +101,7 @@ def part_of(section: dict[str, Any], key: str = "part") -> PartSource:
 
 def guide_of(value: Any, part_section: dict[str, Any]) -> PartSource | None:
     """The source of a strategy's guide: the file and object of the section `part_section`, unless it names
-    its own; None for auto. InputError naming key and what to do.
+    its own; None for auto. Raises InputError naming key and what to do.
     """
     key = "strategy.guide"
     if value is None or value == "auto":
@@ -130,7 +131,7 @@ def guide_of(value: Any, part_section: dict[str, Any]) -> PartSource | None:
 
 
 def faces_of(value: Any, key: str) -> tuple[str, ...]:
-    """Names of faces. InputError BAD_VALUE."""
+    """Names of faces. Raises InputError BAD_VALUE."""
     return _names(value, key, _FACE)
 
 

@@ -44,7 +44,7 @@ def split(section: Any) -> tuple[Any, dict[str, Any]]:
 
 
 def scan_of(scan_keys: dict[str, Any], strategy: Any) -> ScanSource | None:
-    """The scan from keys of a substrate; None without any. InputError naming the key."""
+    """The scan from keys of a substrate; None without any. Raises InputError naming the key."""
     if not scan_keys:
         return None
     if "scan" not in scan_keys:

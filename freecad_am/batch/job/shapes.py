@@ -70,7 +70,7 @@ def _opened(document: Any, source: PartSource, key: str) -> Any:
 
 
 def _only_solids(obj: Any, source: PartSource, key: str) -> Any:
-    """The object, with only its named solids. InputError BAD_VALUE for a missing one."""
+    """The object, with only its named solids. Raises InputError BAD_VALUE for a missing one."""
     if not source.solids:
         return obj
     if getattr(obj, "Mesh", None) is not None:

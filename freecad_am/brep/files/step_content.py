@@ -162,7 +162,7 @@ class StepContent:
             )
 
     def compare(self, shape: Any) -> list[Issue]:
-        """Notes and warnings on file content that is missing in its shape. InputError BAD_FILE
+        """Notes and warnings on file content that is missing in its shape. Raises InputError BAD_FILE
         where solids are lost.
         """
         issues = []
@@ -254,7 +254,7 @@ def _last_argument(data: bytes, start: int) -> bytes:
 
 
 def refuse_iges(file: Path, where: str) -> list[Issue]:
-    """Notes on IGES content that is not read. InputError UNSUPPORTED_FILE for constructed solids
+    """Notes on IGES content that is not read. Raises InputError UNSUPPORTED_FILE for constructed solids
     and references to other files, EMPTY_FILE where no entity is a shape.
     """
     kinds, blanked, visible = _iges_kinds(file)

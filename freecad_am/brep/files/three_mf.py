@@ -151,7 +151,8 @@ def triangles(path: Path) -> tuple[Array, Index]:
 def content(path: Path) -> Content:
     """All that a 3MF file builds, pieces apart, mirrored ones outside out, negative volumes subtracted.
 
-    Supports, modifiers, and items that are not to be printed, are left out, and a note names them. InputError BAD_FILE,
+    Supports, modifiers, and items that are not to be printed, are left out, and a note names them.
+    Raises InputError BAD_FILE,
     EMPTY_FILE, UNSUPPORTED_FILE.
     """
     where = path.name
@@ -413,7 +414,8 @@ class _Package:
                 model.laid.append(setting)
 
     def _give_roles(self, number: int, volumes: list[Volume], name: str) -> None:
-        """Give the pieces of an object their roles. InputError for roles of pieces that the model does not have."""
+        """Give the pieces of an object their roles.
+        Raises InputError for roles of pieces that the model does not have."""
         model = self.objects.get((self.start, number))
         ranges = [volume for volume in volumes if volume.start is not None]
         if model is not None and model.triangles and ranges:

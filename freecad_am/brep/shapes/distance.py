@@ -34,7 +34,7 @@ class Skin:
 
 
 def skin(shape: Any, label: str) -> Skin:
-    """The faces of a Part.Shape, to measure from. InputError NO_FACES."""
+    """The faces of a Part.Shape, to measure from. Raises InputError NO_FACES."""
     if not shape.Faces:
         raise InputError(
             "NO_FACES", label, "it has no faces to compare points with; choose a solid or a surface"

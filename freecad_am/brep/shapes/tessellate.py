@@ -21,7 +21,7 @@ ANGLE = 0.35  # rad between neighbouring triangles of the first, coarse mesh
 
 
 def body(source: Any, name: str) -> Body:
-    """The triangles of a Part.Shape with faces, or of a Mesh.Mesh, in its coordinates; InputError 'NO_FACES'."""
+    """The triangles of a Part.Shape with faces, or of a Mesh.Mesh, in its coordinates; raises InputError 'NO_FACES'."""
     mesh = hasattr(source, "Topology")
     vertices, triangles = (
         _rows(*source.Topology) if mesh else in_kernel_process(triangles_of, source, DEFLECTION)

@@ -281,7 +281,7 @@ def find_patch_wall(
 def _from_platform(
     wall: PatchWall, faces: Sequence[Any], label: str
 ) -> tuple[list[FirstCurve], list[Issue]]:
-    """The edges on the platform, and a note. InputError NO_SUBSTRATE."""
+    """The edges on the platform, and a note. Raises InputError NO_SUBSTRATE."""
     lowest = wall.vertices[np.argmin(wall.vertices[:, 2])]
     edges = standing_edges(faces, float(lowest[2]))
     if not edges:
@@ -350,7 +350,7 @@ def _edge(named: Sequence[tuple[str, Any]], height: float, label: str) -> float:
 
 def sound(named: Sequence[tuple[str, Any]], label: str, edge: float = 0.0) -> PatchWall:
     """A coarse mesh of the faces, edges not longer than `edge` mm or a share of their size, without
-    self-intersection. InputError SELF_INTERSECTION, and the errors of `sheet`.
+    self-intersection. Raises InputError SELF_INTERSECTION, and the errors of `sheet`.
     """
     size = Part.Compound([face for _, face in named]).BoundBox.DiagonalLength
     coarse = sheet(named, max(edge, SHARE * size), label)
@@ -377,7 +377,7 @@ def from_substrate(
     wall: PatchWall, substrate: Substrate, rims: Any, label: str
 ) -> tuple[list[FirstCurve], Mask, list[Issue]]:
     """The curves where a wall leaves its substrate, its vertices (n,) behind them, and notes.
-    InputError NO_CONTACT, INSIDE, OWN_SUBSTRATE.
+    Raises InputError NO_CONTACT, INSIDE, OWN_SUBSTRATE.
     """
     ground = substrate.ground(wall.mesh.typical_edge)
     value = contact.ground_distances(wall, ground)

@@ -162,7 +162,7 @@ def tessellated_for(shape: Any, edge: float) -> tuple[Tessellation, float]:
 
 
 def _orient_triangles(triangles: Index, owner: Index, names: list[str], label: str) -> Index:
-    """The triangles, with some faces flipped so that neighbours agree. InputError NOT_ORIENTABLE."""
+    """The triangles, with some faces flipped so that neighbours agree. Raises InputError NOT_ORIENTABLE."""
     edges = Edges(triangles)
     half = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2)
     forward = half[:, :, 0] < half[:, :, 1]
@@ -295,7 +295,7 @@ def mesh_solid(
 ) -> tuple[SolidMesh, tuple[Issue, ...]]:
     """The solid of a mesh's points (n, 3) and triangles (m, 3), points closer than WELD_MM merged,
     triangles that then lack a corner left out; else the mesh as `mesh_repair` repairs it, with
-    notes. InputError NO_SOLID, BAD_FILE, OPEN_MESH, NON_MANIFOLD, NOT_ORIENTABLE, SELF_CROSSING.
+    notes. Raises InputError NO_SOLID, BAD_FILE, OPEN_MESH, NON_MANIFOLD, NOT_ORIENTABLE, SELF_CROSSING.
     """
     if not len(triangles):
         raise InputError(

@@ -23,7 +23,8 @@ SMOOTH = np.radians(1.0)  # smaller turns from edge to edge are not corners
 
 
 def curves_of(shape: Any, names: Sequence[str], wall: PatchWall, label: str) -> list[FirstCurve]:
-    """The chains and loops that the edges form, on the wall. InputError UNKNOWN_EDGE, NO_START (off the wall)."""
+    """The chains and loops that the edges form, on the wall.
+    Raises InputError UNKNOWN_EDGE, NO_START (off the wall)."""
     edges = []
     for name in dict.fromkeys(names):
         number = int(name.removeprefix("Edge")) if name.removeprefix("Edge").isdigit() else 0

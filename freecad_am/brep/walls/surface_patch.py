@@ -262,7 +262,7 @@ def _refuse_kinks(patch: Patch, face: Any, where: str) -> None:
 
 
 def _checked(patch: Patch, face: Any, where: str) -> Patch:
-    """The patch, if it is the face's surface. InputError ROUGH_WALL."""
+    """The patch, if it is the face's surface. Raises InputError ROUGH_WALL."""
     low_u, high_u, low_v, high_v = face.ParameterRange
     surface = face.Surface
     parameters = [

@@ -76,7 +76,7 @@ def tubes(
 
 
 def faces_by_name(shape: Any, names: Sequence[str], label: str) -> dict[str, Any]:
-    """The faces of a shape by their names, Face1 and on. InputError NO_WALL without any,
+    """The faces of a shape by their names, Face1 and on. Raises InputError NO_WALL without any,
     UNKNOWN_FACE for a name that the shape lacks.
     """
     if shape is None or shape.isNull() or not shape.Faces:

@@ -15,7 +15,7 @@ class Family:
     """A family of features: a subclass in a file of its own, listed in `registry`.
 
     The attributes are facts that other modules use in place of the kind. Planning is in
-    `core.strategies`; `objects.families` and `gui.families` have the side of documents and of the
+    `core.strategies`; `objects.families` and `gui.families` have what concerns documents and the
     window, in files of the same name.
     """
 

@@ -142,9 +142,9 @@ class _Transition(NamedTuple):
 
 
 class _Thickness(NamedTuple):
-    """What the beads at each spoke follow. radii: (n,) mm, of the place that decides; counts: (n,) beads
-    across; is_central: (n,) whether the axis there runs between two sides; transitions: where the
-    number of beads changes.
+    """Thickness and beads at each spoke. radii: (n,) mm, half the deciding thickness; counts: (n,)
+    beads across; is_central: (n,) whether the axis there runs between two sides; transitions:
+    changes of the number of beads.
     """
 
     radii: Array
@@ -153,7 +153,7 @@ class _Thickness(NamedTuple):
     transitions: list[_Transition]
 
     def depths(self, law: BeadLaw, pair: int) -> tuple[Array, Array]:
-        """As `BeadLaw.depths` for all spokes (n,), without jumps where the number of beads changes."""
+        """`BeadLaw.depths` of all spokes (n,), with jumps at changes of the number smoothed."""
         depths, shares = law.depths(pair, self.counts, self.radii)
         ramped_depths, ramped_shares = depths.copy(), shares.copy()
         total = np.zeros(len(depths))
@@ -168,8 +168,8 @@ class _Thickness(NamedTuple):
 
 
 class _Crossing(NamedTuple):
-    """Where a bead begins or ends between two spokes. middle (2,): on the axis; foot, direction (2,),
-    radius and depth: of a spoke there; share: of the width.
+    """End of a bead between two spokes. middle (2,): on the axis; foot, direction (2,), radius and
+    depth: of an interpolated spoke; share: of the usual width.
     """
 
     middle: Array
@@ -240,7 +240,7 @@ def _adapt(
     law : BeadLaw
         Number and widths of beads.
     walls : float
-        Number of contours round thick places, whose inside is left; infinity fills them.
+        Number of contours in thick parts, which leave the inside open; infinity fills it.
     """
     reach = law.usual_radius(int(2.0 * walls) + 3) if math.isfinite(walls) else region.extent
     turn = 2.0 * math.acos(max(1.0 - beads.chord_error / max(float(reach), beads.chord_error), 0.0))
@@ -837,7 +837,7 @@ def _join_middles(
 
 
 def _on_others(pieces: list[_Middle], reach: float) -> Mask:
-    """Which ends of pieces, two each, lie within `reach` mm of the inside of another piece."""
+    """Mask of the ends of pieces, two each, within `reach` mm of the interior of another piece."""
     points = np.vstack([piece.points[1:-1] for piece in pieces])
     owner = np.repeat(np.arange(len(pieces)), [len(piece.points) - 2 for piece in pieces])
     ends = np.array([piece.points[at] for piece in pieces for at in (0, -1)])
@@ -848,7 +848,7 @@ def _on_others(pieces: list[_Middle], reach: float) -> Mask:
 
 
 def _outward(points: Array, at: int) -> Array:
-    """Unit direction (2,) in which a line (n, 2) ends."""
+    """Unit direction (2,) of a line (n, 2) at one of its ends, outwards."""
     if len(points) < 2:
         return np.zeros(2)
     out = points[0] - points[1] if at == 0 else points[-1] - points[-2]

@@ -277,7 +277,7 @@ def closing_beads(
 
 def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
     """Beads along the middle of the branches of regions narrower than a bead, the longest first; none begins inside of others.
-    InfeasibleError THIN_REGION if beads refuse thin regions.
+    Raises InfeasibleError THIN_REGION if beads refuse thin regions.
     """
     curves: list[PlaneCurve] = []
     for region in thin:

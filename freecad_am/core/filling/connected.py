@@ -58,7 +58,8 @@ def levels(region: Region, inner: tuple[Region, ...], beads: Beads) -> Levels:
 
 
 def contours(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[PlaneCurve]:
-    """Closed contours from outside in, then the beads in their middle. InfeasibleError THIN_REGION, see `Beads`."""
+    """Closed contours from outside in, then the beads in their middle.
+    Raises InfeasibleError THIN_REGION, see `Beads`."""
     contour_levels = levels(region, inner, beads)
     return rounds(contour_levels, beads) + centres(contour_levels, beads)
 
@@ -149,7 +150,7 @@ class _Found(NamedTuple):
 
 def connect_contours(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[PlaneCurve]:
     """One closed bead through all contours of a region; curves without a position for links stay separate beads, as does the only
-    bead of a region too narrow for contours. InfeasibleError THIN_REGION, see `Beads`.
+    bead of a region too narrow for contours. Raises InfeasibleError THIN_REGION, see `Beads`.
     """
     contour_levels = levels(region, inner, beads)
     loose = centres(contour_levels, beads)

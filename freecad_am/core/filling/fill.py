@@ -42,7 +42,7 @@ def strip_contours(
     strip: Strip, inner: tuple[Strip | Region, ...], beads: Beads
 ) -> list[PlaneCurve]:
     """Contours as in `contours`: from both borders and from the holes inwards, then beads in the gaps; one bead in the middle of a
-    strip narrower than a bead. InfeasibleError THIN_REGION if beads refuse thin regions.
+    strip narrower than a bead. Raises InfeasibleError THIN_REGION if beads refuse thin regions.
     """
     if not inner and beads.thin == "refuse":
         raise InfeasibleError(

@@ -122,7 +122,7 @@ def circle(
     """Circularity of the points (n, 3), with the planned normals (n, 3), within a band of a height, mm.
 
     They are moved to the height by the change of the planned radius, along the meridian of a part of revolution, else along the
-    slope of the planned surface, so that a point at the height does not move. InputError FEW_POINTS.
+    slope of the planned surface, so that a point at the height does not move. Raises InputError FEW_POINTS.
     """
     local = (points - planned.frame[:3, 3]) @ planned.frame[:3, :3]
     in_band = np.abs(local[:, 2] - height) <= band

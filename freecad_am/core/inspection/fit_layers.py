@@ -276,7 +276,8 @@ def ways_of(toolpath: Toolpath) -> Ways:
 
 
 def _refusing(scan: Scan, layer: int, height: float) -> Off:
-    """Offset of the scan from points of the first layer on it. InputError if it does not cover them, or is too far off."""
+    """Offset of the scan from points of the first layer on it.
+    Raises InputError if it does not cover them, or is too far off."""
 
     def off(points: Array, directions: Array) -> Array:
         heights = scan.heights(points, directions)

@@ -69,7 +69,7 @@ class Inspected:
 def inspect(
     measured: Measured, planned: Planned, parameters: InspectionParameters, report: Report
 ) -> Inspected:
-    """Align measured points with the planned surface and judge them. InputError; InfeasibleError NOT_SETTLED."""
+    """Align measured points with the planned surface and judge them. Raises InputError, and InfeasibleError NOT_SETTLED."""
     refuse_too_few(measured.points, measured.label)
     report(0.05, "laying the points onto the part")
     registration, within, distances = _aligned(measured, planned, parameters)

@@ -310,7 +310,7 @@ PLAIN = np.radians(
 
 
 def align_scan(points: Array, body: Body, label: str) -> Array:
-    """The motion (4, 4) that moves measured points (n, 3) onto a body. InputError SCAN_OTHER, SCAN_AMBIGUOUS."""
+    """The motion (4, 4) that moves measured points (n, 3) onto a body. Raises InputError SCAN_OTHER, SCAN_AMBIGUOUS."""
     planned = triangle_surface(body.name, body.vertices, body.triangles)
     neighbour_distance = np.asarray(
         cKDTree(points).query(points, k=min(NEIGHBOURS + 1, len(points)))[0]
@@ -334,7 +334,8 @@ def align_scan(points: Array, body: Body, label: str) -> Array:
 
 
 def _attitude(points: Array, surface: Surface, starts: Array, label: str) -> Array:
-    """The attitude nearest to the measured one among those that fit the points about best. InputError SCAN_AMBIGUOUS if several
+    """The attitude nearest to the measured one among those that fit the points about best.
+    Raises InputError SCAN_AMBIGUOUS if several
     are equivalent and none is near the measured one.
     """
     sample = points[:: max(1, len(points) // TRIAL_POINTS)]

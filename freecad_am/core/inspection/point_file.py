@@ -147,7 +147,8 @@ class Measured:
 def read(path: str | Path, unit: str = AUTO) -> Measured:
     """Read the points of a CSV, TXT, XYZ or ASC table, or the vertices of an STL, OBJ or PLY mesh.
 
-    unit: of the coordinates; auto takes the unit that the file names, else mm. InputError NO_FILE, EMPTY_FILE, UNSUPPORTED_FILE,
+    unit: of the coordinates; auto takes the unit that the file names, else mm.
+    Raises InputError NO_FILE, EMPTY_FILE, UNSUPPORTED_FILE,
     BAD_FILE, NO_POINTS, AMBIGUOUS.
     """
     file = Path(path)
@@ -269,7 +270,7 @@ def _table(text: str, label: str) -> tuple[Array, list[str], str]:
 
 
 def _unit_of_remarks(texts: list[str], label: str) -> str:
-    """The unit that remarks or headings name, '' for none. InputError BAD_UNIT for one that is not read."""
+    """The unit that remarks or headings name, '' for none. Raises InputError BAD_UNIT for one that is not read."""
     unit = next((name for name in map(_unit_in, texts) if name), "")
     for text in texts:
         if not unit and _OTHER_UNIT.search(text.lower().replace("_", " ")) is not None:

@@ -105,7 +105,7 @@ def register(
     Their products must be of the same kind, as the turns about and shifts along one axis are.
     free: motions that distances feel by no more than this share of the one they feel most are not made.
     still: mm that the last round may move a point by.
-    Raises InputError for too few points; InfeasibleError NOT_SETTLED naming `where`.
+    Raises InputError for too few points; raises InfeasibleError NOT_SETTLED naming `where`.
     """
     refuse_too_few(points, where)
     if not 0.0 <= trim < 0.5:

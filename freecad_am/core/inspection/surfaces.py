@@ -26,7 +26,8 @@ FINE = 0.25  # mm between samples of beads
 
 
 def planned(source: object, name: str) -> Planned:
-    """The surface of a feature's wall or solids, or of a toolpath's beads. InputError NOT_FOR_FAMILY naming it."""
+    """The surface of a feature's wall or solids, or of a toolpath's beads.
+    Raises InputError NOT_FOR_FAMILY naming it."""
     if isinstance(source, RevolvedWall):
         return revolution_surface(source)
     if isinstance(source, PatchWall):

@@ -77,7 +77,7 @@ def arrangement_of(setup: str) -> Arrangement:
 
 
 def planned_of(setup: str) -> Arrangement:
-    """The same; InputError NOT_YET for what jobs cannot have yet."""
+    """The same; raises InputError NOT_YET for what jobs cannot have yet."""
     arrangement = _ALL.get(setup)
     if arrangement is None or not arrangement.planned:
         *other_setups, last_setup = (

@@ -194,7 +194,7 @@ class CellParameters:
 
 
 def checked_branch(words: tuple[str, ...]) -> tuple[str, str, str]:
-    """The three words of a branch in their order; InputError 'BAD_VALUE' when one is unknown."""
+    """The three words of a branch in their order; raises InputError 'BAD_VALUE' when one is unknown."""
     wanted = (SHOULDERS, ELBOWS, WRISTS)
     if len(words) != 3 or any(word not in known for word, known in zip(words, wanted)):
         raise InputError(

@@ -104,7 +104,7 @@ class InspectionParameters:
         self.start_pairs()
 
     def levels(self) -> tuple[float, ...]:
-        """The heights as numbers, mm. InputError."""
+        """The heights as numbers, mm. Raises InputError."""
         found = []
         for text in self.heights:
             try:
@@ -119,7 +119,7 @@ class InspectionParameters:
         return tuple(found)
 
     def start_pairs(self) -> tuple[tuple[tuple[float, ...], tuple[float, ...]], ...]:
-        """The pairs of points as numbers, mm. InputError."""
+        """The pairs of points as numbers, mm. Raises InputError."""
         found = []
         for text in filter(str.strip, self.pairs.split(";")):
             sides = [side.replace(",", " ").split() for side in text.split(">")]

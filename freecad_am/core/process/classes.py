@@ -67,7 +67,8 @@ def refuse_speeds(process: ProcessParameters) -> None:
 
 
 def set_bead_ends(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
-    """The toolpath with the lengths, speeds and ramps of the phases at the ends of its beads. InputError PHASE_LENGTH where
+    """The toolpath with the lengths, speeds and ramps of the phases at the ends of its beads.
+    Raises InputError PHASE_LENGTH where
     they are longer than a bead, BAD_VALUE for a ramp from no speed."""
     of_class = {name: _ends(process.for_class(name), name) for name in (*CLASSES, "")}
     if not any(of_class.values()):

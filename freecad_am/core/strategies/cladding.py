@@ -33,7 +33,8 @@ def plan(
 ) -> Toolpath:
     """The toolpath of cladding, in part coordinates: layer i is i layer heights above the faces.
 
-    model: sets the speeds; with None the travel speed applies everywhere. InputError FOLDED, BEAD_SPACING, NOTHING_TO_DEPOSIT,
+    model: sets the speeds; with None the travel speed applies everywhere.
+    Raises InputError FOLDED, BEAD_SPACING, NOTHING_TO_DEPOSIT,
     InfeasibleError THIN_REGION.
     """
     strategy = spaced(strategy, process)

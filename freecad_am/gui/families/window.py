@@ -46,7 +46,7 @@ class JobProposal:
 
 
 class FeatureWindow:
-    """The side of the window of a family of `core.families`, in the file that has its kind as name.
+    """What a family of `core.families` adds to the window; the file has its kind as name.
 
     rank: the order of tools. job_rank: the order of entries in New Job. page: of docs/tools. face_is_base: whether a clicked face is the base of the rest of the part.
     """

@@ -192,7 +192,7 @@ class FigureTable:
         item.setForeground(QtGui.QBrush() if colour is None else QtGui.QBrush(of(colour)))
 
     def row(self, row: int, count: int | None = None, blank: bool = False) -> Array:
-        """The figures of a row, of the first `count` columns. InputError BAD_VALUE names the cell."""
+        """The figures of a row, of the first `count` columns. Raises InputError BAD_VALUE, which names the cell."""
         columns = range(self.widget.columnCount() if count is None else count)
         return np.array([self.figure(row, column, blank) for column in columns])
 
@@ -201,7 +201,7 @@ class FigureTable:
         return np.stack([self.row(row, None, blank) for row in range(self.widget.rowCount())])
 
     def figure(self, row: int, column: int, blank: bool = False) -> float:
-        """The figure of a cell; InputError BAD_VALUE for none."""
+        """The figure of a cell; raises InputError BAD_VALUE for none."""
         text = self.text(row, column)
         if not text and blank:
             return math.nan
@@ -254,7 +254,8 @@ def format_figure(value: float) -> str:
 
 
 def number(text: str, where: str) -> float:
-    """The number that was typed, with the decimal point of the language or a plain one. InputError BAD_VALUE for none."""
+    """The number that was typed, with the decimal point of the language or a plain one.
+    Raises InputError BAD_VALUE for none."""
     point = str(QtCore.QLocale().decimalPoint())
     try:
         value = float(text.replace(point, "."))

@@ -146,7 +146,8 @@ class HowItStands:
         )
 
     def arguments(self) -> dict[str, str]:
-        """Return keywords of `make_all` with values as text; none for the default setup. InputError for unreadable
+        """Return keywords of `make_all` with values as text; none for the default setup.
+        Raises InputError for unreadable
         entries."""
         if not self.chosen():
             return {}
@@ -171,7 +172,7 @@ class FittedLength:
 
     @property
     def value(self) -> Any:
-        """Return the entry in outer units or as an expression; None for an empty field. InputError."""
+        """Return the entry in outer units or as an expression; None for an empty field. Raises InputError."""
         return self.quantity.read() if self.quantity.line.text().strip() else None
 
 
@@ -206,7 +207,7 @@ class Sizes:
 
     def arguments(self, filled: bool, saved: bool) -> dict[str, str]:
         """Return the entries as keywords of `make_all` with values as text. filled: beads have a spacing; saved: the
-        cell has its own platform. InputError for unreadable entries."""
+        cell has its own platform. Raises InputError for unreadable entries."""
         keywords = {}
         for field in (self.layer, *((self.spacing,) if filled else ())):
             if field.changed:

@@ -36,7 +36,7 @@ class HubNodes(WallNodes):
         self.root.addChild(self.outline.node)
 
     def set_solids(self, solids: SolidsOnHub) -> None:
-        """Draw solids. InputError OPEN_MESH."""
+        """Draw solids. Raises InputError OPEN_MESH."""
         self.set(drawing(solids))
 
     def set(self, drawn: Drawing) -> None:
@@ -64,7 +64,7 @@ NOTHING = Drawing([], np.zeros((0, 3)), np.zeros((0, 3), int), [])
 
 
 def drawing(solids: SolidsOnHub) -> Drawing:
-    """Return the drawing of solids, computed without the window. InputError OPEN_MESH."""
+    """Return the drawing of solids, computed without the window. Raises InputError OPEN_MESH."""
     contours = [first_contours(group, solids.chord_error) for group in solids.groups]
     bases = [
         _base(group, [contour for solid in curves for contour in solid])

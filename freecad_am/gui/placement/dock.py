@@ -89,7 +89,7 @@ class Form(QtGui.QWidget):
         column.addStretch(1)
 
     def values(self) -> dict[str, Any]:
-        """Return the entered values in the form of a macro. InputError for unreadable input."""
+        """Return the entered values in the form of a macro. Raises InputError for unreadable input."""
         return {key: field.value for key, field in self.fields.items()}
 
     def tell(self, text: str, wrong: bool = False) -> None:

@@ -51,7 +51,7 @@ class StageView:
         """Add the nodes to the root, once."""
 
     def read(self, obj: Any) -> Any:
-        """What `draw` is given: the stored result or its drawn part. InputError as `Stage.value`."""
+        """What `draw` is given: the stored result or its drawn part. Raises InputError as `Stage.value`."""
         return obj.Proxy.value(obj)
 
     def draw(self, obj: Any, value: Any) -> None:

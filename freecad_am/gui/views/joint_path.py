@@ -179,7 +179,7 @@ class JointPathView(PathView):
 
 
 def _linked(obj: Any) -> Any:
-    """The toolpath object of a joint path. InputError where it was deleted."""
+    """The toolpath object of a joint path. Raises InputError where it was deleted."""
     if obj.Toolpath is None:
         raise InputError(
             "NO_INPUT",
@@ -190,12 +190,13 @@ def _linked(obj: Any) -> Any:
 
 
 def _toolpath_of(obj: Any) -> Any:
-    """The toolpath of a joint path. InputError where it was deleted, or where undo has not yet brought it back."""
+    """The toolpath of a joint path.
+    Raises InputError where it was deleted, or where undo has not yet brought it back."""
     return _linked(obj).Proxy.value(obj.Toolpath)
 
 
 def _layer_height(obj: Any) -> float:
-    """Return the toolpath's layer height without reading the toolpath. InputError as `_toolpath_of`."""
+    """Return the toolpath's layer height without reading the toolpath. Raises InputError as `_toolpath_of`."""
     return float(_linked(obj).Proxy.parts(obj.Toolpath, ("layer_height",))[0])
 
 
@@ -209,7 +210,7 @@ def _known_layer_height(obj: Any) -> float:
 
 def _limit_shares(obj: Any, value: Seen, kind: str) -> Array:
     """Return (n,) the smallest relative margin to a joint limit, or the largest relative joint speed, per row.
-    InputError of the machine."""
+    Raises InputError of the machine."""
     if obj.Cell is None:
         raise InputError("NO_INPUT", obj.Label, "its cell was deleted; choose another cell")
     folders, settings = (

@@ -173,7 +173,8 @@ def placing_of(path: Any, cell: Any = None, joints: JointParameters | None = Non
 def change_parameters(
     parameters: PlaceParameters | None, values: dict[str, Any]
 ) -> PlaceParameters:
-    """Parameters with single ones changed, in outer units by row key. InputError UNKNOWN_PARAMETER, BAD_VALUE."""
+    """Parameters with single ones changed, in outer units by row key.
+    Raises InputError UNKNOWN_PARAMETER, BAD_VALUE."""
     if not isinstance(parameters or PlaceParameters(), PlaceParameters):
         raise InputError(
             "BAD_INPUT",

@@ -98,7 +98,7 @@ def issues(
 def predicted(
     toolpath: CoreToolpath, targets: Sequence[Target], report: Report
 ) -> tuple[PredictedDeposit, Compared]:
-    """The deposit of a toolpath, and the faces of its features against it. InputError NO_PREDICTION."""
+    """The deposit of a toolpath, and the faces of its features against it. Raises InputError NO_PREDICTION."""
     processes: list[ProcessParameters] = [target.inputs.process for target in targets]
     parts = feature_parts(toolpath, processes)
     if any(feature_part.toolpath.bead_width is None for feature_part in parts):
@@ -166,7 +166,7 @@ def remedy(targets: Sequence[Target]) -> str:
 
 
 def _faces(target: Target) -> Faces:
-    """The faces of a feature that its deposit is to cover. InputError NO_FACES."""
+    """The faces of a feature that its deposit is to cover. Raises InputError NO_FACES."""
     bodies = target.planner.bodies_to_cover(target.inputs.wall)
     if bodies is not None:
         return thin_faces(join_faces([faces(body.vertices, body.triangles) for body in bodies]))

@@ -39,7 +39,7 @@ class PartDistances(NamedTuple):
 
 
 class FeaturePlanner:
-    """The side of documents of a family of `core.families`, in the file that has its kind as name.
+    """What a family of `core.families` does with document objects; the file has its kind as name.
 
     proxy: module and class of its features in `objects`, a file format. allowance_remedy: how to
     deposit more where a deposit is too small, with {} for by how much. has_faces: whether its parts

@@ -34,7 +34,7 @@ def is_text(value: Any) -> bool:
 
 
 def checked_words(words: Any, where: str) -> list[str]:
-    """A list of texts. InputError BAD_VALUE naming `where` for anything else."""
+    """A list of texts. Raises InputError BAD_VALUE naming `where` for anything else."""
     if not isinstance(words, (list, tuple)) or not all(map(is_text, words)):
         raise InputError("BAD_VALUE", where, "{} is not a text; put it in quotes", safe_repr(words))
     return list(words)
@@ -186,13 +186,13 @@ class Row:
         return _number(self.spec, value, where)
 
     def _records(self, records: Records, value: Any, where: str) -> Any:
-        """Records of their text or JSON. InputError BAD_VALUE, at the dotted key of a job file."""
+        """Records of their text or JSON. Raises InputError BAD_VALUE, at the dotted key of a job file."""
         if isinstance(value, str) and self.spec.poses:
             value = pendants.plain(value, where)
         return records.read(value)
 
     def _list(self, value: Any, where: str) -> tuple[Any, ...]:
-        """Words, or records of words. InputError BAD_VALUE."""
+        """Words, or records of words. Raises InputError BAD_VALUE."""
         records = self.spec.records
         if records is not None and not isinstance(value, str) and _are(records.record, value):
             return tuple(value)
@@ -323,7 +323,8 @@ def _is_list(value: Any) -> bool:
 
 
 def split(text: str, where: str) -> list[str]:
-    """The words of a list with commas or blanks between. InputError 'BAD_VALUE' naming `where` for one with both, where a
+    """The words of a list with commas or blanks between.
+    Raises InputError 'BAD_VALUE' naming `where` for one with both, where a
     comma may begin decimals ('10,5 20,5' is two numbers, or four), and for digits that are grouped by no-break blanks."""
     if _TWO_WAYS.search(text.strip()):
         remedy = "write decimals with a point and one kind of separator, as in 10.5 20.5"
@@ -454,7 +455,8 @@ def is_expression(value: Any) -> bool:
 
 
 def evaluated(value: str, obj: Any, where: str) -> Any:
-    """What an expression gives now, a quantity or a number, names in it seen from `obj`. InputError 'BAD_EXPRESSION'."""
+    """What an expression gives now, a quantity or a number, names in it seen from `obj`.
+    Raises InputError 'BAD_EXPRESSION'."""
     try:
         result = obj.evalExpression(_bare(value))
     except Exception as error:  # FreeCAD's own errors share no base
@@ -473,7 +475,7 @@ def evaluated(value: str, obj: Any, where: str) -> Any:
 
 
 def follow(obj: Any, row: Row, value: str | None) -> None:
-    """Let the property of a row follow an expression, None for none any more. InputError 'BAD_EXPRESSION'."""
+    """Let the property of a row follow an expression, None for none any more. Raises InputError 'BAD_EXPRESSION'."""
     if value is None:
         if row.name in dict(obj.ExpressionEngine):
             obj.setExpression(row.name, None)

@@ -12,7 +12,7 @@ from ..families.registry import planner_of
 
 
 def proxy_of(kind: str) -> type[Any]:
-    """The class of the features of a family. InputError BAD_VALUE for an unknown kind."""
+    """The class of the features of a family. Raises InputError BAD_VALUE for an unknown kind."""
     if kind not in KINDS:
         raise InputError(
             "BAD_VALUE",

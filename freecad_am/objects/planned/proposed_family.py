@@ -97,7 +97,7 @@ def proposed(
     from; width: mm of a bead; tilts: a machine is known, which can tilt; base: faces of the
     substrate; clicked: a face by which the whole part was chosen, maybe its hub; direction: in
     which planes are stacked, layer_height mm apart, None for the best. If nothing serves the whole
-    part, the closest proposal names its omissions. InputError FAULTY, NO_FACES.
+    part, the closest proposal names its omissions. Raises InputError FAULTY, NO_FACES.
     """
     planes = _Planes(direction, layer_height, substrate)
     shape = source.shape

@@ -28,7 +28,7 @@ Fit = Callable[[Toolpath], Toolpath]
 
 def fit_of(obj: Any, parameters: ScanParameters) -> Fit | None:
     """A function that fits the toolpath of a toolpath object to its scan, without the document;
-    None without a scan. InputError BAD_INPUT, and the errors of the inspection.
+    None without a scan. Raises InputError BAD_INPUT, and the errors of the inspection.
     """
     scan = obj.Scan
     if scan is None:
@@ -72,7 +72,7 @@ def fitted(
     toolpath: Toolpath, inspected: Inspected, body: Any, parameters: ScanParameters
 ) -> Toolpath:
     """The toolpath on the scanned surface, and kept clear of the scan in place of the body.
-    InputError.
+    Raises InputError.
     """
     first_layer = toolpath.layers[min(parameters.first, len(toolpath.layers) - 1)]
     directions = np.concatenate([fit_layers.ways_of(toolpath)(bead) for bead in first_layer.beads])

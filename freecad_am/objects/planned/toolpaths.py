@@ -96,7 +96,7 @@ def above_platform(toolpath: CoreToolpath, inputs: Given) -> list[Issue]:
 
 def layers_of(inputs: Given) -> CoreToolpath:
     """Layers and beads of a feature; the nozzle is kept clear only of the feature itself, and only
-    if directions are settled with the layers. InputErrors of the family.
+    if directions are settled with the layers. Raises InputErrors of the family.
     """
     process = inputs.process
     if process.bead_model == "none" and process.wire.feed_mode != "constant" and not process.ramped:

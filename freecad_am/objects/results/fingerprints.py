@@ -33,14 +33,14 @@ _meshes: dict[str, str] = {}
 
 
 def fingerprint(source: Any) -> str:
-    """The text of an object's solid or mesh, at its position in the document. InputError NO_SHAPE,
+    """The text of an object's solid or mesh, at its position in the document. Raises InputError NO_SHAPE,
     NO_FACES.
     """
     return _mesh_fingerprint(source) if is_mesh(source) else shape_fingerprint(source)
 
 
 def shape_fingerprint(source: Any) -> str:
-    """The text of an object's shape, at its position in the document. InputError NO_SHAPE."""
+    """The text of an object's shape, at its position in the document. Raises InputError NO_SHAPE."""
     shape = shape_of(source)
     element_codes = tuple(
         element.hashCode() for element in shape.Faces or shape.Edges or shape.Vertexes
@@ -116,7 +116,7 @@ _counted_version: ContextVar[int] = ContextVar("counted_version", default=0)  # 
 
 def key_of_inputs(stage: Any, obj: Any, input_key: Callable[[str, Any], str]) -> str:
     """The key of an object's parameters, of its linked stages by `input_key(link, object)`, and of
-    further inputs of `stage`, its proxy. InputError for a missing or failed one.
+    further inputs of `stage`, its proxy. Raises InputError for a missing or failed one.
     """
     texts = [type(stage).__name__, str(_counted_version.get() or SCHEMA_VERSION)]
     for section in stage.sections:

@@ -281,7 +281,7 @@ class Stored:
     _kept: tuple[str, Any] | None = None
 
     def value(self, obj: Any) -> Any:
-        """The stored result, read on first use. InputError 'NO_RESULT' without one."""
+        """The stored result, read on first use. Raises InputError 'NO_RESULT' without one."""
         return self.reader(obj)()
 
     def parts(self, obj: Any, *paths: Place) -> tuple[Any, ...]:

@@ -84,7 +84,7 @@ def global_shape(source: Any, path: str = "") -> Any:
 
 
 def shape_of(source: Any, path: str = "") -> Any:
-    """The shape of an object where it places itself. path: as of `global_shape`. InputError 'NO_SHAPE'."""
+    """The shape of an object where it places itself. path: as of `global_shape`. Raises InputError 'NO_SHAPE'."""
     if path:
         shape = Part.getShape(source, path, needSubElement=_is_element(path))
         if shape is None or shape.isNull():
@@ -184,7 +184,8 @@ def _is_same(shape: Any, other_shape: Any) -> bool:
 
 
 def body_of(source: Any) -> Body:
-    """The triangles of an object, solid or mesh, in the coordinates of the document. InputError NO_SHAPE, NO_FACES."""
+    """The triangles of an object, solid or mesh, in the coordinates of the document.
+    Raises InputError NO_SHAPE, NO_FACES."""
     return snapshot_of(source).body()
 
 
@@ -199,7 +200,7 @@ class Taken:
     frame: Any = None
 
     def body(self) -> Body:
-        """Its triangles in the coordinates of the document. InputError NO_FACES."""
+        """Its triangles in the coordinates of the document. Raises InputError NO_FACES."""
         if self.mesh is None:
             # of a copy: the window draws the triangles of the original, maybe at this very moment
             return tessellate.body(self.shape.copy(False), self.label)
@@ -210,7 +211,7 @@ class Taken:
 
 
 def snapshot_of(source: Any) -> Taken:
-    """The current state of an object; cheap, as shapes are shared. InputError 'NO_SHAPE'."""
+    """The current state of an object; cheap, as shapes are shared. Raises InputError 'NO_SHAPE'."""
     if is_mesh(source):
         return Taken(source.Label, None, *mesh_of(source))
     shape = global_shape(source)
@@ -224,7 +225,7 @@ def fixtures_of(obj: Any) -> tuple[Taken, ...]:
 
 
 def bodies(fixtures: Sequence[Taken]) -> tuple[Body, ...]:
-    """The triangles of each. InputError NO_FACES."""
+    """The triangles of each. Raises InputError NO_FACES."""
     return tuple(fixture.body() for fixture in fixtures)
 
 

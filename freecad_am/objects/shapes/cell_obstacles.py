@@ -95,7 +95,7 @@ def torch_of(settings: CellParameters) -> torch.Torch | None:
 
 
 def hashes_of(settings: CellParameters) -> list[str]:
-    """Hashes of the existing files of obstacles and of the torch. InputError for a file that is
+    """Hashes of the existing files of obstacles and of the torch. Raises InputError for a file that is
     too large.
     """
     files = [

@@ -60,7 +60,7 @@ class FeatureStage(Stage):
         self._learn(obj)  # in a document from before these were kept
 
     def linked(self, obj: Any) -> dict[str, Any]:
-        """As for any stage. InputError BAD_FACES, BAD_EDGES for elements that FreeCAD, 1.0 or
+        """As for any stage. Raises InputError BAD_FACES, BAD_EDGES for elements that FreeCAD, 1.0 or
         later, knows to be lost.
         """
         for link in self.chosen:
@@ -87,7 +87,7 @@ class FeatureStage(Stage):
         return super().linked(obj)
 
     def key(self, obj: Any) -> str:
-        """As for any stage. InputError BAD_FACES, BAD_EDGES, BAD_AXIS for a path to a face or edge
+        """As for any stage. Raises InputError BAD_FACES, BAD_EDGES, BAD_AXIS for a path to a face or edge
         of another object than the linked one, which has other elements of the same names.
         """
         for link in self.chosen:
@@ -403,7 +403,7 @@ def names_of(link: Any) -> tuple[str, ...]:
 
 
 def source_of(obj: Any) -> tuple[Any, tuple[str, ...]]:
-    """The object of a feature's Source and the names of the faces chosen. InputError 'NO_INPUT', 'BAD_FACES'."""
+    """The object of a feature's Source and the names of the faces chosen. Raises InputError 'NO_INPUT', 'BAD_FACES'."""
     if not obj.Source:
         raise InputError(
             "NO_INPUT",

@@ -25,7 +25,7 @@ LONGEST_HEAD = 1 << 20  # bytes of an XML before its first element
 
 
 def opened(path: str, where: str) -> Any:
-    """A document, hidden, which is the caller's to close. InputError BAD_FILE at `where`.
+    """A document, hidden, which is the caller's to close. Raises InputError BAD_FILE at `where`.
 
     Without a window it has been opened before in a process of its own, with limits of time and memory.
     """
@@ -51,7 +51,7 @@ def _try(path: str, where: str) -> None:
 
 def refuse(path: str, where: str) -> None:
     """Reject files that are not FreeCAD documents, and XML with a document type: its entities can
-    expand beyond the memory, and FreeCAD expands them. InputError BAD_FILE.
+    expand beyond the memory, and FreeCAD expands them. Raises InputError BAD_FILE.
     """
     try:
         with zipfile.ZipFile(path) as archive:
@@ -109,7 +109,7 @@ def _refuse_doctype(archive: zipfile.ZipFile, name: str, where: str) -> None:
 
 
 def refuse_missing(source: Any, where: str) -> None:
-    """Reject an object that is made from something in a missing file. InputError NO_LINKED_FILE."""
+    """Reject an object that is made from something in a missing file. Raises InputError NO_LINKED_FILE."""
     needs = dependencies_of(source)
     for document in needs.documents:
         missing = missing_files(document)

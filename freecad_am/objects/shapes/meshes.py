@@ -30,7 +30,8 @@ def is_mesh(source: Any) -> bool:
 def mesh_of(source: Any) -> tuple[Any, np.ndarray]:
     """The mesh of an object, and the matrix (4, 4) from its coordinates to the document's.
 
-    The meshes that a link, link array or container shows are one mesh, in document coordinates. InputError NO_SHAPE.
+    The meshes that a link, link array or container shows are one mesh, in document coordinates.
+    Raises InputError NO_SHAPE.
     """
     if "Mesh" in source.PropertiesList:
         return source.Mesh.copy(), outer_matrix(source)  # its own placement is already applied

@@ -251,7 +251,7 @@ def line_of(top: Any, path: str) -> tuple[Any, str]:
 
 def resolved(obj: Any, names: Sequence[str], where: str) -> tuple[Any, list[str]]:
     """A link to some faces or edges, without the paths that lead to them: the object that they
-    belong to, and their names on it. InputError BAD_FACES, BAD_EDGES, BAD_AXIS for a path without
+    belong to, and their names on it. Raises InputError BAD_FACES, BAD_EDGES, BAD_AXIS for a path without
     such an element, and for elements of several objects.
     """
     if not any("." in name for name in names):
@@ -272,7 +272,7 @@ def resolved(obj: Any, names: Sequence[str], where: str) -> tuple[Any, list[str]
 
 def refuse_paths(obj: Any, names: Sequence[str], where: str) -> None:
     """Refuse paths to faces and edges of other objects than the one that is linked: the same names are others on it. And
-    names of a part that has something twice. InputError as `resolved`."""
+    names of a part that has something twice. Raises InputError as `resolved`."""
     element_paths = [
         name for name in names if not name.rsplit(".", maxsplit=1)[-1].startswith("?")
     ]  # FreeCAD knows the others lost
@@ -304,7 +304,7 @@ def refuse_paths(obj: Any, names: Sequence[str], where: str) -> None:
 
 
 def _resolve(obj: Any, name: str, where: str) -> tuple[Any, str]:
-    """As `line_of`. InputError for a missing element."""
+    """As `line_of`. Raises InputError for a missing element."""
     if "." not in name:
         return obj, name
     if not name.endswith(".") and obj.getSubObject(f"{name}.", retType=1) is not None:

@@ -115,7 +115,7 @@ def changed_part(
 
     change: a function of a module, or a `functools.partial` of one, because another process may call it. where: what errors
     about the change name. patience: how many times as long as reading a file this may take. The file stays as it is.
-    InputError NO_ADD_ON besides.
+    Raises InputError NO_ADD_ON besides.
     """
     resolved_path = str(locate(path))
     return _decoded(

@@ -44,7 +44,7 @@ def containers_of(source: Any) -> tuple[Any, ...]:
     """The containers that hold an object, from the innermost to the outermost.
 
     App::Part, PartDesign::Body, assemblies, link groups, link arrays (of their elements) and plain groups.
-    InputError SEVERAL_PLACES for an object that several link groups show.
+    Raises InputError SEVERAL_PLACES for an object that several link groups show.
     """
     chain: list[Any] = []
     container = _container_of(getattr(source, "placed_as", source))
@@ -99,7 +99,8 @@ def outer_matrix(source: Any) -> np.ndarray:
 
 
 def outer_placement(source: Any) -> Any:
-    """As `outer_matrix`, as a placement. InputError SCALED_CONTAINER where a container scales or mirrors the object."""
+    """As `outer_matrix`, as a placement.
+    Raises InputError SCALED_CONTAINER where a container scales or mirrors the object."""
     chain = containers_of(source)
     if _asks_freecad(source, chain):
         return source.getGlobalPlacement().multiply(source.Placement.inverse())
@@ -123,7 +124,7 @@ def outer_placement(source: Any) -> Any:
 
 
 def global_placement(source: Any) -> Any:
-    """The placement of an object in the coordinates of its document. InputError as `outer_placement`."""
+    """The placement of an object in the coordinates of its document. Raises InputError as `outer_placement`."""
     own_placement = getattr(source, "Placement", None)
     chain = containers_of(source)
     if _asks_freecad(source, chain):
@@ -338,7 +339,7 @@ def object_of(array: Any, index: int) -> Any:
     """The object that represents an element of a link array, created if missing.
 
     It is the element itself where FreeCAD shows elements as objects, else a hidden link to it, next
-    to the array. InputError BAD_INPUT for another object than a link array, and for an element that
+    to the array. Raises InputError BAD_INPUT for another object than a link array, and for an element that
     it does not have.
     """
     count = max(element_count(array), len(elements_of(array)))

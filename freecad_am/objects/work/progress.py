@@ -45,7 +45,7 @@ def report_issue(issue: Issue) -> None:
 @contextlib.contextmanager
 def told_to(listener: Listener, findings: Findings | None = None) -> Iterator[None]:
     """Within the context `listener(fraction, text)` receives the progress of the current thread,
-    and `findings(issue)` its findings. InputError BAD_INPUT for an object that cannot be called.
+    and `findings(issue)` its findings. Raises InputError BAD_INPUT for an object that cannot be called.
     """
     for called, where in ((listener, "listener"), (findings, "findings")):
         if not callable(called) and (called is not None or where == "listener"):

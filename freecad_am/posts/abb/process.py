@@ -243,7 +243,8 @@ class Process:
         return self._aboard[self._at - 1].moves
 
     def data(self, used: Collection[str]) -> list[str]:
-        """Declarations of the data whose names are used. InputError MOVE_SPEED where a module would have too many."""
+        """Declarations of the data whose names are used.
+        Raises InputError MOVE_SPEED where a module would have too many."""
         for all_names in self._all_names:
             if len(set(all_names) & set(used)) > MOST_NAMES:
                 raise InputError(

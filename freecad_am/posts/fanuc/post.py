@@ -73,7 +73,7 @@ def at_ends(program: Program) -> dict[int, str]:
 
 
 def as_written(program: Program) -> list[Ahead]:
-    """Every switching ahead, with the lead in the listing: up to 5 ms longer than requested."""
+    """Switches during motion, with their leads as in the listing: up to 5 ms longer than requested."""
     steps = 10**DECIMALS
     return [
         dataclasses.replace(ahead, lead=round(ahead.lead, DECIMALS), steps=steps)

@@ -97,7 +97,7 @@ def name_of(file: str, content: bytes) -> str:
 
 
 def listing_of(file: str, content: bytes) -> Listing:
-    """A file taken apart. InputError UNREADABLE_PROGRAM, naming file and line."""
+    """A file taken apart. Raises InputError UNREADABLE_PROGRAM, naming file and line."""
     text = f"\n{_text(content)}\n"
     marks = [text.find(f"\n{section}\n") for section in ("/MN", "/POS", "/END")]
     if -1 in marks or marks != sorted(marks):
@@ -230,7 +230,7 @@ class Run:
 
 
 def read_moves(run: Run) -> ReadMoves:
-    """All moves in the form of a reader. InputError UNREADABLE_PROGRAM if a track is not declared
+    """All moves in the form of a reader. Raises InputError UNREADABLE_PROGRAM if a track is not declared
     as one.
     """
     cartesian, values, digits = run.cartesian, np.concatenate(run.values), run.digits

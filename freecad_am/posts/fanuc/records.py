@@ -176,7 +176,7 @@ class Records(NamedTuple):
 
 def records_of(file: str, lines: list[str], text: str, positions: int) -> Records:
     """The positions, by number, in the text after the first lines of a file; the line that begins
-    them is numbered from 0. InputError UNREADABLE_PROGRAM for text that is not understood, or
+    them is numbered from 0. Raises InputError UNREADABLE_PROGRAM for text that is not understood, or
     positions recorded twice.
     """
     # counting is many times as fast as checking every line

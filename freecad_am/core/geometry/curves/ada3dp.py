@@ -90,7 +90,7 @@ class _Seen:
 
 def curves_of(data: bytes, where: str, roles: str = roles_of.PART) -> tuple[BeadCurve, ...]:
     """A bead for each segment that deposits, in the coordinates of the file; directions where all of its points have one.
-    InputError BAD_ADA3DP."""
+    Raises InputError BAD_ADA3DP."""
     return read(data, where, roles).curves
 
 

@@ -364,7 +364,8 @@ class _State:
 def curves_of(
     text: str, where: str, chord_error: float, roles: str = roles_of.PART, rotary: str = NO_ROTARY
 ) -> tuple[BeadCurve, ...]:
-    """The beads of a program in its coordinates, arcs within the chord error (mm). InputError BAD_GCODE with the line."""
+    """The beads of a program in its coordinates, arcs within the chord error (mm).
+    Raises InputError BAD_GCODE with the line."""
     return read(text, where, chord_error, roles, rotary).curves
 
 
@@ -630,7 +631,7 @@ class _Reader:
             )
 
     def _numbers(self, command: Command) -> dict[str, float]:
-        """The words of a motion. InputError for words that it does not have, or without a number."""
+        """The words of a motion. Raises InputError for words that it does not have, or without a number."""
         allowed = LINEAR_WORDS if self.motion in ("G0", "G1") else ARC_WORDS
         numbers: dict[str, float] = {}
         for letter, value in command.words:

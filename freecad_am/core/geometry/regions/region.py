@@ -49,7 +49,7 @@ class Shapely(NamedTuple):
 
 @lru_cache(maxsize=1)
 def shapely() -> Shapely:
-    """The library. InputError MISSING_LIBRARY where it is not installed."""
+    """The library. Raises InputError MISSING_LIBRARY where it is not installed."""
     try:
         import shapely as package
         from shapely import geometry, ops

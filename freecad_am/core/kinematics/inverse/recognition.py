@@ -285,7 +285,7 @@ def _angle(rotation: Array, reference: Array) -> float:
 
 
 def _exact(chain: Chain) -> SerialArm:
-    """The closed form of a chain as it is. InputError NO_CLOSED_FORM."""
+    """The closed form of a chain as it is. Raises InputError NO_CLOSED_FORM."""
     try:
         return opw_recognition.recognise(chain)
     except InputError as error:
@@ -350,7 +350,8 @@ def parallel_axes(chain: Chain) -> ParallelAxesArm | None:
 
 
 def offset_wrist(chain: Chain) -> OffsetWristArm:
-    """The inverse of a chain of six revolute joints with a wrist that is not spherical. InputError NO_CLOSED_FORM with what
+    """The inverse of a chain of six revolute joints with a wrist that is not spherical.
+    Raises InputError NO_CLOSED_FORM with what
     does not hold."""
     at_rest = chain.frames(np.zeros(6))
     z, p = at_rest.directions, at_rest.origins

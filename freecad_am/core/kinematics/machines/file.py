@@ -159,7 +159,7 @@ def _once(pairs: list[tuple[str, Any]], path: Path) -> dict[str, Any]:
 
 
 def read(path: Path) -> Node:
-    """The content of a machine file; InputError 'BAD_MACHINE' when it cannot be read as JSON."""
+    """The content of a machine file; raises InputError 'BAD_MACHINE' when it cannot be read as JSON."""
     try:
         return Node(
             json.loads(

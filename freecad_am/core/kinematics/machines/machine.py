@@ -186,7 +186,7 @@ class Machine:
         return unit_values(self.chain.sliding)
 
     def limits(self, name: str) -> Limits:
-        """Return the set of limits with this name; InputError 'UNKNOWN_LIMITS' if it does not exist."""
+        """Return the set of limits with this name; raises InputError 'UNKNOWN_LIMITS' if it does not exist."""
         if name not in self.limit_sets:
             raise InputError(
                 "UNKNOWN_LIMITS",
@@ -285,7 +285,7 @@ def _built_in(path: Path, _: int) -> Machine:
 
 
 def file_of(name: str, folders: Sequence[Path | str] = ()) -> Path:
-    """Return the file of the machine with this id; InputError UNKNOWN_MACHINE if it does not
+    """Return the file of the machine with this id; raises InputError UNKNOWN_MACHINE if it does not
     exist.
     """
     for folder in (*folders, BUILT_IN):

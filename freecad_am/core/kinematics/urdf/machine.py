@@ -223,7 +223,8 @@ def _ends(chain_reference: Reference, where: str) -> tuple[Urdf, str, str]:
 
 
 def closed_form(chain: Chain) -> SerialArm | None:
-    """The inverse of a robot, None of a machine with three sliding and two turning axes. InputError NO_CLOSED_FORM, with
+    """The inverse of a robot, None of a machine with three sliding and two turning axes.
+    Raises InputError NO_CLOSED_FORM, with
     the reason, for any other."""
     return None if is_five_axis(chain.sliding) else recognition.arm_of(chain)
 

@@ -68,7 +68,7 @@ class Description:
 
 
 class Urdf:
-    """The tree of links and joints of a file. InputError 'BAD_URDF' names the line that is wrong."""
+    """The tree of links and joints of a file. Raises InputError 'BAD_URDF', which names the line that is wrong."""
 
     def __init__(self, path: Path | str) -> None:
         self.path = Path(path).expanduser()

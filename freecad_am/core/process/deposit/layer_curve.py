@@ -127,7 +127,7 @@ def _bow(curve: Curve) -> Array:
 
 
 def _nearest_of_all(points: Array, curve: Curve, bow: Array) -> tuple[Index, Index, Mask]:
-    """Pairs (k,) of a point and a segment that may be nearest to it, rising, every chord tried, and whether the chord is."""
+    """Pairs (k,) of a point and a segment that may be nearest to it, in rising order, and whether its chord is; all are tried."""
     centre = curve.start.mean(axis=0)
     start, along, offset = curve.start - centre, curve.end - curve.start, points - centre
     length = (along * along).sum(axis=1)

@@ -116,7 +116,7 @@ class Pictures:
 
     def filled(self, layer: Slice, name: str) -> Filled:
         """The beads of a layer, with a name for messages; every other curve is reversed if directions of closed ones alternate, or
-        starts of open ones are spread. InfeasibleError THIN_REGION.
+        starts of open ones are spread. Raises InfeasibleError THIN_REGION.
         """
         strategy, filling = self._strategy, self._filling(layer)
         curves: list[PlaneCurve] = []
