@@ -140,9 +140,9 @@ class Stage(Stored):
             obj.SchemaVersion = SCHEMA_VERSION
 
     def parameters(self, obj: Any, cls: type) -> Any:
-        """The parameters dataclass of the object; raises InputError naming Label and property."""
-        prefix = next(section.prefix for section in self.sections if section.cls is cls)
-        return properties.read(obj, cls, prefix)
+        """The parameters of a dataclass or a subclass; raises InputError naming Label and property."""
+        section = next(section for section in self.sections if issubclass(section.cls, cls))
+        return properties.read(obj, section.cls, section.prefix)
 
     # ---- computing
 

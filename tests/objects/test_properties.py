@@ -30,7 +30,9 @@ from freecad_am.core.parameters.strategy import (
     RevolutionParameters,
     SurfaceParameters,
 )
+from freecad_am.objects.curves_feature import CurvesFeature
 from freecad_am.objects.fields import properties, rows
+from freecad_am.objects.stage_parts import Section
 from freecad_am.sections import fields as sections
 
 CLASSES = (
@@ -473,3 +475,20 @@ def test_records_are_stored_as_json_and_read_from_older_texts(holder):
     with pytest.raises(InputError, match="is not an obstacle") as error:
         properties.read(holder, CellParameters, "cell")
     assert error.value.where == "Héros n° 1.Obstacles"
+
+
+@dataclasses.dataclass(frozen=True)
+class _Welds(CurvesParameters):
+    """Parameters of a family that extends another one."""
+
+    overfill: float = f.parameter(0.5, f.LENGTH, "More than needed.", low=0.0)
+
+
+def test_a_feature_reads_parameters_of_a_subclass_as_such(doc):
+    class WeldsFeature(CurvesFeature):
+        sections = (Section(_Welds, "strategy", "Layers"), *CurvesFeature.sections[1:])
+
+    obj = doc.addObject("App::FeaturePython", "Welds")
+    proxy = WeldsFeature(obj)
+    assert proxy.parameters(obj, CurvesParameters) == _Welds()
+    assert proxy.parameters(obj, BuildDirectionParameters) == BuildDirectionParameters()
