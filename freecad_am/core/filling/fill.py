@@ -136,6 +136,17 @@ def _ring(region: Region, beads: Beads) -> Array | None:
 
 
 PATTERNS = tuple(FILLS)
+# that follow the border: a region, its inner ones and beads -> beads
+ON_BORDERS = {"contours": contours, "connected": connect_contours, "spiral": spiral}
+# at 100 % inside of contours: a frame, beads, angle, walls and longest link -> beads
+IN_FRAMES = {
+    "lines": lines,
+    "zigzag": lines,
+    "grid": lines,
+    "triangles": lines,
+    "honeycomb": lines,
+    "gyroid": lines,
+}
 SOLID = Infill()
 LINK = 3.0  # of the spacing
 Gaps = list[tuple[Array, float]]  # a place (2,) in each, and how wide it is, mm
@@ -193,16 +204,14 @@ def fill(
         return tuple(long_enough(curves, beads.shortest))
     inner = region.grown(-beads.inset, beads.chord_error)
     if FILLS[pattern].follows_border and infill.density == 1.0:
-        curves = {"contours": contours, "connected": connect_contours, "spiral": spiral}[pattern](
-            region, inner, beads
-        )
+        curves = ON_BORDERS[pattern](region, inner, beads)
     else:
         link = (longest_link or LINK * beads.spacing) if pattern == "zigzag" else None
         rounds = 0 if math.isinf(walls) else int(walls)
         framed = frame(region, inner, beads, rounds)
         curves = framed.thin + framed.curves
         if infill.density == 1.0:
-            curves += lines(framed, beads, angle, rounds, link)
+            curves += IN_FRAMES[pattern](framed, beads, angle, rounds, link)
             curves += closing_beads(inner, curves, beads, rounds)
         else:
             curves += sparse(framed, inner, beads, pattern, angle, rounds, link, infill)

@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 from freecad_am.core.filling.centre import Beads
-from freecad_am.core.filling.fill import PATTERNS, fill
+from freecad_am.core.filling.fill import IN_FRAMES, ON_BORDERS, PATTERNS, fill
 from freecad_am.core.filling.sparse import Frame, levels_between, rows
 from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InfeasibleError, InputError
+from freecad_am.core.parameters.fills import FILLS
 
 _spec = importlib.util.spec_from_file_location(
     "filling_shapes", Path(__file__).with_name("shapes.py")
@@ -32,6 +33,12 @@ SHAPES, dense, inside, raster, tree, distance = (
 S, GAP, PITCH = 5.0, 2.0, 0.4
 BEADS = Beads(S, GAP, 0.0)
 STEP = 0.05
+
+
+def test_every_pattern_has_a_function():
+    assert set(ON_BORDERS) == {name for name in FILLS if FILLS[name].follows_border}
+    assert set(ON_BORDERS) | set(IN_FRAMES) == set(FILLS)
+    assert not set(ON_BORDERS) & set(IN_FRAMES)
 
 
 def filled(name, pattern, beads=BEADS, **options):
