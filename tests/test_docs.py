@@ -269,3 +269,25 @@ def test_every_tool_has_a_page_and_the_index_lists_it():
         assert (DOCS / "tools" / page).read_text(encoding="utf-8").splitlines()[
             0
         ] == f"# {name.rstrip('…')}", page
+
+
+def test_names_in_modules_that_guides_name_exist():
+    """`module.name` is a name in a module of that name, where there is one."""
+    files = {
+        f"/{path.relative_to(ROOT).as_posix()}": path.read_text(encoding="utf-8")
+        for folder in ("freecad_am", "tests")
+        for path in (ROOT / folder).rglob("*.py")
+    }
+    pages = [ROOT / "CONTRIBUTING.md", *sorted((DOCS / "contributing").glob("*.md"))]
+    checked, missing = set(), set()
+    for page in pages:
+        for module, name in re.findall(
+            r"`([\w.]+)\.(?!py`)(\w+)`", page.read_text(encoding="utf-8")
+        ):
+            end = f"/{module.replace('.', '/')}.py"
+            texts = [text for path, text in files.items() if path.endswith(end)]
+            checked |= {(page.name, module, name)} if texts else set()
+            if texts and not any(re.search(rf"\b{name}\b", text) for text in texts):
+                missing.add((page.name, module, name))
+    assert len(checked) > 5
+    assert not missing

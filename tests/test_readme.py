@@ -4,6 +4,7 @@
 import re
 import shlex
 import subprocess
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -129,6 +130,12 @@ def test_posts_and_machines_are_told():
     assert all(f"**{post}**" in plain for post in catalogue.NAMES)
     robots = [name for name, _ in machine.known() if machine.load(name).free]
     assert f"{len(robots)} robots" in readme
+    page = (ROOT / "docs/machines.md").read_text(encoding="utf-8")
+    table = page.partition("| manufacturer | robots |")[2].partition("\n\n")[0]
+    rows = re.findall(r"^\| (\S+?):? .*\| (\d+) \|", table, re.MULTILINE)
+    ids = {"Yaskawa": "motoman", "Stäubli": "staubli", "Universal": "ur"}
+    makers = Counter(name.partition("-")[0] for name in robots)
+    assert {ids.get(maker, maker.lower()): int(count) for maker, count in rows} == makers
 
 
 def test_columns_of_waypoints_are_told():

@@ -60,6 +60,10 @@ WAYS = [
 ]
 
 
+def test_every_post_is_in_the_lists():
+    assert {way[0] for way in ONE_EACH} == set(catalogue.NAMES)
+
+
 def classed(motion):
     """The motion with beads of three classes in turn."""
     number = (motion.layer + motion.bead) % 3

@@ -20,7 +20,7 @@ GOOD = json.loads((machine.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encod
 
 def test_all_built_in_machines_load():
     known = machine.known()
-    assert len(known) == 190
+    assert len(known) == len(list(machine.BUILT_IN.glob("*.json"))) > 0
     for name, title in known:
         arm = machine.load(name)
         assert (arm.id, arm.title) == (name, title)
