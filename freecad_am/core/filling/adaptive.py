@@ -26,7 +26,7 @@ from ..geometry.curves.plane_curve import arcs, length
 from ..geometry.regions.region import Region, along, regions, select_significant, simplified
 from ..geometry.regions.spokes import Spokes, find_spokes
 from ..types import Array, Index, Mask
-from .centre import Beads, PlaneCurve, long_enough, start_curve
+from .centre import Beads, PlaneCurve, divide_by_share, long_enough, start_curve
 
 MAX_WEDGE = math.radians(60.0)  # sides of a wedge that opens more belong to a corner
 GAP_WEDGE = math.radians(120.0)  # the same in a gap between beads
@@ -215,6 +215,7 @@ def covered_regions(
             lines.append((points, False))
             halves.append(0.5 * width)
             continue
+        points, shares = divide_by_share(points, shares)
         means = 0.5 * (shares[1:] + shares[:-1])
         lines += [(points[k : k + 2], False) for k in range(len(means))]
         halves += (0.5 * width * means).tolist()

@@ -37,6 +37,7 @@ NEXT, OVER = (
 THINNEST = (
     0.6  # of a bead's width; ribs that wide get a bead even if all beads have the usual width
 )
+SHARE_STEP = 0.05  # of the usual width; along an edge of a bead the width changes no more
 FARTHEST_TOLERANCE = 1e-9  # of a ring's extent; points less apart are equally far out
 
 
@@ -77,6 +78,27 @@ class PlaneCurve:
         return np.vstack([self.points, start]), None if self.share is None else np.r_[
             self.share, self.share[:1]
         ]
+
+
+def divide_by_share(points: Array, share: Array) -> tuple[Array, Array]:
+    """Divide the edges of a line so that the width changes little along each: a bead has one speed an edge.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 2)
+        mm.
+    share : ndarray, shape (n,)
+        Of the usual width.
+    """
+    counts = np.maximum(np.ceil(np.abs(np.diff(share)) / SHARE_STEP - 1e-9), 1.0).astype(np.intp)
+    if (counts == 1).all():
+        return points, share
+    position = np.arange(len(points), dtype=float)
+    edge = np.repeat(position[:-1], counts)
+    number = np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts)
+    places = np.r_[edge + number / np.repeat(counts, counts), position[-1]]
+    divided = np.stack([np.interp(places, position, points[:, k]) for k in (0, 1)], axis=1)
+    return divided, np.interp(places, position, share)
 
 
 def plane_text(point: Array) -> str:

@@ -14,7 +14,7 @@ from ..geometry.curves.plane_curve import length
 from ..geometry.regions.region import Region, measure_bands, simplified
 from ..geometry.regions.strip import Strip
 from ..types import Array
-from .centre import Beads, PlaneCurve, near_windows
+from .centre import Beads, PlaneCurve, divide_by_share, near_windows
 
 COARSE = 0.01  # of half a bead; finest chord error of beads round a hub
 DOT = 1e-6  # of a dot's length: the line about which its disc is drawn
@@ -109,6 +109,7 @@ def _widths(curve: PlaneCurve, beads: Beads) -> tuple[list[Line], list[float]]:
         return [(curve.points, curve.closed)], [float(curve.share.mean())]
     points, share = curve.closed_points()
     assert share is not None
+    points, share = divide_by_share(points, share)
     level = np.round(0.5 * (share[1:] + share[:-1]) / SHARES)
     starts = np.flatnonzero(np.diff(level, prepend=np.nan))
     ends = np.r_[starts[1:], len(level)]

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...filling.centre import PlaneCurve
+from ...filling.centre import PlaneCurve, divide_by_share
 from ...filling.cover import Cover, total
 from ...geometry.angles import TURN
 from ...geometry.curves.plane_curve import (
@@ -111,6 +111,9 @@ def bead_of(
     flat = needed(
         line, error, None if share is None else select_significant(arcs(line), share, SHARES)
     )
+    if share is not None:
+        flat_share = np.interp(fractions(flat), fractions(line), share)
+        flat = divide_by_share(flat, flat_share)[0]
     flat = divide_edges(flat, surface.pieces(flat, error))[0]
     course = Course(flat, curve.closed, surface.for_sheet(flat, curve.sheet))
     flat, points, normals, tool, turned = hold_torch(
