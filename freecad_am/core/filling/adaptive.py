@@ -45,7 +45,7 @@ MOUTH = 0.35  # of the spacing; how far inside a thick place its beads turn befo
 SHARE_TOLERANCE = 0.02  # of the usual width; shares within this of a straight line need no point
 SAME = 1e-9  # of the spacing
 SHORTEST_PIECE = 0.1  # of the spacing; shorter pieces of the axis are ends of branches into corners
-CAP = 0.7  # of the radius of a bead's round end that is kept off the bead that it ends on
+CAP = 0.25  # of the radius of a bead's round end, which has no more volume, kept off the bead it ends on
 MEET = 0.8  # of the usual width; about as wide are beads that others end on
 JOINT = 1.3  # steps; ends of middle beads that near to each other meet
 
@@ -299,9 +299,8 @@ def _thickness(
     deciding, in_pairs, summit = _carry_uphill(spokes, is_central, SUMMIT * law.spacing)
     counts = law.count_beads(deciding, in_pairs)
     even = law.count_beads(deciding, np.ones(len(radii), dtype=bool))
-    _level_short_changes(
-        counts, even, forks, distance, following, is_central, SHORT_CHANGE * law.spacing
-    )
+    levelled = _Thickness(deciding, counts, is_central, [])
+    _level_short_changes(levelled, even, forks, distance, following, law)
     _bridge(radii, counts, distance, following, is_central, SHORT_CHANGE * law.spacing)
     follows = ~is_central & is_central[summit]
     counts[follows], deciding[follows] = counts[summit[follows]], deciding[summit[follows]]
@@ -350,31 +349,43 @@ def _transitions(
 
 
 def _level_short_changes(
-    counts: Index,
+    thickness: _Thickness,
     even: Index,
     forks: Mask,
     distance: Array,
     following: Index,
-    is_central: Mask,
-    shortest: float,
+    law: BeadLaw,
 ) -> None:
-    """Remove short changes from `counts`: a number of beads that holds for less than a length, mm,
-    of the axis takes that of its neighbours; an odd number between others takes that of `even`.
+    """Remove short changes from the counts: a number of beads that holds for a short stretch of the
+    axis takes that of its neighbours; an odd number between others takes that of `even`.
     """
     for cycle in _cycles(following):
-        for run in _runs(is_central[cycle]):
+        for run in _runs(thickness.is_central[cycle]):
             members = cycle[run]
             for branch in np.split(members, np.flatnonzero(forks[members]) + 1):
-                _level_branch(counts, even, distance, branch, shortest)
+                _level_branch(thickness, even, distance, branch, law)
 
 
 def _level_branch(
-    counts: Index, even: Index, distance: Array, branch: Index, shortest: float
+    thickness: _Thickness, even: Index, distance: Array, branch: Index, law: BeadLaw
 ) -> None:
     """Apply `_level_short_changes` to a branch of the axis between two forks."""
-    stretches = np.split(branch, np.flatnonzero(np.diff(counts[branch])) + 1)
-    for number, stretch in enumerate(stretches):
-        if not len(stretch) or distance[stretch].sum() >= shortest:
+    counts = thickness.counts
+    cuts = [0, *(np.flatnonzero(np.diff(counts[branch])) + 1).tolist(), len(branch)]
+    stretches = [branch[a:b] for a, b in zip(cuts, cuts[1:]) if b > a]
+    lengths = [
+        float(distance[branch[a : b - 1]].sum())
+        + sum(
+            _share_to_limit(thickness, branch[inside], branch[outside], law)
+            * float(distance[branch[min(inside, outside)]])
+            for inside, outside in ((a, a - 1), (b - 1, b))
+            if 0 <= outside < len(branch)
+        )
+        for a, b in zip(cuts, cuts[1:])
+        if b > a
+    ]
+    for number, (stretch, stretch_length) in enumerate(zip(stretches, lengths)):
+        if stretch_length >= SHORT_CHANGE * law.spacing:
             continue
         here = int(counts[stretch[0]])
         low, high = (
@@ -385,6 +396,13 @@ def _level_branch(
             counts[stretch] = min(low, high) if here < low else max(low, high)
         elif here % 2 == 1 and here > 1 and len(stretches) > 1:
             counts[stretch] = even[stretch]
+
+
+def _share_to_limit(thickness: _Thickness, inside: int, outside: int, law: BeadLaw) -> float:
+    """Where between two spokes the number of beads changes, as a share of the way to the second."""
+    start, end = float(thickness.radii[inside]), float(thickness.radii[outside])
+    limit = law.least_radius(int(max(thickness.counts[inside], thickness.counts[outside])))
+    return min(max((limit - start) / (end - start), 0.0), 1.0) if end != start else 0.5
 
 
 def _stretch_length(counts: Index, arc: Array, member: int) -> float:
@@ -887,17 +905,20 @@ def _walk(
 
 
 def _cut_back(piece: _Middle, law: BeadLaw, shortest: float) -> _Middle:
-    """Shorten a piece by its ends that overlap other beads; at least `shortest` mm remain."""
+    """Shorten a piece by its ends that overlap other beads, of which `shortest` mm remain; extend its
+    free ends so far that the round end of a bead has its volume.
+    """
     points, shares = piece.points, piece.shares
-    for turned in range(2):
-        if piece.meets[turned]:
-            points, shares = points[::-1], shares[::-1]
-            radius = 0.5 * law.spacing * float(shares[-1])
+    for meets in piece.meets:
+        points, shares = points[::-1], shares[::-1]  # the end in question is the last
+        radius = 0.5 * law.spacing * float(shares[-1])
+        if meets:
             excess = length(points, False) - 1.01 * shortest
             back = min(CAP * radius + 0.5 * law.spacing * MEET, max(excess, 0.0))
             points, shares = _shortened(points, shares, back)
-            points, shares = points[::-1], shares[::-1]
-        points, shares = points[::-1], shares[::-1]
+        else:
+            end = points[-1] + 0.25 * math.pi * radius * _outward(points, -1)
+            points, shares = np.vstack([points, end]), np.r_[shares, shares[-1:]]
     return piece._replace(points=points, shares=shares)
 
 

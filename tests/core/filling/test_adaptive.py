@@ -29,9 +29,11 @@ def region_of(shape):
 
 
 def swept(curve):
-    """A bead as the union of short strokes as wide as it is there."""
+    """A bead as the union of short strokes as wide as it is there; its area is that of its volume."""
     points, shares = curve.closed_points()
     shares = np.ones(len(points)) if shares is None else shares
+    if not curve.closed:
+        points, shares = without_round_ends(points, shares)
     strokes = []
     for k in range(len(points) - 1):
         parts = max(1, int(abs(shares[k + 1] - shares[k]) / 0.02))
@@ -43,6 +45,17 @@ def swept(curve):
             for j in range(parts)
         ]
     return unary_union(strokes)
+
+
+def without_round_ends(points, shares):
+    """An open line cut back at both ends by as much as round ends add to its area."""
+    arc = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
+    cut = 0.125 * math.pi * WIDTH * shares[[0, -1]]
+    low, high = min(cut[0], 0.49 * arc[-1]), arc[-1] - min(cut[1], 0.49 * arc[-1])
+    inner = arc[(arc > low) & (arc < high)]
+    places = np.r_[low, inner, high]
+    line = np.stack([np.interp(places, arc, points[:, k]) for k in (0, 1)], axis=1)
+    return line, np.interp(places, arc, shares)
 
 
 def faults(shape):
@@ -156,7 +169,7 @@ def random_shape(rng):
 
 def test_random_shapes_are_covered_and_beads_stay_inside():
     figures = np.array([faults(random_shape(np.random.default_rng(seed))) for seed in range(40)])
-    assert (np.median(figures, axis=0) < (0.02, 0.03, 0.002)).all()
+    assert (np.median(figures, axis=0) < (0.025, 0.03, 0.002)).all()
     assert (np.percentile(figures, 90, axis=0) < (0.03, 0.1, 0.005)).all()
     assert (figures.max(axis=0) < (0.08, 0.2, 0.02)).all()
 
