@@ -125,6 +125,7 @@ def strategy(case: Case) -> dict[str, object]:
         "bead_spacing": BEAD,
         "chord_error": CHORD_ERROR,
         "fill": case.fill,
+        "widths": "adaptive",
         "walls": prusa.WALLS,
         "narrowest": f"{100.0 * NARROWEST:g} %",
     }

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from freecad_am import api
-from freecad_am.brep.files import three_mf, three_mf_roles
+from freecad_am.brep.files import read, three_mf, three_mf_roles
 from freecad_am.brep.files.read import mesh_content, read_mesh
 from freecad_am.core.geometry.mesh.repair import repair_mesh
 from freecad_am.core.geometry.mesh.solid import SolidMesh
@@ -274,9 +274,10 @@ def test_zips_that_are_none_and_zips_that_grow(tmp_path, monkeypatch):
     path.write_bytes(content)
     with pytest.raises(InputError, match="encrypted"):
         read_mesh(path)
-    monkeypatch.setattr(three_mf, "MAX_UNPACKED_BYTES", 1 << 20)
+    monkeypatch.setattr("freecad_am.brep.files.three_mf.MAX_UNPACKED_BYTES", 1 << 20)
+    path = written(tmp_path, model(mesh(1) + " " * (1 << 21), placed("item", 1)))
     with pytest.raises(InputError) as refused:
-        read_mesh(written(tmp_path, model(mesh(1) + " " * (1 << 21), placed("item", 1))))
+        read._mesh(path, "part", 1.0)  # in this process, where the limit is another one
     assert refused.value.code == "UNSUPPORTED_FILE" and "unpacks" in refused.value.message
 
 
@@ -436,14 +437,14 @@ def test_a_round_negative_volume_leaves_what_is_outside_of_it(tmp_path):
 
 
 def test_negative_volumes_that_cannot_be_cut_are_refused_by_name(tmp_path, monkeypatch):
-    monkeypatch.setattr(three_mf_roles, "MAX_TRIANGLES", 20)
+    monkeypatch.setattr(f"{three_mf_roles.__name__}.MAX_TRIANGLES", 20)
     keys = {"name": "the hole", "volume_type": "NegativeVolume"}
     text = model(mesh(1, BOTH, BOTH_FACES), placed("item", 1))
     path = written(tmp_path, text, more={PRUSA: prusa((0, 11, {}), (12, 23, keys))})
     with pytest.raises(
         InputError, match=r"'the hole' is a negative volume.*: 24 triangles"
     ) as caught:
-        read_mesh(path)
+        read._mesh(path, "part", 1.0)  # in this process, where the limit is another one
     assert caught.value.code == "UNSUPPORTED_FILE"
 
 

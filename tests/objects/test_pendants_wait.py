@@ -16,6 +16,8 @@ ROOT = Path(__file__).resolve().parents[2]
 def test_a_pose_imports_the_post_that_it_names_alone(words, posts):
     lines = [
         "import sys",
+        "from freecad_am.batch import host",
+        "host.find_freecad()",
         "from freecad_am.objects.fields import pendants",
         f"pendants.plain('x at {words} carries y', 'here')",
         f"pendants.named({words.split()!r})",

@@ -83,7 +83,8 @@ def refused(read, *given):
         )
         < SECONDS
     )
-    assert after[0].ru_maxrss / 1e3 < MEMORY
+    # the largest child of all tests of this process so far may be that of another file
+    assert after[0].ru_maxrss / 1e3 < max(MEMORY, before[0].ru_maxrss / 1e3 + 1.0)
     return told.value
 
 
@@ -130,6 +131,7 @@ def opened(path):
 def assert_read_or_refused(sound, tmp_path, damages):
     """How many damaged files of each ending were read, and refused; nothing else comes of one."""
     told = {suffix: [0, 0] for suffix in sound}
+    open_before = FreeCAD.listDocuments().keys()
     for suffix, kind, seed in damages:
         path = tmp_path / f"damaged{suffix}"
         path.write_bytes(damage.damaged(sound[suffix].read_bytes(), kind, seed))
@@ -153,7 +155,7 @@ def assert_read_or_refused(sound, tmp_path, damages):
             kind,
             seed,
         )
-        assert not FreeCAD.listDocuments()
+        assert FreeCAD.listDocuments().keys() <= open_before
     return told
 
 

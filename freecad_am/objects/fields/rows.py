@@ -187,9 +187,13 @@ class Row:
 
     def _records(self, records: Records, value: Any, where: str) -> Any:
         """Records of their text or JSON. Raises InputError BAD_VALUE, at the dotted key of a job file."""
-        if isinstance(value, str) and self.spec.poses:
-            value = pendants.plain(value, where)
-        return records.read(value)
+        if records.single and (value is None or isinstance(value, records.record)):
+            return value
+        if not isinstance(value, str):
+            if not records.single and _are(records.record, value):
+                return tuple(value)
+            value = " ".join(checked_words(value, where))
+        return records.read(pendants.plain(value, where) if self.spec.poses else value)
 
     def _list(self, value: Any, where: str) -> tuple[Any, ...]:
         """Words, or records of words. Raises InputError BAD_VALUE."""

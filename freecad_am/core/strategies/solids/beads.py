@@ -111,7 +111,7 @@ def bead_of(
     flat = needed(
         line, error, None if share is None else select_significant(arcs(line), share, SHARES)
     )
-    if share is not None:
+    if share is not None and strategy.adapts_widths:
         flat_share = np.interp(fractions(flat), fractions(line), share)
         flat = divide_by_share(flat, flat_share)[0]
     flat = divide_edges(flat, surface.pieces(flat, error))[0]
