@@ -70,14 +70,12 @@ def test_obstacles_of_a_document(tmp_path, name):
     os.mkfifo(tmp_path / "pipe.step")
     (tmp_path / "zero.step").symlink_to("/dev/zero")
     text = f"post = {tmp_path / name} at 0 0 0 0 0 0"
-    assert (
-        refused(cell_obstacles.bodies_of, CellParameters(obstacles=text)).where
-        == "cell.obstacles post"
-    )
+    settings = CellParameters(obstacles=text)
+    assert refused(cell_obstacles.bodies_of, settings).where == "cell.obstacles post"
     if name == "huge.step":
-        assert refused(cell_obstacles.hashes_of, text, "").code == "BAD_FILE"
+        assert refused(cell_obstacles.hashes_of, settings).code == "BAD_FILE"
     else:
-        assert cell_obstacles.hashes_of(text, "") == []
+        assert cell_obstacles.hashes_of(settings) == []
 
 
 @pytest.mark.parametrize("name", ["huge.json", "pipe.json", "zero.json"])
