@@ -23,7 +23,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.plane_curve import arcs, length
-from ..geometry.regions.region import Region, along, regions, select_significant, simplified
+from ..geometry.regions.region import Region, along, select_significant, select_simplified
 from ..geometry.regions.spokes import Spokes, find_spokes
 from ..types import Array, Index, Mask
 from .centre import Beads, PlaneCurve, divide_by_share, long_enough, start_curve
@@ -180,28 +180,28 @@ class _Crossing(NamedTuple):
     share: float
 
 
-class Adaptive(NamedTuple):
-    """Beads of a region, and the regions inside its walls that are left for another pattern."""
-
-    curves: list[PlaneCurve]
-    interior: tuple[Region, ...]
-
-
-def adapt_contours(region: Region, beads: Beads, law: BeadLaw, walls: float) -> Adaptive:
+def adapt_contours(region: Region, beads: Beads, law: BeadLaw) -> list[PlaneCurve]:
     """Fill a region with contours, with beads along its middle, and with beads in the remaining
     gaps.
 
-    Parameters and return value are those of `_adapt`.
+    Parameters
+    ----------
+    region : Region
+        Plane region, mm.
+    beads : Beads
+        Options; spacing and width are the law's.
+    law : BeadLaw
+        Number and widths of beads.
     """
-    curves, interior = _adapt(region, beads, law, walls)
+    curves = _adapt(region, beads, law, MAX_WEDGE, SHORTEST_CENTRE * law.spacing)
     if not curves:
-        return Adaptive(curves, interior)
+        return []
     least = law.narrowest * law.width
-    bands = [*covered_regions(curves, law.width, beads.chord_error), *interior]
-    for gap in region.without(bands, wide=least, least_area=least * beads.shortest):
-        middles = _adapt(gap, beads, law, math.inf, GAP_WEDGE, beads.shortest).curves
+    covered = covered_regions(curves, law.width, beads.chord_error)
+    for gap in region.without(covered, wide=least, least_area=least * beads.shortest):
+        middles = _adapt(gap, beads, law, GAP_WEDGE, beads.shortest)
         curves += [replace(curve, kind="closing", ring=0) for curve in middles]
-    return Adaptive(curves, interior)
+    return curves
 
 
 def covered_regions(
@@ -223,61 +223,33 @@ def covered_regions(
 
 
 def _adapt(
-    region: Region,
-    beads: Beads,
-    law: BeadLaw,
-    walls: float,
-    max_wedge: float = 0.0,
-    shortest_centre: float = 0.0,
-) -> Adaptive:
+    region: Region, beads: Beads, law: BeadLaw, max_wedge: float, shortest_centre: float
+) -> list[PlaneCurve]:
     """Fill a region with contours, and with beads along its middle.
 
-    Parameters
-    ----------
-    region : Region
-        Plane region, mm.
-    beads : Beads
-        Options; spacing and width are the law's.
-    law : BeadLaw
-        Number and widths of beads.
-    walls : float
-        Number of contours in thick parts, which leave the inside open; infinity fills it.
+    max_wedge: rad; sides of a wedge that opens more belong to a corner. shortest_centre: mm; a
+    shorter stretch of the axis gets no bead of its own.
     """
-    reach = law.usual_radius(int(2.0 * walls) + 3) if math.isfinite(walls) else region.extent
-    turn = 2.0 * math.acos(max(1.0 - beads.chord_error / max(float(reach), beads.chord_error), 0.0))
+    reach = region.extent
+    turn = 2.0 * math.acos(max(1.0 - beads.chord_error / max(reach, beads.chord_error), 0.0))
     spokes = find_spokes(
         region,
         STEP * law.spacing,
         RADIUS_TOLERANCE * law.spacing,
         min(max(turn, 0.02), 0.5),
-        float(reach),
+        reach,
     )
-    thickness = _thickness(
-        spokes, law, max_wedge or MAX_WEDGE, shortest_centre or SHORTEST_CENTRE * law.spacing
-    )
-    deepest = int(thickness.counts.max(initial=0)) // 2
-    is_thick = thickness.counts > 2.0 * walls + 2.0
+    thickness = _thickness(spokes, law, max_wedge, shortest_centre)
     curves: list[PlaneCurve] = []
     free = spokes.radii - 0.5 * (law.width - law.spacing)  # half the room for a bead in the middle
-    for pair in range(deepest):
-        has_pair = (thickness.counts >= 2 * pair + 2) & ~(is_thick & (pair >= walls))
+    for pair in range(int(thickness.counts.max(initial=0)) // 2):
+        has_pair = thickness.counts >= 2 * pair + 2
         depths, shares = thickness.depths(law, pair)
         curves += _rings(spokes, thickness, has_pair, depths, shares, beads, pair, law)
         innermost = thickness.counts // 2 == pair + 1
         free = np.where(innermost, spokes.radii - depths - 0.5 * law.spacing * shares, free)
-    curves += _centres(spokes, thickness, law, beads, np.where(is_thick, 0.0, free))
-    interior: tuple[Region, ...] = ()
-    if is_thick.any():
-        depth = law.usual_radius(1) + (walls - 0.5) * law.spacing if walls else 0.0
-        depths = np.full(len(spokes.radii), float(depth))
-        loops = (
-            _rings(spokes, thickness, is_thick, depths, np.ones(len(depths)), beads, 0, law)
-            if walls
-            else []
-        )
-        interior = regions([loop.points for loop in loops]) if walls else (region,)
-    curves = [start_curve(curve, beads) for curve in long_enough(curves, beads.shortest)]
-    return Adaptive(curves, interior)
+    curves += _centres(spokes, thickness, law, beads, free)
+    return [start_curve(curve, beads) for curve in long_enough(curves, beads.shortest)]
 
 
 def _thickness(
@@ -376,7 +348,7 @@ def _level_branch(
     lengths = [
         float(distance[branch[a : b - 1]].sum())
         + sum(
-            _share_to_limit(thickness, branch[inside], branch[outside], law)
+            _share_of_number(thickness, branch[inside], branch[outside], law)
             * float(distance[branch[min(inside, outside)]])
             for inside, outside in ((a, a - 1), (b - 1, b))
             if 0 <= outside < len(branch)
@@ -398,11 +370,21 @@ def _level_branch(
             counts[stretch] = even[stretch]
 
 
-def _share_to_limit(thickness: _Thickness, inside: int, outside: int, law: BeadLaw) -> float:
-    """Where between two spokes the number of beads changes, as a share of the way to the second."""
+def _share_of_number(thickness: _Thickness, inside: int, outside: int, law: BeadLaw) -> float:
+    """Share of the way between two spokes at which the number of beads changes."""
+    most = int(max(thickness.counts[inside], thickness.counts[outside]))
+    return _share_to_limit(thickness, inside, outside, law.least_radius(most), 0.5)
+
+
+def _share_to_limit(
+    thickness: _Thickness, inside: int, outside: int, limit: float, level: float
+) -> float:
+    """Share of the way between two spokes at which half the thickness is `limit` mm; `level` where it
+    is the same at both."""
     start, end = float(thickness.radii[inside]), float(thickness.radii[outside])
-    limit = law.least_radius(int(max(thickness.counts[inside], thickness.counts[outside])))
-    return min(max((limit - start) / (end - start), 0.0), 1.0) if end != start else 0.5
+    if start == end:
+        return level
+    return min(max((limit - start) / (end - start), 0.0), 1.0)
 
 
 def _stretch_length(counts: Index, arc: Array, member: int) -> float:
@@ -635,11 +617,8 @@ def _crossing(
 
 def _share_of_change(thickness: _Thickness, inside: int, outside: int, law: BeadLaw) -> float:
     """Share of the way between two spokes of the axis at which the pair of the first ends."""
-    start, end = float(thickness.radii[inside]), float(thickness.radii[outside])
     limit = law.least_radius(int(thickness.counts[inside]) // 2 * 2)
-    if start == end:
-        return 1.0
-    return min(max((start - limit) / (start - end), 0.0), 1.0)
+    return _share_to_limit(thickness, inside, outside, limit, 1.0)
 
 
 def _chains(
@@ -735,22 +714,14 @@ def _thinned(points: Array, share: Array, closed: bool, beads: Beads) -> tuple[A
     if closed:
         points = np.vstack([points, points[:1]])
         share = np.r_[share, share[:1]]
-    line = np.column_stack([points, np.arange(len(points))])
     kept = np.zeros(len(points), dtype=bool)
-    kept[_kept_numbers(line, 0.5 * beads.chord_error)] = True
+    kept[select_simplified(points, 0.5 * beads.chord_error)] = True
     if np.ptp(share) > SHARE_TOLERANCE:
         kept |= select_significant(arcs(points), share, SHARE_TOLERANCE)
     if closed:
         kept[-1] = False
     points, share = points[kept], share[kept]
     return points, None if np.abs(share - 1.0).max(initial=0.0) < 1e-3 else share
-
-
-def _kept_numbers(line: Array, tolerance: float) -> Index:
-    """Numbers of the points of a line (n, 3) that remain after x and y are simplified."""
-    shape = simplified(line[:, :2], tolerance)
-    order = {tuple(point): number for number, point in enumerate(line[:, :2].tolist())}
-    return np.array([order[tuple(point)] for point in shape.tolist()] + [0, len(line) - 1])
 
 
 class _Middle(NamedTuple):

@@ -60,7 +60,7 @@ def without_round_ends(points, shares):
 
 def faults(shape):
     """Shares of a shape that beads miss where the narrowest fits, deposit twice, and deposit outside."""
-    curves = adapt_contours(region_of(shape), BEADS, LAW, math.inf).curves
+    curves = adapt_contours(region_of(shape), BEADS, LAW)
     beads = [swept(curve) for curve in curves]
     union = unary_union(beads)
     reach = 0.5 * LAW.narrowest * WIDTH + 0.02
@@ -86,7 +86,7 @@ def test_walls_of_any_thickness_are_covered(count):
 
 
 def test_a_wall_of_one_and_a_half_beads_gets_two_of_three_quarters():
-    (ring,) = adapt_contours(region_of(wall(1.5)), BEADS, LAW, math.inf).curves
+    (ring,) = adapt_contours(region_of(wall(1.5)), BEADS, LAW)
     assert ring.closed
     assert ring.share == pytest.approx(0.75, abs=0.01)
     assert region_of(wall(1.5)).nearest(ring.points)[1] == pytest.approx(1.5, abs=0.01)
@@ -95,7 +95,7 @@ def test_a_wall_of_one_and_a_half_beads_gets_two_of_three_quarters():
 def test_a_taper_is_followed_to_where_it_is_narrower_than_the_narrowest():
     length, root = 57.0, 4.0
     fin = Polygon([(0.0, -0.5 * root), (length, 0.0), (0.0, 0.5 * root)])
-    curves = adapt_contours(region_of(fin), BEADS, LAW, math.inf).curves
+    curves = adapt_contours(region_of(fin), BEADS, LAW)
     tip = max(float(curve.points[:, 0].max()) for curve in curves)
     narrow = length * (1.0 - LAW.narrowest * WIDTH / root)  # as wide as the narrowest there
     assert narrow - 1.5 < tip < narrow + 1.0
@@ -128,10 +128,7 @@ def test_beads_move_with_the_shape(name, turn, mirrored):
         return affinity.translate(affinity.rotate(shape, turn, origin=(0, 0)), 123.4, -56.7)
 
     shape = SHAPES[name]
-    here, there = (
-        adapt_contours(region_of(each), BEADS, LAW, math.inf).curves
-        for each in (shape, moved(shape))
-    )
+    here, there = (adapt_contours(region_of(each), BEADS, LAW) for each in (shape, moved(shape)))
     assert len(here) == len(there)
     covered = moved(unary_union([swept(curve) for curve in here]))
     covered_there = unary_union([swept(curve) for curve in there])

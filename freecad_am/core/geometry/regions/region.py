@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...issues import NOTE, InputError, Issue, Text
-from ...types import Array, Mask
+from ...types import Array, Index, Mask
 from ..curves.plane_curve import doubled_area, nearest_on_rings, winding
 from ..step_count import turn_segments
 
@@ -376,11 +376,15 @@ def _bends(line: Array) -> list[Array]:
 def simplified(points: Array, tolerance: float, closed: bool = False) -> Array:
     """A curve (n, 2) with no more points than `tolerance` mm asks for; its first is kept, and the last of an open one."""
     whole = np.vstack([points, points[:1]]) if closed else points
-    numbered = np.column_stack([np.round(whole, DIGITS), np.arange(len(whole))])
-    line = shapely().geometry.LineString(numbered).simplify(tolerance, preserve_topology=False)
-    kept = np.array(line.coords, dtype=float)[:, 2].astype(np.intp)
-    found: Array = whole[kept]
+    found: Array = whole[select_simplified(whole, tolerance)]
     return found[:-1] if closed else found
+
+
+def select_simplified(points: Array, tolerance: float) -> Index:
+    """Numbers of the points that remain of an open curve (n, 2) in `simplified`."""
+    numbered = np.column_stack([np.round(points, DIGITS), np.arange(len(points))])
+    line = shapely().geometry.LineString(numbered).simplify(tolerance, preserve_topology=False)
+    return np.array(line.coords, dtype=float)[:, 2].astype(np.intp)
 
 
 def _buffered(shape: Any, distance: float, chord_error: float) -> Any:

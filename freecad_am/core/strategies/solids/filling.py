@@ -314,7 +314,7 @@ def _adapt_widths(
     if fault < WELL_COVERED * cover.area:
         return None
     law = BeadLaw(2.0 * beads.inset, beads.spacing, strategy.narrowest, strategy.widest)
-    adapted = adapt_contours(region, beads, law, math.inf).curves
+    adapted = adapt_contours(region, beads, law)
     if not adapted:
         return None
     adapted_cover = measure_cover(region, adapted, beads)
