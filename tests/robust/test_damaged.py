@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Damaged and hostile inputs: each is answered by one message and status 2, within 10 s of the processor and 1 GB."""
 
+import json
 import os
 import random
 import re
 import resource
 import subprocess
-import threading
+import sys
+import tempfile
 import time
 import zipfile
 
@@ -35,31 +37,39 @@ BOMB = "<?xml version='1.0' encoding='utf-8'?>\n<!DOCTYPE a [<!ENTITY b0 'lol'>{
 )
 
 
-def used(process):
-    """Status, s of the processor, and MB of memory at most, of a command that ended."""
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    return process.returncode, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1e3
+# a new process counts the memory of the one that started it: a small one starts and measures
+MEASURE = """
+import json, os, subprocess, sys, threading
+process = subprocess.Popen(sys.argv[2:], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+watch = threading.Timer(120.0, process.kill)
+watch.start()
+_, status, usage = os.wait4(process.pid, 0)
+watch.cancel()
+seconds, memory = usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1e3
+with open(sys.argv[1], "w") as stream:
+    json.dump([os.waitstatus_to_exitcode(status), seconds, memory], stream)
+"""
+
+
+def measure(command, folder, environment):
+    """Run a command; its status, s of the processor, MB of memory at most, and its errors."""
+    with tempfile.NamedTemporaryFile("r") as figures:
+        process = subprocess.run(
+            [sys.executable, "-c", MEASURE, figures.name, *command],
+            cwd=folder,
+            env=environment,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=True,
+        )
+        return (*json.load(figures), process.stderr)
 
 
 def assert_refused(workshop, *words, says=""):
     """One error line and status 2, within the limits; the line."""
-    errors = workshop.folder / "errors.txt"
-    with errors.open("wb") as stream:
-        process = subprocess.Popen(
-            [str(workshop.launcher), *map(str, words)],
-            cwd=workshop.folder,
-            env=workshop.environment(),
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=stream,
-        )
-        watch = threading.Timer(120.0, process.kill)
-        watch.start()
-        status, seconds, memory = used(process)
-        watch.cancel()
-    text = errors.read_text(encoding="utf-8")
-    errors.unlink()
+    status, seconds, memory, text = measure(
+        [str(workshop.launcher), *map(str, words)], workshop.folder, workshop.environment()
+    )
     assert status == 2, (status, text)
     assert re.fullmatch(r"error\[[A-Z_]+\] [^\n]+\n", text) and "INTERNAL" not in text, text
     assert says in text, text
@@ -83,8 +93,10 @@ def refused(read, *given):
         )
         < SECONDS
     )
-    # the largest child of all tests of this process so far may be that of another file
-    assert after[0].ru_maxrss / 1e3 < max(MEMORY, before[0].ru_maxrss / 1e3 + 1.0)
+    # the largest child of all tests of this process so far may be that of another file, and a new
+    # child counts the memory of this process
+    largest_before = max(usage.ru_maxrss for usage in before) / 1e3
+    assert after[0].ru_maxrss / 1e3 < max(MEMORY, largest_before + 1.0)
     return told.value
 
 
