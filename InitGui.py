@@ -3,8 +3,7 @@
 
 import FreeCADGui as Gui
 
-from freecad_am.gui import former_names
-from freecad_am.gui.texts import in_language
+from freecad_am.gui import former_names, in_language
 from freecad_am.objects.work import hooks
 
 former_names.install()
@@ -18,7 +17,7 @@ class RoboticAMWorkbench(Gui.Workbench):
 
     def __init__(self):
         from freecad_am.gui import icons
-        from freecad_am.gui.texts.in_language import tr
+        from freecad_am.gui.in_language import tr
 
         self.__class__.ToolTip = tr(
             "Layers, joint paths and checked programs for robots that deposit material"

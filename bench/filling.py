@@ -15,8 +15,8 @@ from freecad_am.brep.hub import bodies_of
 from freecad_am.core.filling.centre import Beads
 from freecad_am.core.filling.fill import fill
 from freecad_am.core.geometry.regions.region import regions, shapely
-from freecad_am.core.layers.curved import eikonal
-from freecad_am.core.layers.curved.eikonal import voxels
+from freecad_am.core.layers import eikonal
+from freecad_am.core.layers.eikonal import voxels
 from freecad_am.core.slicing.solids.plane_sections import PlaneCuts
 
 from rows import Row

@@ -14,10 +14,10 @@ from time import perf_counter
 
 import numpy as np
 
+from freecad_am import kdl
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics import jacobian as jac
 from freecad_am.core.kinematics.machines import machine
-from freecad_am.kdl import chain as kdl
 
 from rows import Row
 from sizes import choose

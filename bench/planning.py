@@ -13,6 +13,7 @@ import numpy as np
 from pose_by_pose import pose_by_pose, took
 from scipy.optimize import minimize
 
+from freecad_am import kdl
 from freecad_am.brep.files import read
 from freecad_am.brep.revolution import wall as revolution
 from freecad_am.core.kinematics import cell as cells
@@ -27,7 +28,6 @@ from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
 from freecad_am.core.planning.task import Task
 from freecad_am.core.strategies.revolution import plan as strategy
-from freecad_am.kdl import chain as kdl
 
 from rows import Row
 from sizes import choose

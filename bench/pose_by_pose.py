@@ -8,11 +8,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from freecad_am import kdl
 from freecad_am.core.planning.points import gather
 from freecad_am.core.planning.rotation import search
 from freecad_am.core.planning.task import Task
 from freecad_am.core.toolpath import Bead
-from freecad_am.kdl import chain as kdl
 
 
 def took(function: Callable[[], object]) -> float:

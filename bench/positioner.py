@@ -14,6 +14,7 @@ from statistics import median
 
 from pose_by_pose import pose_by_pose, took
 
+from freecad_am import kdl
 from freecad_am.brep.files import read
 from freecad_am.brep.revolution import wall as revolution
 from freecad_am.core.kinematics import cell as cells
@@ -28,7 +29,6 @@ from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.task import Task
 from freecad_am.core.strategies.revolution import plan as strategy
 from freecad_am.core.toolpath import Toolpath
-from freecad_am.kdl import chain as kdl
 
 from rows import Row
 from sizes import choose

@@ -21,7 +21,7 @@ from freecad_am.batch.rows.row import Order, row_result, start_row
 from freecad_am.brep.files import read
 from freecad_am.core.issues import AmError, InputError, Issue, Text, Word
 from freecad_am.core.kinematics.machines import machine
-from freecad_am.gui.texts.in_language import in_language
+from freecad_am.gui.in_language import in_language
 from freecad_am.objects.fields import rows
 from freecad_am.objects.results.findings import issues_of, message_of
 from freecad_am.objects.staleness import INFEASIBLE

@@ -18,7 +18,7 @@ from freecad_am.core.issues import AmError, Issue, Text
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.gui.texts.in_language import as_in_panels, in_language, names_first
+from freecad_am.gui.in_language import as_in_panels, in_language, names_first
 from freecad_am.objects.results.findings import message_of
 from freecad_am.objects.work import progress
 

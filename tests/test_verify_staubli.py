@@ -21,7 +21,7 @@ from freecad_am.core.planning.beads import steps
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.strategies.revolution import plan as revolution
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 from freecad_am.posts.staubli import post as staubli
 from tests.programs import build
 

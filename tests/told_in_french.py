@@ -6,7 +6,7 @@ from collections import Counter
 from pathlib import Path
 
 from freecad_am.core.issues import Text
-from freecad_am.gui.texts.in_language import in_language
+from freecad_am.gui.in_language import in_language
 
 TABLE = Path(__file__).resolve().parent.parent / "resources" / "translations" / "RoboticAM_fr.ts"
 LITERAL = re.compile(r"\{\d+\}|`[^`]*`|\b[a-z_]+(?:\.[a-z_]+)+")

@@ -11,7 +11,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-from .texts.in_language import escape_mnemonic, tr
+from .in_language import escape_mnemonic, tr
 from .widgets.upright import present
 
 

@@ -15,7 +15,7 @@ from ..objects.results.findings import reason_of
 from ..objects.shapes.places import ArrayElement
 from ..objects.staleness import FAILED, INFEASIBLE
 from .background.busy import busy
-from .texts.in_language import tr, translated
+from .in_language import tr, translated
 
 IMPORT = "import freecad_am.api as am"
 

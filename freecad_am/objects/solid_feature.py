@@ -10,8 +10,8 @@ from ..brep.guide import edges_of, triangles_of_faces
 from ..brep.hub import bodies_of
 from ..core.geometry.obstacles import Body
 from ..core.issues import InputError, Issue, Text
-from ..core.layers.along.centre_line import prepare_guided
-from ..core.layers.planes.stacking import prepare_stack
+from ..core.layers.centre_line import prepare_guided
+from ..core.layers.stacking import prepare_stack
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import SolidParameters
 from ..core.strategies import size

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..core.issues import Text, Word
 from ..core.kinematics.cell import Cell
-from ..core.layers.planes.slabs import outline
+from ..core.layers.slabs import outline
 from ..core.process.model import notes
 from ..core.types import Array, Index, Integers, Mask
 from .chart import INF, LINE, MARKED, OUTLINE, STEP, Bars, Chart, Curve, Quantity

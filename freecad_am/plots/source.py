@@ -10,7 +10,7 @@ import numpy as np
 
 from ..core.geometry.on_hub import Group, SolidsOnHub
 from ..core.kinematics.cell import Cell
-from ..core.layers.planes.slabs import Slabs, group_of, slabs
+from ..core.layers.slabs import Slabs, group_of, slabs
 from ..core.motion import Motion
 from ..core.parameters.process import ProcessParameters
 from ..core.process.deposit import spacing

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .. import kdl as kdl_chain
 from ..core.geometry import frames
 from ..core.geometry.columns import lengths
 from ..core.geometry.formatting import format_deviation
@@ -14,7 +15,6 @@ from ..core.kinematics.chain import Chain
 from ..core.program import OFF_WAY_MM, OFF_WAY_RAD, Program
 from ..core.read_moves import ReadMoves
 from ..core.types import Array, Index, Mask
-from ..kdl import chain as kdl_chain
 from .text_path import (
     COMPUTED_AXIS,
     COMPUTED_MM,

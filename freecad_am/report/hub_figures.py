@@ -10,7 +10,7 @@ import numpy as np
 from ..core.geometry.curves.guide import Guide
 from ..core.geometry.on_hub import Group, SolidsOnHub, middle_azimuth
 from ..core.geometry.plane import Plane
-from ..core.layers.along.field import between
+from ..core.layers.guide_field import between
 from ..core.process.model.bead_model import MINUTE
 from ..core.toolpath import Bead, Layer, Toolpath
 from ..core.types import Array

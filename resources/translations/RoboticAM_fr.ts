@@ -1747,7 +1747,7 @@
         <translation>Sortie analogique qui dit la vitesse du fil là où elle suit la vitesse d&apos;avance.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>Analysing the shape.</source>
         <translation>Analyse de la forme.</translation>
     </message>
@@ -2027,7 +2027,7 @@
         <translation>Annulé : rien n&apos;a été fait.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>Cancelled: the document is unchanged.</source>
         <translation>Annulé : le document est tel qu&apos;il était.</translation>
     </message>
@@ -2047,7 +2047,7 @@
         <translation>Cellule</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>Cell, feature, toolpath, joint path and program are created with their defaults; double-click one in the tree to change it.</source>
         <translation>Cellule, élément, trajectoire d&apos;outil, trajectoire articulaire et programme sont faits avec leurs valeurs par défaut ; double-cliquez sur l&apos;un d&apos;eux dans l&apos;arbre pour le modifier.</translation>
     </message>
@@ -2177,12 +2177,12 @@
         <translation>Dégagement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
+        <location filename="../../freecad_am/gui/widgets/pick_field.py"/>
         <source>Clears it</source>
         <translation>Efface le choix</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/window.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Click a line to show its point on the path; click the path to mark its line</source>
         <translation>Un clic montre le point d&apos;une ligne dans la trajectoire ; un clic sur la trajectoire marque sa ligne</translation>
     </message>
@@ -2192,12 +2192,12 @@
         <translation>Cliquez sur des arêtes d&apos;un seul objet.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>Click the object to deposit in the tree or the 3D view, then Ctrl+click its substrate, if any.</source>
         <translation>Cliquez l&apos;objet à déposer, dans l&apos;arbre ou la vue 3D ; puis, avec Ctrl, son substrat, s&apos;il y en a un.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/window.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Close</source>
         <translation>Fermer</translation>
     </message>
@@ -2222,7 +2222,7 @@
         <translation>Forme explicite (mm) : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/window.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Closes this window</source>
         <translation>Ferme cette fenêtre</translation>
     </message>
@@ -2462,7 +2462,7 @@
         <translation>Masse volumique du dépôt en g/cm³ ; donne sa masse.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>Deposit</source>
         <translation>Déposer</translation>
     </message>
@@ -2752,7 +2752,7 @@
         <translation>Exporter la trajectoire…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/window.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Export program</source>
         <translation>Exporter le programme</translation>
     </message>
@@ -2762,7 +2762,7 @@
         <translation>Exporter le rapport…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/window.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Export…</source>
         <translation>Exporter…</translation>
     </message>
@@ -2877,7 +2877,7 @@
         <translation>Fichier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/window.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Files written to {}: {}</source>
         <translation>Fichiers écrits dans {} : {}</translation>
     </message>
@@ -3212,7 +3212,7 @@
         <translation>Sortie de groupe, mot H, registre ou sortie analogique qui le transmet ; chez KUKA la première de huit sorties.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>Grows on</source>
         <translation>Croît sur</translation>
     </message>
@@ -3297,7 +3297,7 @@
         <translation>H{0} commute le dépôt ; prenez-en un autre pour les programmes de soudage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>If empty, it is sized for the first layer.</source>
         <translation>Laissé vide, il est aussi grand que la première couche le demande.</translation>
     </message>
@@ -3312,7 +3312,7 @@
         <translation>Dans un fichier de travail : {} ; dans les macros : {}.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>In planar layers, as curved ones were infeasible. {}</source>
         <translation>En couches planes, car des couches courbes n’étaient pas réalisables. {}</translation>
     </message>
@@ -3337,7 +3337,7 @@
         <translation>Entrée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>Inputs</source>
         <translation>Entrées</translation>
     </message>
@@ -3457,7 +3457,7 @@
         <translation>Laissé comme saisi ; la tâche de {} peut se faire avec {}.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>Kind</source>
         <translation>Type</translation>
     </message>
@@ -3812,7 +3812,7 @@
         <translation>Limites, vitesses, accélérations et jerks</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/window.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Line {}: {}</source>
         <translation>Ligne {} : {}</translation>
     </message>
@@ -4072,7 +4072,7 @@
         <translation>Méthode layer-by-layer : polynômes donnés, non cherchés : couche/cordon:constante:pente, ou * pour tout autre cordon, en deg et deg par tour.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>Method of cutting the part into layers; proposed from the selection</source>
         <translation>Comment la pièce est découpée en couches ; proposé d&apos;après la sélection</translation>
     </message>
@@ -4152,7 +4152,7 @@
         <translation>Machines à CN</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>Name</source>
         <translation>Nom</translation>
     </message>
@@ -4177,7 +4177,7 @@
         <translation>Nom du matériau ; repris dans le rapport.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
+        <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
         <source>Name of the program and of its files; the controller may reject some names</source>
         <translation>Nom du programme et de ses fichiers ; la commande peut en refuser</translation>
     </message>
@@ -4212,7 +4212,7 @@
         <translation>Nouvelle machine…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>New job</source>
         <translation>Nouveau travail</translation>
     </message>
@@ -4277,7 +4277,7 @@
         <translation>Rien n’est déposé à côté de la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
+        <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
         <source>Nothing is selected: click in the tree or the 3D view first.</source>
         <translation>Rien n&apos;est sélectionné : cliquez d&apos;abord dans l&apos;arbre ou la vue 3D.</translation>
     </message>
@@ -4372,7 +4372,7 @@
         <translation>Numéro du repère utilisateur nommé dans le programme.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>Object to deposit: click it in the tree or the 3D view</source>
         <translation>Objet à déposer : cliquez-le dans l&apos;arbre ou la vue 3D</translation>
     </message>
@@ -4622,7 +4622,7 @@
         <translation>La charge est réglée, les limites de sécurité permettent les vitesses, et le curseur de vitesse est à 100 %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
+        <location filename="../../freecad_am/gui/widgets/pick_field.py"/>
         <source>Pick</source>
         <translation>Choisir</translation>
     </message>
@@ -5312,7 +5312,7 @@
         <translation>Section de la dernière couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
+        <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
         <source>Select the shape to deposit, or its faces, and press Pick.</source>
         <translation>Sélectionnez la forme à déposer, ou ses faces, et appuyez sur Choisir.</translation>
     </message>
@@ -5327,7 +5327,7 @@
         <translation>Ce qui diffère pour des classes de cordons (first_layer, contour, fill, closing, link, wall), par exemple : contour : travel_speed 8, schedule 3 ; fill : lead 5 ; ou none.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>Setup</source>
         <translation>Installation</translation>
     </message>
@@ -5757,7 +5757,7 @@
         <translation>État : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/window.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Status: {}.</source>
         <translation>État : {}.</translation>
     </message>
@@ -5792,7 +5792,7 @@
         <translation>Substrat</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>Substrate: click it with Ctrl in the tree or the 3D view</source>
         <translation>Substrat : cliquez-le avec Ctrl dans l&apos;arbre ou la vue 3D</translation>
     </message>
@@ -5912,7 +5912,7 @@
         <translation>Le déplacement des articulations (Chalvin 2020, éq. 17), et son rapport au plan</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/window.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>The document is closed; open it again to export.</source>
         <translation>Le document est fermé ; ouvrez-le de nouveau pour exporter.</translation>
     </message>
@@ -5992,12 +5992,12 @@
         <translation>Valeur de l&apos;entrée dans un programme à 0 degré Celsius.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>The job is ready. Simulate… plays it; double-click Program to read it, Cell to configure your machine.</source>
         <translation>Le travail est prêt. Simuler… le joue ; double-cliquez sur le programme pour le lire, sur la cellule pour régler votre machine.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>The joint path is ready, but no post writes a program for this machine and setup yet. Simulate… plays it, Export Path… writes its points as a table.</source>
         <translation>La trajectoire articulaire est prête ; aucun post-processeur n&apos;écrit encore de programme pour cette machine et cette configuration. Simuler… la joue, Exporter la trajectoire… écrit ses points dans un tableau.</translation>
     </message>
@@ -6072,12 +6072,12 @@
         <translation>La machine donne toutes les {} poses, à {} mm près.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>The machine that deposits, or a saved cell; the program matches its controller</source>
         <translation>La machine qui dépose, ou une cellule enregistrée ; le programme est écrit pour sa commande</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/drawn/painting.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/painting.py"/>
         <source>The map is being computed…</source>
         <translation>La carte est en cours de calcul…</translation>
     </message>
@@ -6267,7 +6267,7 @@
         <translation>Tout le travail</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>The whole of {} is used. To use single faces, click several with Ctrl; for a single one, use the panel of Feature or Wall on Part.</source>
         <translation>{} est pris en entier. Pour des faces seules, cliquez-en plusieurs avec Ctrl ; pour une seule, utilisez le panneau d’Élément ou de Paroi sur pièce.</translation>
     </message>
@@ -6277,7 +6277,7 @@
         <translation>{} est pris en entier ; Choisir prend des faces seules, clic par clic.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
+        <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
         <source>The whole of {} is used; Pick uses the selected faces only.</source>
         <translation>{} est pris en entier ; Choisir ne prend que les faces sélectionnées.</translation>
     </message>
@@ -6292,7 +6292,7 @@
         <translation>Les mots qui commutent le dépôt et les entrées sont traités dans l’automate</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
+        <location filename="../../freecad_am/gui/widgets/pick_field.py"/>
         <source>Then click in the tree or the 3D view. {}</source>
         <translation>Cliquez ensuite dans l&apos;arbre ou la vue 3D. {}</translation>
     </message>
@@ -6367,7 +6367,7 @@
         <translation>C&apos;est une planification antérieure ; recalculez le document pour l&apos;actuelle.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/window.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>This text belongs to an earlier plan; do not run it.</source>
         <translation>Ce texte est d&apos;une planification antérieure ; ne l&apos;exécutez pas.</translation>
     </message>
@@ -6647,7 +6647,7 @@
         <translation>Repère utilisateur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
+        <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
         <source>Uses the current selection, or the next click. {}</source>
         <translation>Prend la sélection actuelle, ou le clic suivant. {0}</translation>
     </message>
@@ -6777,7 +6777,7 @@
         <translation>Ce que donne le polynôme : la vraie rotation autour de l&apos;axe de l&apos;outil, ou le RZ de l&apos;article.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>What the robot carries. If the job is infeasible in the proposed cell, another position, another branch or a positioner is proposed and shown.</source>
         <translation>Ce que porte le robot. Si le travail ne peut se faire dans la cellule qui convient au robot, un autre emplacement, une autre branche ou un positionneur est proposé, et le robot y est montré.</translation>
     </message>
@@ -6902,7 +6902,7 @@
         <translation>Écrit une trajectoire en fils STEP ou DXF, un tableau ou un rapport, ou la convertit en trajectoire CAM ou trajectoire Robot</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/window.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Writes all files of the program into a folder</source>
         <translation>Écrit tous les fichiers du programme dans un dossier</translation>
     </message>
@@ -7022,7 +7022,7 @@
         <translation>une courbe est à {0} mm des faces choisies, en {1} ; choisissez les faces qui portent la courbe, ou fixez strategy.direction</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/curved/field.py"/>
+        <location filename="../../freecad_am/core/layers/curved_field.py"/>
         <source>a curved layer cannot be flattened without distortion: the bead spacing varies by up to {0} %</source>
         <translation>une couche courbe ne peut pas être mise à plat sans distorsion : l&apos;écart entre cordons varie jusqu&apos;à {0} %</translation>
     </message>
@@ -7137,7 +7137,7 @@
         <translation>un mouvement d&apos;ArcTech est linéaire et s&apos;arrête, derrière toutes les lignes qui en font partie</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/numbers.py"/>
+        <location filename="../../freecad_am/posts/nc_numbers.py"/>
         <source>a move of {0} s cannot be written; the range is {1} to {2} s: use another speed or a larger chord error</source>
         <translation>un mouvement de {0} s ne peut pas être écrit ; les mouvements prennent de {1} à {2} s : utilisez une autre vitesse ou une plus grande erreur de corde</translation>
     </message>
@@ -7157,7 +7157,7 @@
         <translation>un mouvement prend {0} s, moins que les {1} s qui peuvent s&apos;écrire ; prenez une erreur de corde plus grande ou une vitesse plus faible</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/read.py"/>
+        <location filename="../../freecad_am/posts/nc_read.py"/>
         <source>a move without a feed of its own</source>
         <translation>un mouvement sans avance à lui</translation>
     </message>
@@ -7217,7 +7217,7 @@
         <translation>une position n&apos;est pas un nombre d&apos;au plus {0} mm ; exportez-le à nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/read.py"/>
+        <location filename="../../freecad_am/posts/nc_read.py"/>
         <source>a position needs X Y Z, and a move in axes before it</source>
         <translation>une position demande X Y Z, et un mouvement des axes avant elle</translation>
     </message>
@@ -7297,7 +7297,7 @@
         <translation>une seconde sortie analogique suit la vitesse, ou celle d&apos;un mouvement articulaire, ou sans dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/read.py"/>
+        <location filename="../../freecad_am/posts/nc_read.py"/>
         <source>a second analogue output is set</source>
         <translation>une seconde sortie analogique est réglée</translation>
     </message>
@@ -7747,7 +7747,7 @@
         <translation>la largeur de la place qu’ils ont, {0} à {1} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>as you chose</source>
         <translation>comme vous l&apos;avez choisi</translation>
     </message>
@@ -7802,12 +7802,12 @@
         <translation>à {0} des {1} endroits de la couche {2} il n&apos;y a pas de points de la numérisation autour, le premier en {3} ; elle s&apos;étend sur {4} mm, la couche sur {5} mm : numérisez tout ce sur quoi la couche repose, ou vérifiez son unité et son ajustement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>auto</source>
         <translation>auto</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>auto finds no centre line of {0} from its support: {1}; choose an edge, a wire or a sketch as guide, or set strategy.direction along the part from one of its ends</source>
         <translation>auto ne trouve pas de ligne médiane de {0} à partir de son appui : {1} ; choisissez une arête, un fil ou une esquisse comme guide, ou fixez strategy.direction le long de la pièce à partir d&apos;un de ses bouts</translation>
     </message>
@@ -8207,32 +8207,32 @@
         <translation>distance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
+        <location filename="../../freecad_am/gui/widgets/pick_field.py"/>
         <source>click an object</source>
         <translation>cliquez sur un objet</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
+        <location filename="../../freecad_am/gui/widgets/pick_field.py"/>
         <source>click edges</source>
         <translation>cliquez sur des arêtes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
+        <location filename="../../freecad_am/gui/widgets/pick_field.py"/>
         <source>click faces or an object</source>
         <translation>cliquez sur des faces ou un objet</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>click it</source>
         <translation>cliquez dessus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>click it with Ctrl</source>
         <translation>cliquez avec Ctrl</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
+        <location filename="../../freecad_am/gui/widgets/pick_field.py"/>
         <source>click objects</source>
         <translation>cliquez sur des objets</translation>
     </message>
@@ -9222,7 +9222,7 @@
         <translation>il a 1 ligne ; mesurez au moins {0} cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>it has a corner of {0} deg at {1}, where layers would have zero height on the inside; round it with a radius, or choose guide: auto</source>
         <translation>il a un angle vif de {0} deg en {1}, où les couches n&apos;auraient pas de hauteur à l&apos;intérieur ; arrondissez-le par un rayon, ou choisissez guide: auto</translation>
     </message>
@@ -9277,7 +9277,7 @@
         <translation>elle n&apos;a pas de direction fermée ; choisissez un tube fermé sur son tour</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>it has no cross-section at its base</source>
         <translation>il n&apos;a pas de section à sa base</translation>
     </message>
@@ -9702,7 +9702,7 @@
         <translation>il est mis en avance sur le mouvement, ou ses sorties ne peuvent transmettre un tel numéro</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>it is several solids</source>
         <translation>ce sont plusieurs solides</translation>
     </message>
@@ -9792,7 +9792,7 @@
         <translation>il demande une extension qui n&apos;est pas prise en charge ({0}) ; exportez des triangles simples</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/curved/field.py"/>
+        <location filename="../../freecad_am/core/layers/curved_field.py"/>
         <source>it needs planar layers; use {0}, or layers: planes</source>
         <translation>c&apos;est pour les couches planes, pas pour les courbes ; utilisez {0}, ou layers: planes</translation>
     </message>
@@ -9832,7 +9832,7 @@
         <translation>il revient à une position mémorisée ; écrivez le déplacement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>it returns to its start, at {0}, so the last layer would overlap the first; remove one edge</source>
         <translation>il revient à son départ, en {0}, si bien que la dernière couche recouvrirait la première ; retirez une arête</translation>
     </message>
@@ -9867,7 +9867,7 @@
         <translation>il prend un seul objet ; donnez-le, et les noms de ses faces à part</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>it turns back by {0} deg at {1}: layers would cut through the deposit; choose edges that lead forward</source>
         <translation>il rebrousse de {0} deg en {1} : des couches traverseraient le dépôt ; choisissez des arêtes qui mènent en avant</translation>
     </message>
@@ -9942,7 +9942,7 @@
         <translation>ses arêtes coïncident avec l&apos;axe ; choisissez un autre axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>its edges do not form one curve: {0} of {1} are disconnected, at {2} and {3}, and the smallest gap is {4} mm; choose edges that meet end to end</source>
         <translation>ses arêtes ne font pas une courbe : {0} sur {1} ne continuent pas là où les autres finissent, en {2} et {3}, et la plus proche en est à {4} mm ; choisissez des arêtes qui se touchent bout à bout</translation>
     </message>
@@ -10237,7 +10237,7 @@
         <translation>couche {0} sur {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/curved/on_faces.py"/>
+        <location filename="../../freecad_am/core/layers/on_faces.py"/>
         <source>layer {0} of {1} is {2} mm above the faces, the depth of the hollow at {3}, and would fold there; deposit at most {4} layer(s), or exclude the hollow face</source>
         <translation>la couche {0} de {1} est à {2} mm au-dessus des faces, la profondeur du creux en {3}, et s&apos;y replierait ; déposez au plus {4} couche(s), ou excluez la face creuse</translation>
     </message>
@@ -10252,7 +10252,7 @@
         <translation>couche {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/window.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>layer {} bead {}</source>
         <translation>couche {} cordon {}</translation>
     </message>
@@ -10267,7 +10267,7 @@
         <translation>couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/drawn/board.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/board.py"/>
         <source>layers ({} of {} beads)</source>
         <translation>couches ({} de {} cordons)</translation>
     </message>
@@ -10282,7 +10282,7 @@
         <translation>les couches de la famille {0} ne s&apos;ajustent pas encore à une numérisation ; les solides en couches planes et les parois sur un substrat le font : retirez la numérisation</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>layers of {0} are normal to its centre line, {1} mm from {2} to {3}, turning by {4} deg in total</source>
         <translation>les couches de {0} sont normales à sa ligne médiane, {1} mm de {2} à {3}, qui tourne de {4} deg en tout</translation>
     </message>
@@ -10442,22 +10442,22 @@
         <translation>lignes de la surface</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>link {0} comes nearer than {1} mm to {2}, or touches it on the rapid way to the bead; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>link {0} comes nearer than {1} mm to {2}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>link {0} comes nearer than {1} mm to {2}, or touches it; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>link {0} comes nearer than {1} mm to {2}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
@@ -10717,7 +10717,7 @@
         <translation>aucune de ses faces ne tourne autour de l&apos;axe ; nommez les faces de la paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/curved/field.py"/>
+        <location filename="../../freecad_am/core/layers/curved_field.py"/>
         <source>no face of {0} touches the start faces, which are {1} mm away; choose faces in contact, or none</source>
         <translation>aucune face de {0} ne touche les faces de départ, qui sont à {1} mm ; choisissez des faces en contact, ou aucune</translation>
     </message>
@@ -10832,7 +10832,7 @@
         <translation>résultat nodal</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
+        <location filename="../../freecad_am/gui/widgets/pick_field.py"/>
         <source>none</source>
         <translation>aucun</translation>
     </message>
@@ -11282,7 +11282,7 @@
         <translation>trajectoire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
+        <location filename="../../freecad_am/gui/widgets/pick_field.py"/>
         <source>pick</source>
         <translation>choisir</translation>
     </message>
@@ -11347,7 +11347,7 @@
         <translation>point par point</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/drawn/board.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/board.py"/>
         <source>points of layer {}</source>
         <translation>points de la couche {}</translation>
     </message>
@@ -11607,7 +11607,7 @@
         <translation>RZ</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>saved cell: {}</source>
         <translation>cellule enregistrée : {}</translation>
     </message>
@@ -11657,7 +11657,7 @@
         <translation>section du fil fois sa vitesse, comparée à largeur x hauteur x vitesse des cordons de chaque classe, de leurs débuts et de leurs fins</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
+        <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
         <source>select</source>
         <translation>sélectionner</translation>
     </message>
@@ -12052,7 +12052,7 @@
         <translation>l&apos;axe de {0} est à {1} mm du milieu du plateau et le manque</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/in_language.py"/>
+        <location filename="../../freecad_am/gui/in_language.py"/>
         <source>the base</source>
         <translation>la base</translation>
     </message>
@@ -12062,22 +12062,22 @@
         <translation>l&apos;axe de base {0} du robot</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the base comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la base s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the base comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la base s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the base comes nearer than {0} mm to {1}, or touches it; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la base s’approche à moins de {0} mm de {1}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the base comes nearer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la base s’approche à moins de {0} mm de {1}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
@@ -12107,7 +12107,7 @@
         <translation>la base de {0} est à {1} mm au-dessous du plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/in_language.py"/>
+        <location filename="../../freecad_am/gui/in_language.py"/>
         <source>the base touches {what}</source>
         <translation>la base touche {what}</translation>
     </message>
@@ -12217,7 +12217,7 @@
         <translation>le programme de la commande lit les entrées 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/numbers.py"/>
+        <location filename="../../freecad_am/posts/nc_numbers.py"/>
         <source>the controller program sets analogue outputs 1 to {0}, not {1}; choose one in this range</source>
         <translation>le programme de la commande règle les sorties analogiques 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
@@ -12242,7 +12242,7 @@
         <translation>l&apos;objet supprimé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/in_language.py"/>
+        <location filename="../../freecad_am/gui/in_language.py"/>
         <source>the deposit</source>
         <translation>le dépôt</translation>
     </message>
@@ -12517,17 +12517,17 @@
         <translation>le noyau géométrique ne peut pas diviser en triangles cette face, autour de {0} ; réparez-la (Part, Vérifier la géométrie), ou redessinez-la</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/field.py"/>
+        <location filename="../../freecad_am/core/layers/guide_field.py"/>
         <source>the guide bends more tightly at {0} than the part is wide there: planes normal to it intersect within the part, at {1}; choose a guide nearer to the inside of the bend or with a larger radius, or strategy.layers: geodesic</source>
         <translation>le guide est plus courbé en {0} que la pièce n&apos;y est étroite : ses plans normaux se croisent dans la pièce, en {1} ; choisissez un guide plus près de l&apos;intérieur du coude ou de plus grand rayon, ou strategy.layers: geodesic</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>the guide has no edge with any length; choose edges, a wire or a sketch</source>
         <translation>le guide n&apos;a aucune arête de longueur non nulle ; choisissez des arêtes, un fil ou une esquisse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/field.py"/>
+        <location filename="../../freecad_am/core/layers/guide_field.py"/>
         <source>the guide leaves the part: at layer {0} it is {1} mm off it, at {2}; choose a guide in the part or along one of its edges, or guide: auto</source>
         <translation>le guide quitte la pièce : à la couche {0} il est à {1} mm à côté, en {2} ; choisissez un guide dans la pièce ou le long de l&apos;une de ses arêtes, ou guide: auto</translation>
     </message>
@@ -12652,7 +12652,7 @@
         <translation>les limites de {0} vont de {1} à {2} ; donnez d&apos;abord la plus basse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>the line of {0} mm covers only {1} % of the volume</source>
         <translation>la ligne de {0} mm traverse {1} % du volume</translation>
     </message>
@@ -12667,12 +12667,12 @@
         <translation>les lignes qui le suivent sont stockées sur la machine, pas exécutées ; supprimez-le, avec son M29</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/in_language.py"/>
+        <location filename="../../freecad_am/gui/in_language.py"/>
         <source>the link of {axis}</source>
         <translation>le corps de {axis}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/in_language.py"/>
+        <location filename="../../freecad_am/gui/in_language.py"/>
         <source>the link of {axis} touches {what}</source>
         <translation>le corps de {axis} touche {what}</translation>
     </message>
@@ -12842,7 +12842,7 @@
         <translation>le mouvement avant le point de commutation dure {0} s, moins que l&apos;avance de {1} s ; utilisez un program.trigger.lead d&apos;au plus {2} s, une distance de retrait plus grande avant la mise en marche, ou un strategy.chord_error plus grand avant l&apos;arrêt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/read.py"/>
+        <location filename="../../freecad_am/posts/nc_read.py"/>
         <source>the move is not given in the axes of the first one</source>
         <translation>le mouvement n&apos;est pas dit dans les axes du premier</translation>
     </message>
@@ -12862,7 +12862,7 @@
         <translation>le nom de sa station, par exemple ST1</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/in_language.py"/>
+        <location filename="../../freecad_am/gui/in_language.py"/>
         <source>the nozzle</source>
         <translation>la buse</translation>
     </message>
@@ -12892,12 +12892,12 @@
         <translation>la buse touche {0} en {1} de {2} points ; sur les pièces de révolution elle n&apos;est pas écartée des montages : déplacez-les, ou utilisez une buse plus fine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the nozzle touches {0} on the rapid way to the bead; lift the part over it by cell.platform, or move it in cell.external</source>
         <translation>la buse touche {0} pendant le déplacement rapide vers le cordon ; relevez la pièce au-dessus par cell.platform, ou déplacez-le dans cell.external</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the nozzle touches {0} on the rapid way to the bead; move it in cell.obstacles, the part or cell.deposition_point</source>
         <translation>la buse touche {0} pendant le déplacement rapide vers le cordon ; déplacez-le dans cell.obstacles, la pièce ou cell.deposition_point</translation>
     </message>
@@ -12912,17 +12912,17 @@
         <translation>la buse touche {0} sur {1} mouvement(s) pendant le dépôt ; déplacez-le dans cell.obstacles, ou la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the nozzle touches {0}; lift the part over it by cell.platform, or move it in cell.external</source>
         <translation>la buse touche {0} ; relevez la pièce au-dessus par cell.platform, ou déplacez-le dans cell.external</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the nozzle touches {0}; move it in cell.obstacles, the part or cell.deposition_point</source>
         <translation>la buse touche {0} ; déplacez-le dans cell.obstacles, la pièce ou cell.deposition_point</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/in_language.py"/>
+        <location filename="../../freecad_am/gui/in_language.py"/>
         <source>the nozzle touches {what}</source>
         <translation>la buse touche {what}</translation>
     </message>
@@ -12947,27 +12947,27 @@
         <translation>les paires de points sont alignées, si bien que la pièce pourrait tourner autour de leur droite ; choisissez-en d&apos;autres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the part comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la pièce s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the part comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la pièce s&apos;approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez un autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the part comes nearer than {0} mm to {1}, or touches it; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la pièce s’approche à moins de {0} mm de {1}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the part comes nearer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la pièce s&apos;approche à moins de {0} mm de {1}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez un autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/curved/field.py"/>
+        <location filename="../../freecad_am/core/layers/curved_field.py"/>
         <source>the part has no face to start from: none is on the plane through its lowest point along strategy.direction, or on the substrate; turn the part, set strategy.direction, or choose a substrate in contact</source>
         <translation>la pièce n&apos;a pas de face d&apos;où partir : aucune n&apos;est sur le plan par son point le plus bas selon strategy.direction, ni sur le substrat ; tournez la pièce, fixez strategy.direction, ou choisissez un substrat en contact</translation>
     </message>
@@ -12987,7 +12987,7 @@
         <translation>la pièce touche le plateau en un point et n&apos;a pas de bout ouvert d&apos;où partir ; choisissez un substrat, ou tournez la pièce pour qu&apos;un bout ouvert soit sur le plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/in_language.py"/>
+        <location filename="../../freecad_am/gui/in_language.py"/>
         <source>the part touches {what}</source>
         <translation>la pièce touche {what}</translation>
     </message>
@@ -13012,7 +13012,7 @@
         <translation>les plans normaux à sa ligne médiane ne la coupent pas en une courbe chacun ; choisissez d&apos;autres couches pour cette paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/in_language.py"/>
+        <location filename="../../freecad_am/gui/in_language.py"/>
         <source>the platform</source>
         <translation>le plateau</translation>
     </message>
@@ -13087,12 +13087,12 @@
         <translation>le post-processeur yaskawa ne peut pas écrire {0} ; utilisez un autre post-processeur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/numbers.py"/>
+        <location filename="../../freecad_am/posts/nc_numbers.py"/>
         <source>the post {0} cannot write {1} ({2} motion); use rotary-table</source>
         <translation>le post-processeur {0} ne peut pas écrire {1} (mouvement {2}) ; utilisez rotary-table</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/numbers.py"/>
+        <location filename="../../freecad_am/posts/nc_numbers.py"/>
         <source>the post {0} writes linear axes X Y Z and rotary axes of A B C, one each; the machine has {1}: name its joints mx my mz and a, b or c</source>
         <translation>le post-processeur {0} écrit des axes linéaires X Y Z et des axes rotatifs parmi A B C, un de chaque ; la machine a {1} : nommez ses articulations mx my mz et a, b ou c</translation>
     </message>
@@ -13272,7 +13272,7 @@
         <translation>les faces choisies de {0} tournent autour d&apos;un axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>the selection includes an object that is not a solid</source>
         <translation>la sélection contient un objet qui n&apos;est pas un solide</translation>
     </message>
@@ -13332,7 +13332,7 @@
         <translation>le solide passe l&apos;axe du moyeu au-delà de son bout, en {0}, où les surfaces équidistantes ont un sommet ou un bout ; terminez le solide avant l&apos;axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>the solid ends after one section</source>
         <translation>le solide finit après une section</translation>
     </message>
@@ -13512,32 +13512,32 @@
         <translation>les outils de {0} ne sont pas tous sur un outil</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/in_language.py"/>
+        <location filename="../../freecad_am/gui/in_language.py"/>
         <source>the torch</source>
         <translation>la torche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the torch comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la torche s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the torch comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la torche s&apos;approche à moins de {0} mm de {1}, ou touche cet objet, sur le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the torch comes nearer than {0} mm to {1}, or touches it; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la torche s’approche à moins de {0} mm de {1}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the torch comes nearer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la torche s&apos;approche à moins de {0} mm de {1}, ou touche cet objet ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/in_language.py"/>
+        <location filename="../../freecad_am/gui/in_language.py"/>
         <source>the torch touches {what}</source>
         <translation>la torche touche {what}</translation>
     </message>
@@ -13707,7 +13707,7 @@
         <translation>le trajet entre deux cordons s&apos;écarte de celui qui a été vérifié de jusqu&apos;à {0} mm et {1}°</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/read.py"/>
+        <location filename="../../freecad_am/posts/nc_read.py"/>
         <source>the way of the move, and so its time, is not known</source>
         <translation>le chemin du mouvement, et donc son temps, n&apos;est pas connu</translation>
     </message>
@@ -14432,7 +14432,7 @@
         <translation>{0} % de la longueur est plus courbée que les cordons du tableau, de {1} mm ou plus, et compte comme courbée pareillement ; les largeurs n&apos;y sont qu&apos;estimées</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/curved/field.py"/>
+        <location filename="../../freecad_am/core/layers/curved_field.py"/>
         <source>{0} % of the solid is not connected to the platform or the substrate; deposit that part separately, or set strategy.direction</source>
         <translation>{0} % du solide ne sont pas reliés au plateau ou au substrat ; déposez cette partie à part, ou fixez strategy.direction</translation>
     </message>
@@ -14647,7 +14647,7 @@
         <translation>{0} ne peut pas être {1} sur la commande : {2} ; utilisez {3}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/numbers.py"/>
+        <location filename="../../freecad_am/posts/nc_numbers.py"/>
         <source>{0} cannot switch both on and off; give two different words</source>
         <translation>{0} ne peut pas à la fois mettre en marche et arrêter ; donnez deux mots différents</translation>
     </message>
@@ -14887,7 +14887,7 @@
         <translation>{0} a déjà été exécuté, ou est appelé pendant le dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/numbers.py"/>
+        <location filename="../../freecad_am/posts/nc_numbers.py"/>
         <source>{0} has another meaning on the controller; use another word</source>
         <translation>{0} veut dire autre chose pour la commande ; utilisez un autre mot</translation>
     </message>
@@ -15247,7 +15247,7 @@
         <translation>il y manque {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
+        <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
         <source>{0} is missing in this document. Create it first: button {0} in the toolbar.</source>
         <translation>{0} manque dans ce document. Faites-le d&apos;abord : bouton {0} de la barre d&apos;outils.</translation>
     </message>
@@ -15647,7 +15647,7 @@
         <translation>{0} n&apos;est pas un nombre entier ; donnez-en un comme 3</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/numbers.py"/>
+        <location filename="../../freecad_am/posts/nc_numbers.py"/>
         <source>{0} is not a word such as M7 or H2=1; give one for on and one for off</source>
         <translation>{0} n&apos;est pas un mot comme M7 ou H2=1 ; donnez-en un pour la marche et un pour l&apos;arrêt</translation>
     </message>
@@ -15837,12 +15837,12 @@
         <translation>{0} est lu en avance sur le mouvement, car aucune attente ne le précède</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/planes/stacking.py"/>
+        <location filename="../../freecad_am/core/layers/stacking.py"/>
         <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 overhang by more than {5} deg, and the height is {6} mm</source>
         <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 sont en surplomb de plus de {5} deg, et la hauteur est de {6} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/planes/stacking.py"/>
+        <location filename="../../freecad_am/core/layers/stacking.py"/>
         <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 overhang by more than {5} deg, and the height is {6} mm; along (0, 0, 1) they would be {7} mm^2 and {8} mm</source>
         <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 sont en surplomb de plus de {5} deg, et la hauteur est de {6} mm ; suivant (0, 0, 1) ce serait {7} mm^2 et {8} mm</translation>
     </message>
@@ -15972,17 +15972,17 @@
         <translation>{0} mm n&apos;est pas une unité ; donnez la longueur d&apos;une unité du fichier, comme 25.4 mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/curved/field.py"/>
+        <location filename="../../freecad_am/core/layers/curved_field.py"/>
         <source>{0} mm is too fine for curved layers of {1}, {2} cm3; use at least {3} mm, or layers: planes</source>
         <translation>{0} mm est trop fin pour des couches courbes de {1}, {2} cm3 ; donnez au moins {3} mm, ou layers: planes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/planes/field.py"/>
+        <location filename="../../freecad_am/core/layers/plane_field.py"/>
         <source>{0} mm is too high for {1}, {2} mm high along strategy.direction (top at {3}): no layer is cut in its {4}; use at most {5} mm</source>
         <translation>{0} mm est trop pour {1}, haut de {2} mm suivant strategy.direction (le point le plus haut est en {3}) : aucune couche n&apos;est coupée ({4}) ; donnez {5} mm au plus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/field.py"/>
+        <location filename="../../freecad_am/core/layers/guide_field.py"/>
         <source>{0} mm is too high for {1}, {2} mm long along the guide: no layer is cut in its {3}; use at most {4} mm</source>
         <translation>{0} mm, c&apos;est trop pour {1}, long de {2} mm le long du guide : aucune couche n&apos;est coupée en son {3} ; donnez au plus {4} mm</translation>
     </message>
@@ -16032,7 +16032,7 @@
         <translation>{0} mm/s ne peuvent pas être écrits ; utilisez au moins {1} mm/s</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc/numbers.py"/>
+        <location filename="../../freecad_am/posts/nc_numbers.py"/>
         <source>{0} mm/s cannot be written; use {1} to {2} mm/s</source>
         <translation>{0} mm/s ne peuvent pas être écrits ; utilisez {1} à {2} mm/s</translation>
     </message>
@@ -16242,7 +16242,7 @@
         <translation>{0} de {1} couches s&apos;écartent de plus de 20 % de la hauteur de couche de {2} mm, d&apos;abord la couche {3} ; la couche {4} est à {5} mm de celle du dessous ; des couches le long de la paroi (spacing: arc-length) sont égales</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along/field.py"/>
+        <location filename="../../freecad_am/core/layers/guide_field.py"/>
         <source>{0} of {1} layers deviate from the layer height: layer {2} is {3} to {4} mm high, farthest off the {5} mm at {6}; strategy.band allows {7} %, but {8} % is needed: raise it, or choose a guide in the middle of the part or with a gentler bend</source>
         <translation>{0} couches sur {1} ne sont pas partout de la hauteur demandée : la couche {2} a {3} à {4} mm, le plus loin des {5} mm en {6} ; strategy.band permet {7} %, et il faudrait {8} % : augmentez-le, ou choisissez un guide au milieu de la pièce ou moins courbé</translation>
     </message>
@@ -17037,7 +17037,7 @@
         <translation>{label} a été supprimé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/in_language.py"/>
+        <location filename="../../freecad_am/gui/in_language.py"/>
         <source>{link} touches {what}</source>
         <translation>{link} touche {what}</translation>
     </message>
@@ -17077,17 +17077,17 @@
         <translation>{} ({})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>{} Double-click a stage in the tree to change it.</source>
         <translation>{} Double-cliquez sur une étape dans l&apos;arbre pour la modifier.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>{} Read the warnings first: double-click {}.</source>
         <translation>{} Lisez d&apos;abord les avertissements : double-cliquez sur {}.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/drawn/board.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/board.py"/>
         <source>{} against {} at layer {} bead {} point {}</source>
         <translation>{} contre {} à la couche {} cordon {} point {}</translation>
     </message>
@@ -17097,7 +17097,7 @@
         <translation>{} manquent : cliquez dessus dans l&apos;arbre ou la vue 3D.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/drawn/board.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/board.py"/>
         <source>{} at layer {} bead {} point {}</source>
         <translation>{} à la couche {} cordon {} point {}</translation>
     </message>
@@ -17112,7 +17112,7 @@
         <translation>{} cordons, {:g} à {:g} mm/min, r {:g} à {:g} mm, fil {:g} m/min</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/picking.py"/>
+        <location filename="../../freecad_am/gui/picking.py"/>
         <source>{} belongs to a job; select the part itself.</source>
         <translation>{} appartient à un travail ; sélectionnez la pièce elle-même.</translation>
     </message>
@@ -17152,7 +17152,7 @@
         <translation>{} faces en {} nappes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>{} failed.</source>
         <translation>{} a échoué.</translation>
     </message>
@@ -17182,7 +17182,7 @@
         <translation>{} n&apos;a pas de résultat : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/picking.py"/>
+        <location filename="../../freecad_am/gui/picking.py"/>
         <source>{} has no shape; select a body, solid, face, link or sketch.</source>
         <translation>{} n&apos;a pas de forme ; sélectionnez un corps, un solide, une face, un lien ou une esquisse.</translation>
     </message>
@@ -17192,7 +17192,7 @@
         <translation>{} n&apos;a pas de trajectoire d&apos;outil avec une cellule à placer ; faites-en d&apos;abord une, ou sélectionnez une autre tâche.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
+        <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
         <source>{} is a mesh without exact faces; select a part such as from a STEP file.</source>
         <translation>{} est un maillage, qui n&apos;a pas de faces exactes ; sélectionnez une pièce, par exemple d&apos;un fichier STEP.</translation>
     </message>
@@ -17217,7 +17217,7 @@
         <translation>{} est caché, ou n&apos;a pas de résultat.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>{} is infeasible.</source>
         <translation>{} est infaisable.</translation>
     </message>
@@ -17232,7 +17232,7 @@
         <translation>{} manque : cliquez dessus dans l&apos;arbre ou la vue 3D.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
+        <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
         <source>{} is missing: select it and press its Pick.</source>
         <translation>{} manque : sélectionnez-le et appuyez sur son Choisir.</translation>
     </message>
@@ -17262,12 +17262,12 @@
         <translation>{0} est périmé ; l&apos;aperçu montre son état précédent.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>{} is stale.</source>
         <translation>{} est périmé.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/picking.py"/>
+        <location filename="../../freecad_am/gui/picking.py"/>
         <source>{} links to nothing: its target was deleted or is not loaded.</source>
         <translation>{0} ne renvoie à rien : sa cible a été supprimée ou n&apos;est pas chargée.</translation>
     </message>
@@ -17282,12 +17282,12 @@
         <translation>{} mm/min (la plus lente du tableau)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/picking.py"/>
+        <location filename="../../freecad_am/gui/picking.py"/>
         <source>{} objects are selected; pick the substrate</source>
         <translation>{} objets sont sélectionnés ; choisissez le substrat</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/picking.py"/>
+        <location filename="../../freecad_am/gui/picking.py"/>
         <source>{} objects are selected; pick the wall and the substrate</source>
         <translation>{} objets sont sélectionnés ; choisissez la paroi et le substrat</translation>
     </message>
@@ -17307,7 +17307,7 @@
         <translation>{} ou vide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/window.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>{} point {}</source>
         <translation>{} point {}</translation>
     </message>
@@ -17317,7 +17317,7 @@
         <translation>{} montre {} à zéro</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>{} solids are selected, to be filled</source>
         <translation>{} solides sont sélectionnés, qui sont remplis</translation>
     </message>
@@ -17367,12 +17367,12 @@
         <translation>{} : annulé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program/window.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>{}: on the approach</source>
         <translation>{} : en chemin vers lui</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>{}: proposed for this job: {}; enter the values of your cell.</source>
         <translation>{} : proposé pour ce travail : {} ; saisissez ce que la vôtre a réellement.</translation>
     </message>
@@ -17397,7 +17397,7 @@
         <translation>{} : {} points au-delà de la limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>{}: {}.</source>
         <translation>{} : {}.</translation>
     </message>
@@ -17412,7 +17412,7 @@
         <translation>σmin / σmax</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts/in_language.py"/>
+        <location filename="../../freecad_am/gui/in_language.py"/>
         <source>“{}”</source>
         <translation>« {} »</translation>
     </message>

@@ -61,7 +61,7 @@ SPEAKING = (
     "gui",
     "api.py",
     "macro",
-    "kdl",
+    "kdl.py",
     "read_back",
     "verify.py",
     "sections",

@@ -8,7 +8,7 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics.machines import denavit_hartenberg as dh
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.kinematics.urdf import read as urdf
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 
 Q = np.random.default_rng(8).uniform(-3, 3, (20, 6))
 

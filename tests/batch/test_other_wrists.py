@@ -8,7 +8,7 @@ import pytest
 
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics.machines import machine
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 from tests.batch.test_plan_command import deposit
 from tests.core.kinematics.test_calibration import FILE
 

@@ -11,7 +11,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from freecad_am.core.kinematics.machines import machine as machines
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 from freecad_am.posts.staubli import post as staubli
 from tests.batch.conftest import Workshop
 

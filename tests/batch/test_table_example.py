@@ -13,7 +13,7 @@ import pytest
 
 from freecad_am.batch.job.job import read_job
 from freecad_am.core.kinematics.machines import machine as machines
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 from tests.batch import row_limits
 
 RADIUS, PLATFORM, SPEED = 45.0, 60.0, 5.0

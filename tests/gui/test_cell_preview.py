@@ -19,7 +19,7 @@ from freecad_am.core.parameters.cell_records import EXTERNAL
 from freecad_am.core.simulation.table_links import at_rest
 from freecad_am.gui.nodes.cell import resting_point
 from freecad_am.gui.panels import cell as cell_panel
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 from freecad_am.objects.work.progress import Cancelled
 from tests.core.kinematics import urdf_cells
 from tests.gui.previews import drawn_by_previews

@@ -9,8 +9,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.kinematics.proposed_cell import cell_of
-from freecad_am.gui import registry
-from freecad_am.gui.program import window as program_window
+from freecad_am.gui import program_window, registry
 
 
 def test_from_a_selected_shape_to_a_program_by_clicks(person, hemisphere):

@@ -6,7 +6,7 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.gui.picking import picking
+from freecad_am.gui import picking
 from freecad_am.objects.shapes.bodies import global_shape
 
 PANEL = "RoboticAM_SolidFeature"

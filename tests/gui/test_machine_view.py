@@ -16,7 +16,7 @@ from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.core.simulation.table_links import at_rest
 from freecad_am.gui.nodes.cell import resting_point
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 
 
 def matrix(transform):

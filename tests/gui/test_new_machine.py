@@ -11,7 +11,7 @@ import pytest
 from freecad_am.core.kinematics import external
 from freecad_am.core.kinematics.machines import draft, machine, pendant
 from freecad_am.core.kinematics.urdf import text as urdf_text
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 from freecad_am.objects import user_machines
 from freecad_am.objects.fields import preferences
 from tests.core.kinematics import urdf_cells

@@ -4,8 +4,8 @@
 import FreeCAD as App
 import pytest
 
-from freecad_am.gui.picking import picking
-from freecad_am.gui.picking.picking import Pick
+from freecad_am.gui import picking
+from freecad_am.gui.picking import Pick
 from freecad_am.objects.shapes import nested
 from freecad_am.objects.shapes.bodies import global_shape
 

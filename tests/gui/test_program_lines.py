@@ -104,7 +104,7 @@ def test_a_text_of_an_earlier_plan_leads_nowhere(person, program):
     window = person.panel("RoboticAM_ProgramText")
     program.Document.Feature.LayerHeight = 8
     person.idle(0.2)
-    from freecad_am.gui.program import window as windows
+    from freecad_am.gui import program_window as windows
 
     shown = next(one for one in windows._shown if one.obj is program)
     assert shown.located is None and person.field(window, "place").text() == ""

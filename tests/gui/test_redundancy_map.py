@@ -10,14 +10,14 @@ import pytest
 from freecad_am import api
 from freecad_am.core.kinematics.limits import margins
 from freecad_am.core.parameters.joints import GIVEN
-from freecad_am.core.planning.redundancy import curve as spin_curve
-from freecad_am.core.planning.redundancy import map
-from freecad_am.core.planning.redundancy import map as spin_map
+from freecad_am.core.planning import redundancy_curve as spin_curve
+from freecad_am.core.planning import redundancy_map
+from freecad_am.core.planning import redundancy_map as spin_map
 from freecad_am.core.simulation.achievable_feed import speed_ratios
 from freecad_am.gui.path.colouring import BELOW_COLOUR, NONE
 from freecad_am.gui.redundancy_map import tool as docks
 from freecad_am.gui.redundancy_map.dock import FINE_STRIDE, NAME
-from freecad_am.gui.redundancy_map.drawn.painting import TURN
+from freecad_am.gui.redundancy_map.painting import TURN
 from freecad_am.objects.staleness import UP_TO_DATE
 from tests.gui.positioner_jobs import on_positioner
 
@@ -496,7 +496,7 @@ def test_external_axes_go_along_or_stand_across(person, hand, hemisphere, monkey
     assert np.ptp(one.board.columns.points.external[:, 0]) == 0.0
     # where the plan is, the map has the plan's joints
     phi = one.source.planned.beads[1].phi[point]
-    at = map.across(one.source.beads, one.source.cell, (1, point), 1, planned[[7]])
+    at = redundancy_map.across(one.source.beads, one.source.cell, (1, point), 1, planned[[7]])
     found = spin_map.joints_at(one.source.task(one.source.branch), at, 0, float(phi))[
         one.source.branch
     ]

@@ -17,8 +17,8 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.kinematics.machines import machine as machines
-from freecad_am.gui.new_job import proposal as job_proposal
-from freecad_am.gui.picking.picking import Pick
+from freecad_am.gui.panels import proposed_job as job_proposal
+from freecad_am.gui.picking import Pick
 from freecad_am.objects.job_group import is_group
 
 TOOLS = (

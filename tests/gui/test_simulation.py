@@ -15,12 +15,12 @@ from freecad_am.core.kinematics import external
 from freecad_am.core.planning.beads import steps
 from freecad_am.core.simulation.achievable_feed import achievable_feed
 from freecad_am.core.simulation.watch import ISSUE, LIMIT, SINGULAR, SLOWED, TOUCHES
+from freecad_am.gui.in_language import link_touches
 from freecad_am.gui.simulation import dock as docks
 from freecad_am.gui.simulation import fields, tool
 from freecad_am.gui.simulation.dock import SLOW_COLOUR, WRONG_COLOUR
 from freecad_am.gui.simulation.player import run_of
-from freecad_am.gui.texts.in_language import link_touches
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 from freecad_am.objects.joint_path import Planned
 from tests.gui.positioner_jobs import on_positioner
 

@@ -8,8 +8,8 @@ from PySide import QtGui
 
 from freecad_am import api
 from freecad_am.core.kinematics.proposed_cell import cell_of
-from freecad_am.gui.new_job import proposal
-from freecad_am.gui.texts.in_language import as_in_panels
+from freecad_am.gui.in_language import as_in_panels
+from freecad_am.gui.panels import proposed_job
 
 pytestmark = pytest.mark.gui
 
@@ -84,7 +84,7 @@ def test_warnings_of_a_job_that_is_ready_are_pointed_to(person, hemisphere):
     toolpath = api.make_toolpath(document, feature, cell)
     path = api.make_joint_path(document, toolpath, cell)
     assert "are not deposited" in toolpath.Message
-    proposal.report_next_steps([cell, feature, toolpath, path])
+    proposed_job.report_next_steps([cell, feature, toolpath, path])
     assert (
         "Read the warnings first: double-click Toolpath."
         in person.window.statusBar().currentMessage()

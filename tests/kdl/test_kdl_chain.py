@@ -6,7 +6,7 @@ import pytest
 
 from freecad_am.core.kinematics.jacobian import jacobian
 from freecad_am.core.kinematics.machines import machine
-from freecad_am.kdl.chain import SOLVERS, KdlArm, available
+from freecad_am.kdl import SOLVERS, KdlArm, available
 from tests.core.kinematics.arms import EXAMPLES
 
 pytestmark = pytest.mark.skipif(not available(), reason="PyKDL is not installed")

@@ -6,7 +6,7 @@ import pytest
 
 from freecad_am.core.geometry.formatting import place
 from freecad_am.core.issues import Text, Word
-from freecad_am.gui.texts.in_language import in_language
+from freecad_am.gui.in_language import in_language
 from freecad_am.objects.fields.preferences import feet_and_inches, in_user_units, quantity_text
 
 METRIC, MKS, US, IMPERIAL, EURO, BUILDING_US, CNC, CIVIL, FEM = range(9)

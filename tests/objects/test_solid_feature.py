@@ -13,7 +13,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.issues import InputError, Issue
-from freecad_am.core.layers.planes import field as planes
+from freecad_am.core.layers import plane_field as planes
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.objects.planned import toolpaths
 

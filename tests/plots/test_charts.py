@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from freecad_am.core.layers.planes.stacking import prepare_stack
+from freecad_am.core.layers.stacking import prepare_stack
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.process.deposit import spacing

@@ -5,7 +5,7 @@ but the frames of the cell, and the closed form that turns a position with a CON
 
 import numpy as np
 
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 
 STEP_MM, STEP_RAD = 2.0, np.radians(2.0)
 # mm of a move that is rounded, at most, where a text lets it round as it likes

@@ -10,9 +10,8 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
-from freecad_am.posts import catalogue
+from freecad_am.posts import catalogue, nc_numbers
 from freecad_am.posts.linuxcnc import post as linuxcnc
-from freecad_am.posts.nc import numbers as nc_numbers
 from freecad_am.posts.siemens import post as siemens
 from tests.posts.nc_programs import deposit_of, moves, program, random_program, with_options
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
+from freecad_am.posts import nc_read
 from freecad_am.posts.linuxcnc import post as linuxcnc
-from freecad_am.posts.nc import read as nc_read
 from freecad_am.posts.siemens import post as siemens
 
 pytestmark = pytest.mark.any_version

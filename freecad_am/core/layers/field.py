@@ -13,12 +13,12 @@ from ..parameters.filled import DevelopableParameters, FilledParameters, SolidPa
 from ..slicing.solids.equidistant import Facets, cut
 from ..slicing.solids.plane_sections import PlaneCuts
 from ..types import Array
+from . import curved_field as curved
+from . import guide_field as along
+from . import plane_field as planes
 from . import rotary_field as rotary
-from .along import field as along
-from .along.field import AlongCuts
-from .curved import field as curved
-from .planes import field as planes
-from .planes.field import PlaneLayer
+from .guide_field import AlongCuts
+from .plane_field import PlaneLayer
 from .surface import Slice, mark_buried, report_overhangs
 
 

@@ -18,7 +18,7 @@ from ..parameters.process import ProcessParameters
 from ..program import SHORTEST_RAPID
 from ..types import Array, Integers
 from . import nozzle_obstacles
-from .arm.kept import Cylinders
+from .arm_kept import Cylinders
 from .beads.retreat import turns_back
 from .joint_path import BeadPath, JointPath
 from .rapids.retracts import Leg

@@ -14,9 +14,8 @@ from ..kinematics.cell import Cell
 from ..kinematics.inverse import opw
 from ..parameters.joints import OF_CELL, JointParameters
 from ..toolpath import Bead, Toolpath
-from . import criteria
-from .arm import clear as arm_clear
-from .arm.kept import ArmKept, Cylinders, build_arm_clearance
+from . import arm_clear, criteria
+from .arm_kept import ArmKept, Cylinders, build_arm_clearance
 from .beads import phases
 from .beads.chord_error import all_refined
 from .beads.overlap import extend_past_seam

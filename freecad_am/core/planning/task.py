@@ -19,7 +19,7 @@ from ..kinematics.limits import Limits, PoseFrames
 from ..parameters.joints import JointParameters
 from ..toolpath import Toolpath
 from ..types import Array, Index, Mask
-from .arm.kept import ArmKept
+from .arm_kept import ArmKept
 from .points import Points, in_pieces, unwrapped, unwrapped_by_turns
 from .reserve import RESERVE
 from .turns import configurations as following

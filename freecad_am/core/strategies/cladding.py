@@ -8,7 +8,7 @@ import numpy as np
 from ..filling.cover import Cover
 from ..geometry.walls.patch_wall import CladFaces
 from ..issues import NOTE, InputError, Issue, Text
-from ..layers.curved.on_faces import FaceLayer, pieces, slices
+from ..layers.on_faces import FaceLayer, pieces, slices
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.filled import CladdingParameters
 from ..parameters.process import ProcessParameters

@@ -19,7 +19,7 @@ from ..geometry.mesh.collapsed import doubled_areas
 from ..geometry.mesh.solid import SolidMesh
 from ..geometry.on_hub import SolidsOnHub
 from ..issues import NOTE, InputError, Issue, Text, Word
-from ..layers.curved.field import step_of
+from ..layers.curved_field import step_of
 from ..parameters.filled import CladdingParameters, FilledParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import (

@@ -17,8 +17,8 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ...objects.work import progress
+from ..in_language import tr, translated
 from ..signals import connect
-from ..texts.in_language import tr, translated
 from .worker import Worker
 
 NAME = "RoboticAM_Progress"

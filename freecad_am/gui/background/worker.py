@@ -26,7 +26,7 @@ from PySide import QtCore
 from ...core import one_thread
 from ...core.issues import AmError
 from ...objects.work.progress import Cancelled, told_to
-from ..texts.in_language import tr, translated, translated_error
+from ..in_language import tr, translated, translated_error
 
 AGAIN = 200  # ms between two checks of running threads
 YOUNG = (

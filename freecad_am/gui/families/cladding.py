@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...objects.shapes.bodies import global_shape
-from ..picking import picking
-from ..picking.picking import Pick
-from ..texts.in_language import marked, tr
+from .. import picking
+from ..in_language import marked, tr
+from ..picking import Pick
 from ..tools import whats_this
 from ..tools.tool import Tool
 from .window import FeatureWindow, JobProposal, second_ground

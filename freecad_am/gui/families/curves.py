@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..picking.picking import Pick
-from ..texts.in_language import marked, tr
+from ..in_language import marked, tr
+from ..picking import Pick
 from ..tools import whats_this
 from ..tools.tool import Tool
 from .window import FeatureWindow, JobProposal, second_ground, several_elements

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from ...core.parameters.filled import DevelopableParameters
 from ...objects.shapes.bodies import Taken, global_shape
-from ..picking import picking
-from ..picking.picking import Pick
-from ..texts.in_language import marked, tr
+from .. import picking
+from ..in_language import marked, tr
+from ..picking import Pick
 from ..tools import whats_this
 from ..tools.tool import Tool
 from .window import FeatureWindow, JobProposal, solid_arguments

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...core.parameters.filled import GEODESIC
-from ..picking.picking import Pick
-from ..texts.in_language import marked, tr
+from ..in_language import marked, tr
+from ..picking import Pick
 from ..tools import whats_this
 from ..tools.tool import Tool
 from .window import FeatureWindow, JobProposal, solid_arguments

@@ -11,10 +11,9 @@ from ...core.families.family import Family
 from ...core.families.registry import KINDS
 from ...core.parameters.filled import GEODESIC
 from ...objects.shapes.bodies import Taken
-from .. import recorded
-from ..picking import picking
-from ..picking.picking import Pick
-from ..texts.in_language import tr
+from .. import picking, recorded
+from ..in_language import tr
+from ..picking import Pick
 
 if TYPE_CHECKING:
     from ...core.process.deposit.balance import Balance

@@ -23,13 +23,13 @@ from ...objects.inspection import KINDS, Inspection
 from ...objects.stage import stage_of
 from ...objects.stage_parts import Link
 from .. import colours, recorded
+from ..in_language import tr, translated, translated_error
 from ..panels.stage import StagePanel, show
 from ..path.colouring import round_numbers
-from ..picking.pick_field import Input
-from ..picking.picking import usable
-from ..picking.shape_inputs import job_selection
-from ..texts.in_language import tr, translated, translated_error
+from ..picking import usable
 from ..widgets.fold import Fold
+from ..widgets.pick_field import Input
+from ..widgets.shape_inputs import job_selection
 
 
 class PlannedChoice(Input):

@@ -11,10 +11,10 @@ from pivy import coin
 from ...core.inspection.bands import PAST_EDGES, bands, colours
 from ...core.inspection.inspect import Inspected
 from ...objects.fields import preferences
+from ..in_language import marked
 from ..nodes.lines import fill, unshaded
 from ..path import legend
 from ..path.colouring import Scale
-from ..texts.in_language import marked
 from ..views.base import StageView
 
 

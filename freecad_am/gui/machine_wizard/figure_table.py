@@ -13,7 +13,7 @@ from PySide import QtCore, QtGui
 from ...core.issues import InputError
 from ...core.types import Array
 from ..colours import INVALID, of, set_role
-from ..texts.in_language import sentence, tr, translated_error
+from ..in_language import sentence, tr, translated_error
 
 
 class Page(QtGui.QWizardPage):

@@ -24,7 +24,7 @@ from ...core.kinematics.machines.pendant import Deviation, Suspect
 from ...core.types import Array
 from ..background.worker import Later
 from ..colours import GOOD, INVALID, PLAIN, set_role
-from ..texts.in_language import tr
+from ..in_language import tr
 from .figure_table import FigureTable, Page, axis_names, choice, error_text, format_figure, heading
 
 MIN_POSES, INITIAL_ROWS = 3, 5  # poses that a machine needs, rows that are there at first

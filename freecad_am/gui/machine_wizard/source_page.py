@@ -24,7 +24,7 @@ from ...core.kinematics.urdf.read import Urdf
 from ...core.kinematics.urdf.reference import reference
 from ...core.parameters.cell_records import ROBOT
 from ...objects import user_machines
-from ..texts.in_language import tr
+from ..in_language import tr
 from .figure_table import FigureTable, Page, choice, error_text
 
 LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")

@@ -25,7 +25,7 @@ from ...objects import user_machines
 from ...posts import catalogue
 from ...posts.catalogue import plain
 from .. import icons
-from ..texts.in_language import tr
+from ..in_language import tr
 from .figure_table import FigureTable, Page, axis_names, choice, heading
 from .poses_page import PosesPage
 from .source_page import SourcePage

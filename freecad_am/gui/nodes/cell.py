@@ -31,7 +31,7 @@ from ...core.toolpath import Toolpath
 from ...core.types import Array, Integers, Mask, NDArray
 from ...objects.fields import preferences
 from ...objects.shapes.cell_obstacles import mesh_of, meshes_of, readable_mesh, torch_of
-from ..texts.in_language import error_line
+from ..in_language import error_line
 from .lines import fill, revolve, transform_node
 from .wall import unpickable
 

@@ -30,12 +30,12 @@ from ...objects.stage_parts import Outcome
 from ...objects.work.progress import Cancelled
 from ..background.busy import carry_out
 from ..background.worker import Background, Later, Worker
+from ..in_language import tr, translated
 from ..nodes.cell import CellNodes, Rest, Scenery, at_the_end, machine_scenery
-from ..picking.shape_inputs import job_selection
-from ..texts.in_language import tr, translated
 from ..views.cell import toolpath_of
 from ..views.preview import Aside, Draft
 from ..widgets import suggestions
+from ..widgets.shape_inputs import job_selection
 from .preview import PreviewPanel
 
 # ---- Proposals of the cell panel: values that suit the chosen machine, then a cell in which the

@@ -27,13 +27,13 @@ from ...objects.checks import controllers
 from ...objects.joint_path import Job, JointPath
 from ...objects.stage_parts import Outcome
 from ...objects.work import progress
+from ..in_language import tr, translated
 from ..nodes.lines import Lines, Points
 from ..nodes.wall import unpickable
 from ..path.colouring import CONDITION, MARGIN, RATIO, UNREACHABLE, by_machine
 from ..path.legend import Legend
-from ..picking import shape_inputs
-from ..texts.in_language import tr, translated
 from ..views.preview import Aside, Draft
+from ..widgets import shape_inputs
 from .preview import PreviewPanel, stale_lines
 
 # ---- Planned beads in the 3D view, coloured by the distance to the machine's limits, with a

@@ -14,10 +14,10 @@ from ...core.parameters.field import check_value
 from ...objects.fields import rows
 from ...objects.stage import Stage
 from ..colours import INVALID, PLAIN, set_role
-from ..picking.pick_field import Input
-from ..texts.in_language import translated, translated_error
+from ..in_language import translated, translated_error
 from ..widgets import fields
 from ..widgets.fold import Fold, Messages
+from ..widgets.pick_field import Input
 from ..widgets.upright import present, scroll_areas_of
 
 

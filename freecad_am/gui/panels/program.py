@@ -22,14 +22,13 @@ from ...objects.stage_parts import Outcome
 from ...objects.staleness import UP_TO_DATE
 from ...posts import catalogue
 from ..colours import FAINT, GOOD, INVALID, of
+from ..in_language import sentence, tr, translated
 from ..path import dock
-from ..picking import shape_inputs
-from ..picking.shape_inputs import job_selection
-from ..program.window import listing
+from ..program_window import listing
 from ..simulation import wording
-from ..texts.in_language import sentence, tr, translated
 from ..views.preview import Draft
-from ..widgets import suggestions
+from ..widgets import shape_inputs, suggestions
+from ..widgets.shape_inputs import job_selection
 from .preview import PreviewPanel, stale_lines
 
 # ---- The preflight in a panel: every promise with its mark, its worst value and its place, to

@@ -27,12 +27,12 @@ from ...objects.work.progress import Cancelled
 from .. import icons, recorded
 from ..background.worker import Later
 from ..colours import INVALID, PLAIN
-from ..picking.pick_field import Input
+from ..in_language import escape_mnemonic, marked, tr, translated
 from ..signals import connect
-from ..texts.in_language import escape_mnemonic, marked, tr, translated
 from ..widgets import fields, suggestions
 from ..widgets.fields import Field
 from ..widgets.fold import Fold, Messages
+from ..widgets.pick_field import Input
 from ..widgets.upright import scrolls, upright
 from .noted import Noted, lines_of
 

@@ -22,13 +22,13 @@ from ...objects.toolpath import Toolpath
 from ...plots.chart import Picture, fit
 from .. import recorded
 from ..background.worker import Later
-from ..picking import shape_inputs
-from ..picking.pick_field import Input
-from ..picking.shape_inputs import StageChoice, selected
+from ..in_language import marked, tr, translated, translated_error
 from ..plots.canvas import Canvas, in_words
 from ..plots.dock import in_units
 from ..signals import connect
-from ..texts.in_language import marked, tr, translated, translated_error
+from ..widgets import shape_inputs
+from ..widgets.pick_field import Input
+from ..widgets.shape_inputs import StageChoice, selected
 from ..widgets.upright import scroll_areas_of
 from .stage import StagePanel
 

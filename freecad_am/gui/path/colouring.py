@@ -15,7 +15,7 @@ from ...core.types import Array
 from ...objects.fields import preferences
 from ...objects.fields.preferences import scale_of
 from ..colours import ramp
-from ..texts.in_language import marked, translated
+from ..in_language import marked, translated
 
 Colour = tuple[float, float, float]
 

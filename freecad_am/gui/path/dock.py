@@ -17,9 +17,9 @@ from ...objects.fields.preferences import in_user_units, quantity_text
 from .. import dock_area
 from ..background import redraw
 from ..dock_area import Follower, OnlyDock
-from ..picking.shape_inputs import job_selection
+from ..in_language import tr, translated
 from ..preferences import watch
-from ..texts.in_language import tr, translated
+from ..widgets.shape_inputs import job_selection
 from ..widgets.steady import Scrolled, SteadyText, hold
 from . import path_view
 from .colouring import LAYER

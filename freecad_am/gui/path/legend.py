@@ -21,9 +21,9 @@ from PySide import QtCore, QtGui
 from ...objects.fields import preferences
 from .. import colours
 from ..colours import ramp
+from ..in_language import tr, translated
 from ..nodes.lines import unshaded
 from ..preferences import watch
-from ..texts.in_language import tr, translated
 from .colouring import ABOVE_COLOUR, BELOW_COLOUR, DISTANCE, Scale
 
 _FINE = 0.01  # mm; smaller differences of distances show 1e-5 mm

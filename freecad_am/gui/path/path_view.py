@@ -17,7 +17,7 @@ from ...core.issues import InputError
 from ...core.types import Array
 from ...objects.fields import preferences
 from ...objects.fields.preferences import ORDINARY, scale_of
-from ..texts.in_language import marked
+from ..in_language import marked
 from ..views.base import StageView
 from . import legend
 from .colouring import Scale

@@ -26,11 +26,11 @@ from .. import dock_area, recorded
 from ..background.worker import Work
 from ..colours import INVALID, PLAIN, set_role
 from ..dock_area import Lookout
-from ..picking.shape_inputs import job_named, job_selection
+from ..in_language import error_line, tr, translated_error
 from ..preferences import watch
-from ..texts.in_language import error_line, tr, translated_error
 from ..widgets import fields
 from ..widgets.fold import Fold
+from ..widgets.shape_inputs import job_named, job_selection
 from . import figures
 from .scene import Scene
 

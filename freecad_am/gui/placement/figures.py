@@ -13,7 +13,7 @@ from ...core.quantities import significant
 from ...core.types import Array, Integers
 from ...objects.fields.preferences import ORDINARY, scale_of
 from ..colours import ramp
-from ..texts.in_language import marked, tr, translated
+from ..in_language import marked, tr, translated
 
 SHARE, MARGIN, TIME, CLEARANCE = "share", "margin", "time", "clearance"
 NAMES = {

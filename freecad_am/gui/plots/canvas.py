@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from PySide import QtCore, QtGui
 
 from ...plots.chart import Chart, Picture, Quantity
-from ..texts.in_language import marked, sentence, tr, translated
+from ..in_language import marked, sentence, tr, translated
 
 if TYPE_CHECKING:
     from .view import Range, View

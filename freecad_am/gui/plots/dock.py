@@ -19,9 +19,9 @@ from ...plots.source import Source
 from .. import dock_area
 from ..background.worker import Background, Later, Worker
 from ..dock_area import Follower, OnlyDock
-from ..picking.shape_inputs import job_selection
+from ..in_language import tr, translated_error
 from ..preferences import watch
-from ..texts.in_language import tr, translated_error
+from ..widgets.shape_inputs import job_selection
 from ..widgets.steady import Scrolled
 from . import canvas, saving
 from .canvas import Canvas

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from ...core.geometry.angles import TURN
-from ...core.planning.redundancy.map import RZ, Picture
+from ...core.planning.redundancy_map import RZ, Picture
 from ...core.types import Array
 from ..colours import ramp
-from ..texts.in_language import tr
+from ..in_language import tr
 from .saving import ask
 
 STEPS = 64  # of the ramp
@@ -21,7 +21,7 @@ TICKS = np.arange(-180, 181, 60)  # deg
 
 def save(board: Any, branch: int, canvas: Any, obj: Any) -> None:
     """Ask for a file, and write to it the map of a joint path as the canvas shows it, or its cells; board: its
-    `redundancy_map.drawn.board.Board`."""
+    `redundancy_map.board.Board`."""
     if canvas.painted is None:
         return
     picture, painted, curves = board.pictures[branch], canvas.painted, list(canvas.curves)

@@ -10,7 +10,7 @@ import numpy as np
 from ...plots.chart import DOTS, OUTLINE, STEP, Chart, Curve
 from ...plots.look import DARK, LIGHT, Look, Words
 from .. import colours
-from ..texts.in_language import tr
+from ..in_language import tr
 
 
 def text_at(chart: Chart, x: float) -> str:

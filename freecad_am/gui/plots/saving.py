@@ -27,7 +27,7 @@ from ...objects.stage import stage_of
 from ...plots.chart import Picture
 from ...plots.source import Source
 from ..background.worker import Background, Worker
-from ..texts.in_language import tr
+from ..in_language import tr
 from ..views.toolpath import band_of
 from .canvas import Canvas
 

@@ -19,7 +19,7 @@ from PySide import QtCore, QtGui
 from ...plots.chart import Chart
 from ...plots.draw import DPI, Place, Range, Window, fill, share
 from .. import colours
-from ..texts.in_language import marked, tr
+from ..in_language import marked, tr
 from .reading import look_of, text_at
 
 WHEEL_STEP = 1.25  # factor of one step of the wheel

@@ -16,7 +16,7 @@ from ...objects import user_machines
 from ...objects.fields import preferences
 from ...objects.fields.rows import MIXED
 from ...posts import catalogue
-from ..texts.in_language import tr, translated
+from ..in_language import tr, translated
 from ..widgets import choices, fields
 
 

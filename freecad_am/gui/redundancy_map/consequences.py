@@ -12,15 +12,15 @@ from PySide import QtCore, QtGui
 
 from ...core.kinematics.cell import Cell as Station
 from ...core.kinematics.machines.machine import Machine
-from ...core.planning.redundancy import curve as rotation_curve
-from ...core.planning.redundancy.curve import Followed, Sums
+from ...core.planning import redundancy_curve as rotation_curve
+from ...core.planning.redundancy_curve import Followed, Sums
 from ...core.types import Array
 from ..background.worker import Background, Worker
 from ..colours import INVALID, PLAIN, of, set_role
-from ..texts.in_language import link_touches, tr
+from ..in_language import link_touches, tr
 from ..widgets.steady import Scrolled
+from .board import COLOURS, OWN_CURVE, PLANNED_CURVE, Cell
 from .draft import Draft
-from .drawn.board import COLOURS, OWN_CURVE, PLANNED_CURVE, Cell
 
 COLUMNS = 6
 

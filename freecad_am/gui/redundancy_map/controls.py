@@ -11,11 +11,11 @@ from PySide import QtGui
 
 from ...core.kinematics.inverse import opw
 from ...core.parameters.joints import HIGHEST
-from ...core.planning.redundancy.map import ROTATION, RZ
-from ..texts.in_language import tr
+from ...core.planning.redundancy_map import ROTATION, RZ
+from ..in_language import tr
+from .board import Board
 from .draft import CONSTANT, POLYNOMIALS, Draft
-from .drawn.board import Board
-from .drawn.painting import KINDS
+from .painting import KINDS
 
 STEP = 1.0  # deg of an arrow of a coefficient
 MAX_VALUE = 1e6

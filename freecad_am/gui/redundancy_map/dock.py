@@ -13,8 +13,8 @@ import numpy as np
 from PySide import QtGui
 
 from ...core.issues import AmError
-from ...core.planning.redundancy import curve as rotation_curve
-from ...core.planning.redundancy.curve import Compared
+from ...core.planning import redundancy_curve as rotation_curve
+from ...core.planning.redundancy_curve import Compared
 from ...core.planning.task import Task
 from ...core.types import Array
 from ...objects.work import progress
@@ -22,18 +22,18 @@ from ...objects.work.progress import Cancelled
 from .. import dock_area, recorded
 from ..background.worker import Background, Later, Work, Worker
 from ..dock_area import Lookout
+from ..in_language import tr, translated, translated_error
 from ..path import dock as path_dock
 from ..path.path_view import PathView
 from ..plots.map_file import save
 from ..preferences import watch
 from ..simulation import dock as simulation_dock
-from ..texts.in_language import tr, translated, translated_error
 from ..widgets.steady import Scrolled
+from .board import COLOURS, Board, Dragged, build_curves
 from .consequences import Consequences, Figures, Form, readout
 from .controls import AXES, CURVES, Controls
 from .draft import Draft, Source, source_of, status_of
-from .drawn.board import COLOURS, Board, Dragged, build_curves
-from .drawn.painting import KINDS, Canvas, painted
+from .painting import KINDS, Canvas, painted
 
 # ---- The work that plans a toolpath by all methods
 

@@ -24,13 +24,13 @@ from ...core.kinematics.links.external_links import Mesh
 from ...core.parameters.joints import BRANCHES as BRANCH_WORDS
 from ...core.parameters.joints import OF_CELL, GivenPolynomial, JointParameters
 from ...core.parameters.process import ProcessParameters
+from ...core.planning import redundancy_curve as rotation_curve
+from ...core.planning import redundancy_map
+from ...core.planning import redundancy_map as map
 from ...core.planning.joint_path import BeadPath, JointPath
 from ...core.planning.points import Points
-from ...core.planning.redundancy import curve as rotation_curve
-from ...core.planning.redundancy import map
-from ...core.planning.redundancy import map as redundancy_map
-from ...core.planning.redundancy.curve import Followed
-from ...core.planning.redundancy.map import Columns, Picture, RedundancyMap, in_turns
+from ...core.planning.redundancy_curve import Followed
+from ...core.planning.redundancy_map import Columns, Picture, RedundancyMap, in_turns
 from ...core.planning.rotation.given import METHOD
 from ...core.planning.rotation.planned import rotation_along
 from ...core.planning.task import Task
@@ -42,7 +42,7 @@ from ...objects.results.findings import first_message, issues_of
 from ...objects.shapes.cell_obstacles import meshes_of, resolved
 from ...objects.stage import stage_of
 from ...objects.staleness import UP_TO_DATE
-from ..texts.in_language import tr, translated
+from ..in_language import tr, translated
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ import FreeCADGui as Gui
 
 from ...core.issues import AmError
 from ...objects.stage import stage_of
-from ..picking.shape_inputs import job_named, job_selection
-from ..texts.in_language import error_line, tr, translated_error
+from ..in_language import error_line, tr, translated_error
+from ..widgets.shape_inputs import job_named, job_selection
 from .dock import RedundancyMapDock
 from .draft import source_of
 

@@ -24,6 +24,7 @@ from ...objects.stage import stage_of
 from .. import colours, dock_area
 from ..background import redraw
 from ..dock_area import Lookout
+from ..in_language import tr
 from ..nodes.cell import (
     NOZZLE,
     PLATFORM,
@@ -40,7 +41,6 @@ from ..nodes.cell import (
 from ..nodes.lines import Lines, fill
 from ..path.pieces import PathNodes, Rows
 from ..preferences import watch
-from ..texts.in_language import tr
 from .fields import Fields
 from .player import Player, Run
 

@@ -13,7 +13,7 @@ from PySide import QtCore, QtGui
 from ...core.types import Array, Mask
 from .. import colours, icons
 from ..colours import INVALID, PLAIN, set_role
-from ..texts.in_language import tr
+from ..in_language import tr
 from ..widgets.steady import SteadyLabel
 from . import wording
 from .player import Moment, Player, Run

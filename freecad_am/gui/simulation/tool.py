@@ -12,8 +12,8 @@ from ...core.issues import AmError
 from ...objects.stage import stage_of
 from ...objects.work import hooks
 from ...objects.work.progress import Cancelled
-from ..picking.shape_inputs import job_named, job_selection
-from ..texts.in_language import error_line, tr, translated_error
+from ..in_language import error_line, tr, translated_error
+from ..widgets.shape_inputs import job_named, job_selection
 from . import dock
 from .player import prepared
 

@@ -15,7 +15,7 @@ from ...core.simulation.watch import Finding
 from ...core.types import Array
 from ...objects.fields import preferences
 from ...objects.fields.preferences import in_user_units
-from ..texts.in_language import link_touches, tr, translated
+from ..in_language import link_touches, tr, translated
 from .player import Moment, Run
 
 _HOUR = 3600.0  # s

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ..families.registry import feature_windows
-from ..texts.in_language import marked
+from ..in_language import marked
 from . import openers, whats_this
 from .freecad_am import add_command
 from .tool import PREFIX, Tool

@@ -20,7 +20,7 @@ from ...objects.stage import stage_of
 from ...objects.staleness import UP_TO_DATE
 from ...objects.work.progress import Cancelled
 from .. import recorded, registry
-from ..texts.in_language import error_line, escape_mnemonic, tr
+from ..in_language import error_line, escape_mnemonic, tr
 
 Act = Callable[[], Any]
 _NAME = "RoboticAM_Menu"
@@ -29,11 +29,17 @@ _MAKE_NEXT = ("Toolpath", "JointPath", "Program")  # of a stage that fits
 
 def add_stage_entries(menu: Any, obj: Any) -> None:
     """Add the entries of a stage: edit, renew, go to its inputs, and more by kind."""
-    from ..program import window
+    from .. import program_window
 
     kind = obj.Proxy.kind
     if kind == "program":
-        _add(menu, "ReadProgram", tr("Read the text…"), lambda: window.show(obj), bool(obj.Key))
+        _add(
+            menu,
+            "ReadProgram",
+            tr("Read the text…"),
+            lambda: program_window.show(obj),
+            bool(obj.Key),
+        )
         _add(menu, "EditProgram", tr("Edit parameters…"), lambda: registry.edit(obj))
         _add(menu, "ExportProgram", tr("Export files…"), lambda: _export(obj), bool(obj.Key))
     else:
@@ -196,9 +202,9 @@ def _simulate(obj: Any) -> None:
 
 
 def _export(obj: Any) -> None:
-    from ..program import window
+    from .. import program_window
 
-    window.export(obj)
+    program_window.export(obj)
 
 
 def _save_cell(obj: Any) -> None:

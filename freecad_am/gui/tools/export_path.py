@@ -16,11 +16,11 @@ from ...objects.stage import stage_of
 from ...objects.work.progress import Cancelled
 from .. import icons, recorded
 from ..colours import INVALID, set_role
+from ..in_language import tr, translated, translated_error
 from ..panels.stage import CLOSED
-from ..picking.shape_inputs import job_selection
 from ..signals import connect
-from ..texts.in_language import tr, translated, translated_error
 from ..widgets.quantity import QuantityField
+from ..widgets.shape_inputs import job_selection
 from ..widgets.upright import scrolls, upright
 
 STEP, DXF, CSV, REPORT, CAM, TRAJECTORY = "step", "dxf", "csv", "report", "cam", "trajectory"

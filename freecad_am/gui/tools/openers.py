@@ -14,7 +14,7 @@ from ...core.issues import AmError
 from ...objects.shapes.part_file import PART_FILES
 from ...objects.work.progress import Cancelled
 from .. import recorded
-from ..texts.in_language import error_line, tr, translated_error
+from ..in_language import error_line, tr, translated_error
 
 ENDINGS = PART_FILES
 
@@ -67,7 +67,7 @@ def open_part() -> None:
 
 def new_job() -> None:
     """The panel of a new job."""
-    from ..new_job.panel import JobPanel
+    from ..panels.new_job import JobPanel
     from ..panels.stage import show
 
     show(JobPanel())

@@ -10,7 +10,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 
 from .. import icons
-from ..texts.in_language import tr
+from ..in_language import tr
 from . import whats_this
 
 PREFIX = "RoboticAM_"

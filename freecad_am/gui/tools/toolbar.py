@@ -10,7 +10,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-from ..picking import picking
+from .. import picking
 from ..widgets.upright import present
 
 

@@ -22,9 +22,9 @@ from ...objects.stage import stage_of
 from ...objects.staleness import INFEASIBLE
 from .. import icons
 from ..families.registry import window_of
-from ..picking.picking import is_mesh, usable
+from ..in_language import tr, translated
+from ..picking import is_mesh, usable
 from ..signals import connect
-from ..texts.in_language import tr, translated
 from .freecad_am import add_command
 
 Need = Callable[[Any], str]

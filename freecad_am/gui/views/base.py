@@ -11,7 +11,7 @@ from pivy import coin
 from ...core.issues import InputError
 from ...objects.job_group import is_group
 from .. import icons, registry
-from ..texts.in_language import error_line
+from ..in_language import error_line
 
 MODE = "Drawing"
 

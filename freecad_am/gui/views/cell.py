@@ -13,9 +13,9 @@ from ...core.kinematics.cell import mounted
 from ...objects import user_machines
 from ...objects.results.store import Place
 from ...objects.stage import stage_of
+from ..in_language import tr
 from ..nodes.cell import CellNodes, at_end, machine_scenery, nozzle_scenery
 from ..path import path_view
-from ..texts.in_language import tr
 from .base import StageView
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...core.layers.charts.parted import borders
+from ...core.layers.parted_chart import borders
 from ..nodes.wall import WallNodes
 from .base import StageView
 

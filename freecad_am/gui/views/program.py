@@ -28,7 +28,7 @@ class ProgramView(StageView):
     icon = "program"
 
     def edit(self, obj: Any) -> None:
-        from ..program.window import show
+        from ..program_window import show
 
         show(obj)
 
@@ -59,6 +59,6 @@ class ProgramView(StageView):
         if name == "Post" and not obj.Document.Restoring:
             self._fit_post()
         if name in _SHOWN and not obj.Document.Restoring:
-            from ..program.window import renew
+            from ..program_window import renew
 
             renew(obj)

@@ -11,7 +11,7 @@ from PySide import QtCore, QtGui
 
 from ...core.kinematics.machines import machine
 from ...objects import user_machines
-from ..texts.in_language import marked, tr, translated
+from ..in_language import marked, tr, translated
 
 FEWEST_LETTERS = 8  # a list may be as narrow: panels are
 WORDS = {  # of keys that are not words; `tr` gives them in the language of the window

@@ -26,7 +26,7 @@ from ...objects.fields.rows import (
     split,
 )
 from ..colours import INVALID, PLAIN, set_role
-from ..texts.in_language import tr, translated
+from ..in_language import tr, translated
 from . import choices
 from .quantity import QuantityField
 from .upright import present

@@ -24,8 +24,8 @@ from ...core.issues import InputError, Text, Word
 from ...objects.fields.preferences import feet_and_inches, field_text, round_conversion
 from ...objects.fields.rows import MARK, is_expression, plain_blanks
 from ...objects.fields.rows import quantity as quantity_of
+from ..in_language import tr
 from ..signals import connect
-from ..texts.in_language import tr
 
 _LEAST_WIDTH, _MOST_LETTERS = 70, 16
 _LINE_MARGINS = 10  # px, left and right of the text in a line

@@ -17,7 +17,7 @@ from ...objects import user_machines
 from ...objects.checks.controllers import post_of, writers, written_by
 from ...objects.fields import preferences, saved_cells
 from ...posts import catalogue
-from ..texts.in_language import tr
+from ..in_language import tr
 from .choices import machines
 
 NO_POST = "none"

@@ -23,7 +23,7 @@ from ...core.parameters.place import PlaceParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.placement.judge import Cylinders, Job
 from ...core.placement.place import Placed, place_part
-from ...core.planning.arm import kept as arm_kept
+from ...core.planning import arm_kept
 from ...core.simulation.watch import ArmTouches, arm_touches, deposit_obstacles
 from ...core.toolpath import Toolpath
 from .. import user_machines

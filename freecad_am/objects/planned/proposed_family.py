@@ -25,8 +25,8 @@ from ...core.geometry.mesh.near_triangles import find_crossings, remove_crossing
 from ...core.geometry.mesh.repair import WELDS_MM, connected_triangles
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError, Text, Word
-from ...core.layers.curved.field import CONTACT_HEIGHTS
-from ...core.layers.planes.stacking import evaluate_direction, facets, rank_directions
+from ...core.layers.curved_field import CONTACT_HEIGHTS
+from ...core.layers.stacking import evaluate_direction, facets, rank_directions
 from ...core.parameters.filled import GEODESIC, PLANES, DevelopableParameters, SolidParameters
 from ...core.parameters.strategy import SurfaceParameters
 from ...core.process.deposit.balance import MM3, NEGLIGIBLE, wall_balance

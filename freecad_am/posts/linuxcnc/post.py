@@ -31,8 +31,8 @@ from ...core.program import (
     WaitBelow,
     WaitInput,
 )
+from .. import nc_numbers
 from ..catalogue import Naming, controller_checks
-from ..nc import numbers
 from ..parts import Piece, Run, grouped, keep_whole, lines_of, packed
 from ..refusals import (
     refuse_calls_of_own,
@@ -103,11 +103,11 @@ def write(program: Program) -> dict[str, bytes]:
     remarks = [
         _remark(line)
         for words in (*program.remarks, *_own_remarks(program))
-        for line in numbers.wrapped(words)
+        for line in nc_numbers.wrapped(words)
     ]
     groups = list(
         grouped(
-            program, numbers.Feeds(program, SLOWEST), lambda block: _instructions(program, block)
+            program, nc_numbers.Feeds(program, SLOWEST), lambda block: _instructions(program, block)
         )
     )
     part_groups = packed(groups, program.max_points, _NO_END, keep_whole)
@@ -148,16 +148,16 @@ def refuse_setup(
     carried: tuple[float, ...] | None = None,
 ) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions of a table can."""
-    numbers.refuse_setup("linuxcnc", motion, setup)
+    nc_numbers.refuse_setup("linuxcnc", motion, setup)
     if carried is not None and motion == "cartesian":
         _refuse_tilt(carried)
 
 
 def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
-    numbers.refuse_table(program, "linuxcnc")
-    numbers.refuse_words(program, _TAKEN)
-    numbers.refuse_wire_output(program, LAST_PIN)
+    nc_numbers.refuse_table(program, "linuxcnc")
+    nc_numbers.refuse_words(program, _TAKEN)
+    nc_numbers.refuse_wire_output(program, LAST_PIN)
     refuse_triggers(program, NO_TRIGGER)
     refuse_cooling(program, LAST_PIN)
     refuse_schedules(program, LAST_PIN, LAST_SCHEDULE, inside=True)
@@ -281,7 +281,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
         wire = (
             []
             if block.wire is None
-            else [f"M68 {_wire(program).format(*numbers.wire(program, [block.wire]))}"]
+            else [f"M68 {_wire(program).format(*nc_numbers.wire(program, [block.wire]))}"]
         )
         return [
             *enter,
@@ -311,7 +311,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
         sample, loop = f"M66 E{block.number - 1} L0", f"o<cool{block.layer}_{block.bead}>"
         return [
             sample,
-            f"{loop} while [#5399 GE {numbers.level(block.below)}]",
+            f"{loop} while [#5399 GE {nc_numbers.level(block.below)}]",
             *_dwell(0.1),
             sample,
             f"{loop} endwhile",
@@ -341,7 +341,7 @@ def _wire(program: Program) -> str:
 
 
 def _dwell(seconds: float) -> list[str]:
-    return numbers.dwell("P", seconds)
+    return nc_numbers.dwell("P", seconds)
 
 
 def _lines(program: Program, piece_list: Sequence[Piece]) -> list[str]:
@@ -352,23 +352,23 @@ def _motion(program: Program, run: Run) -> list[str]:
     """Moves through all points of a run; the line after a run waits for its end."""
     moves, rows = run.moves, slice(run.start, run.stop)
     names = list(program.axis_names)
-    values = numbers.controller_values(moves.joints[rows], program.axis_kinds)
+    values = nc_numbers.controller_values(moves.joints[rows], program.axis_kinds)
     if moves.interpolation == LINEAR_MOVE:
         assert moves.position is not None
         rotary = np.array([kind == ROTARY for kind in program.axis_kinds])
         values = np.hstack(
-            [np.round(moves.position[rows], numbers.DECIMALS) + 0.0, values[:, rotary]]
+            [np.round(moves.position[rows], nc_numbers.DECIMALS) + 0.0, values[:, rotary]]
         )
         names = [
             *"XYZ",
             *(name for name, turns in zip(names, rotary.tolist(), strict=True) if turns),
         ]
-    blocks = numbers.blocks(numbers.rows(numbers.template(names), values), run.words[rows])
+    blocks = nc_numbers.blocks(nc_numbers.rows(nc_numbers.template(names), values), run.words[rows])
     ahead = len(blocks) - len(values)
     for row in np.flatnonzero(moves.halt[rows]).tolist():
         blocks[ahead + row] = f"{EXACT_STOP}\n{blocks[ahead + row]}\n{_through(program)}"
     # queued: it takes effect where the next move begins, and corners are rounded all the same
-    text = numbers.insert_wire_statements(program, moves, blocks, f"M67 {_wire(program)}")
+    text = nc_numbers.insert_wire_statements(program, moves, blocks, f"M67 {_wire(program)}")
     return [line for block in text for line in block.split("\n")]
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from ...core.issues import Text
 from ...core.read_moves import ReadMoves
-from ..nc.read import AXES, TIME, TIP, Shape, Track, unreadable
+from ..nc_read import AXES, TIME, TIP, Shape, Track, unreadable
 
 _NUMBER = r"-?\d+(?:\.\d*)?|-?\.\d+"
 _WORD = re.compile(rf"([XYZABCF])({_NUMBER})$")

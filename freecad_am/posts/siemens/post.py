@@ -32,8 +32,8 @@ from ...core.program import (
     WaitInput,
 )
 from ...core.types import Array
+from .. import nc_numbers
 from ..catalogue import Naming, controller_checks
-from ..nc import numbers
 from ..parts import Piece, Run, grouped, keep_whole, lines_of, packed, place
 from ..refusals import (
     refuse_calls_of_own,
@@ -159,10 +159,10 @@ def write(program: Program) -> dict[str, bytes]:
     remarks = [
         f"; {line}"
         for words in (*program.remarks, *_own_remarks(program))
-        for line in numbers.wrapped(words)
+        for line in nc_numbers.wrapped(words)
     ]
     groups = list(
-        grouped(program, numbers.Feeds(program), lambda block: _instructions(program, block))
+        grouped(program, nc_numbers.Feeds(program), lambda block: _instructions(program, block))
     )
     part_pieces = packed(groups, program.max_points, _NO_END, keep_whole)
     if len(part_pieces) == 1:
@@ -198,13 +198,13 @@ def refuse_setup(
     carried: tuple[float, ...] | None = None,
 ) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions of a table can."""
-    numbers.refuse_setup("siemens", motion, setup)
+    nc_numbers.refuse_setup("siemens", motion, setup)
 
 
 def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
-    numbers.refuse_table(program, "siemens")
-    numbers.refuse_wire_output(program, LAST_ANALOGUE)
+    nc_numbers.refuse_table(program, "siemens")
+    nc_numbers.refuse_wire_output(program, LAST_ANALOGUE)
     refuse_triggers(program, NO_TRIGGER)
     refuse_cooling(program, LAST_ANALOGUE)
     _refuse_schedules(program)
@@ -216,7 +216,7 @@ def _refuse(program: Program) -> None:
             LAST_OUTPUT,
             program.deposit_output,
         )
-    numbers.refuse_words(program, _TAKEN)
+    nc_numbers.refuse_words(program, _TAKEN)
     for block in program.blocks:
         if isinstance(block, WaitInput) and block.number > LAST_INPUT:
             raise InputError(
@@ -305,7 +305,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
         wire = (
             []
             if block.wire is None
-            else [_WIRE.format(program.nc.wire_output, *numbers.wire(program, [block.wire]))]
+            else [_WIRE.format(program.nc.wire_output, *nc_numbers.wire(program, [block.wire]))]
         )
         on = [] if program.dry_run else [*wire, _output(program, True), *_dwell(block.lead)]
         return [
@@ -325,7 +325,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
         return [f"WHILE $A_IN[{block.number}]==0", *_dwell(0.1), "ENDWHILE"]
     if isinstance(block, WaitBelow):
         return [
-            f"WHILE $A_INA[{block.number}]>={numbers.level(block.below)}",
+            f"WHILE $A_INA[{block.number}]>={nc_numbers.level(block.below)}",
             *_dwell(0.1),
             "ENDWHILE",
         ]
@@ -346,7 +346,7 @@ def _offset(number: int) -> str:
 
 
 def _dwell(seconds: float) -> list[str]:
-    return numbers.dwell("F", seconds)
+    return nc_numbers.dwell("F", seconds)
 
 
 def _lines(program: Program, entries: Sequence[Piece]) -> list[str]:
@@ -358,24 +358,24 @@ def _motion(program: Program, run: Run) -> list[str]:
     moves, rows = run.moves, slice(run.start, run.stop)
     if moves.interpolation == LINEAR_MOVE:
         assert moves.position is not None and moves.direction is not None
-        vector = " ".join(f"{name}=%.{numbers.VECTOR_DECIMALS}f" for name in ("A3", "B3", "C3"))
+        vector = " ".join(f"{name}=%.{nc_numbers.VECTOR_DECIMALS}f" for name in ("A3", "B3", "C3"))
         values = np.hstack([
-            np.round(moves.position[rows], numbers.DECIMALS), np.round(moves.direction[rows], numbers.VECTOR_DECIMALS),
+            np.round(moves.position[rows], nc_numbers.DECIMALS), np.round(moves.direction[rows], nc_numbers.VECTOR_DECIMALS),
         ])  # fmt: skip
-        words = numbers.rows(f"{numbers.template('XYZ')} {vector}", values + 0.0)
+        words = nc_numbers.rows(f"{nc_numbers.template('XYZ')} {vector}", values + 0.0)
     else:
-        words = numbers.rows(*_axis_words(program, moves.joints[rows]))
-    blocks = numbers.blocks(words, run.words[rows])
+        words = nc_numbers.rows(*_axis_words(program, moves.joints[rows]))
+    blocks = nc_numbers.blocks(words, run.words[rows])
     ahead = len(blocks) - len(words)
     for row in np.flatnonzero(moves.stops[rows]).tolist():
         blocks[ahead + row] = f"G9 {blocks[ahead + row]}"
     # a synchronized action of one block: it takes effect where that begins, without a stop
-    worded = numbers.insert_wire_statements(
+    worded = nc_numbers.insert_wire_statements(
         program, moves, blocks, "DO " + _WIRE.format(program.nc.wire_output, "{}")
     )
     # the time of one block would apply to all blocks compressed into it, and so would the wire's
     # speed
-    by_speed = all(feed.startswith(numbers.PATH) for feed in run.words[rows])
+    by_speed = all(feed.startswith(nc_numbers.PATH) for feed in run.words[rows])
     if program.nc.compress and by_speed and len(worded) == len(blocks):
         return [blocks[0], "COMPCAD", *blocks[1:], "COMPOF"]
     return worded
@@ -383,11 +383,13 @@ def _motion(program: Program, run: Run) -> list[str]:
 
 def _axis_words(program: Program, joints: Array) -> tuple[str, Array]:
     """The template and the values of the axes; one without end in [0, 360), by the shorter way."""
-    values = numbers.controller_values(joints, program.axis_kinds)
+    values = nc_numbers.controller_values(joints, program.axis_kinds)
     continuous = np.array(program.continuous)
-    values[:, continuous] = np.round(values[:, continuous] % 360.0, numbers.DECIMALS) % 360.0
+    values[:, continuous] = np.round(values[:, continuous] % 360.0, nc_numbers.DECIMALS) % 360.0
     words = [
-        f"{name}=DC(%.{numbers.DECIMALS}f)" if end and kind == ROTARY else numbers.template([name])
+        f"{name}=DC(%.{nc_numbers.DECIMALS}f)"
+        if end and kind == ROTARY
+        else nc_numbers.template([name])
         for name, kind, end in zip(
             program.axis_names, program.axis_kinds, program.continuous, strict=True
         )

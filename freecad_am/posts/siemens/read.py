@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from ...core.issues import Text, Word
 from ...core.read_moves import ReadMoves
-from ..nc.read import SLIDES, TIME, TIP, Shape, Track, unreadable
+from ..nc_read import SLIDES, TIME, TIP, Shape, Track, unreadable
 from .words import INSTRUCTIONS
 
 _NUMBER = r"-?\d+(?:\.\d*)?|-?\.\d+"

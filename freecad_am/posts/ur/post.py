@@ -33,8 +33,8 @@ from ...core.program import (
     WaitInput,
 )
 from ...core.types import Array
+from .. import nc_numbers
 from ..catalogue import Naming, controller_checks
-from ..nc import numbers
 from ..parts import Piece, Run, grouped, keep_whole, lines_of, packed, place
 from ..refusals import (
     refuse_calls_of_own,
@@ -308,7 +308,7 @@ def write(program: Program) -> dict[str, bytes]:
     remarks = [
         f"# {line}"
         for text in (*program.remarks, *_own_remarks(program, names))
-        for line in numbers.wrapped(text)
+        for line in nc_numbers.wrapped(text)
     ]
     lines = [*remarks, *_frames(program, words.tool_point)]
     if not names:

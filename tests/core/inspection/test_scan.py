@@ -14,7 +14,7 @@ from freecad_am.core.inspection.fit_layers import fit_layers, max_moves
 from freecad_am.core.inspection.planned import align_scan
 from freecad_am.core.inspection.scan_heights import Scan, facing, scanned
 from freecad_am.core.issues import InputError
-from freecad_am.core.layers.planes.stacking import prepare_stack
+from freecad_am.core.layers.stacking import prepare_stack
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters

@@ -7,7 +7,7 @@ import numpy as np
 
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics.chain import Chain
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 
 # built-in machines of every maker, wrist and size for tests that are dear; test_machine_library looks at all of them
 EXAMPLES = (

@@ -24,7 +24,7 @@ from freecad_am.core.kinematics.urdf.cell import cell_values
 from freecad_am.core.kinematics.urdf.reference import Reference
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.simulation.table_links import placing
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 from tests.core.kinematics import urdf_cells
 
 D500, TRACK = "motoman-motopos-d500", "kuka-kl100-2"

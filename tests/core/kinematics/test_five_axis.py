@@ -8,7 +8,7 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics.chain import Chain
 from freecad_am.core.kinematics.inverse.five_axis import FiveAxis
 from freecad_am.core.kinematics.machines import machine
-from freecad_am.kdl.chain import KdlArm, available
+from freecad_am.kdl import KdlArm, available
 
 NAMES = ["table-xyzac", "table-xyzbc", "head-table-xyzbc", "head-xyzab"]
 

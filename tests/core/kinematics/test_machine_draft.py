@@ -18,7 +18,7 @@ from freecad_am.core.kinematics.urdf import cell as urdf_cell
 from freecad_am.core.kinematics.urdf import read as urdf
 from freecad_am.core.kinematics.urdf import text as urdf_text
 from freecad_am.core.kinematics.urdf.reference import reference
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 from tests.core.kinematics import urdf_cells
 from tests.core.kinematics.arms import EXAMPLES
 

@@ -15,7 +15,7 @@ from freecad_am.core.kinematics.machines import denavit_hartenberg as dh
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.kinematics.urdf import read as urdf
 from freecad_am.core.kinematics.urdf import text as urdf_text
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 from tests.core.kinematics.arms import EXAMPLES
 
 NAMES = EXAMPLES

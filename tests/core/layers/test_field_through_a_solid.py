@@ -12,10 +12,10 @@ from scipy.spatial.transform import Rotation
 
 from freecad_am.core.geometry.mesh.refined import Edges
 from freecad_am.core.geometry.mesh.triangle_mesh import Mesh
-from freecad_am.core.layers.charts.chart import Chart
-from freecad_am.core.layers.charts.parted import align_to_x, flatten, measure_stretch
-from freecad_am.core.layers.curved.eikonal import Voxels, arrival, links, voxels
-from freecad_am.core.layers.curved.geodesic import Cubes, extrapolate
+from freecad_am.core.layers.chart import Chart
+from freecad_am.core.layers.eikonal import Voxels, arrival, links, voxels
+from freecad_am.core.layers.geodesic import Cubes, extrapolate
+from freecad_am.core.layers.parted_chart import align_to_x, flatten, measure_stretch
 
 from .shapes import box, icosphere
 

@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from freecad_am.core.geometry.mesh.solid import SolidMesh
-from freecad_am.core.layers.curved.geodesic import field
+from freecad_am.core.layers.geodesic import field
 
 from .shapes import box, tee
 

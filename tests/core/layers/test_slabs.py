@@ -9,8 +9,8 @@ from freecad_am.core.geometry.curves.guide import fit_guide
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.geometry.on_hub import Base
 from freecad_am.core.geometry.plane import Plane
-from freecad_am.core.layers.planes.slabs import group_of, outline, slabs, volumes_below
-from freecad_am.core.layers.planes.stacking import find_leaning, prepare_stack
+from freecad_am.core.layers.slabs import group_of, outline, slabs, volumes_below
+from freecad_am.core.layers.stacking import find_leaning, prepare_stack
 from freecad_am.core.parameters.filled import SolidParameters
 from tests.core.strategies.test_solids_in_planes import CONE, box, hull, tube
 

@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from freecad_am.core.geometry.obstacles import Body
-from freecad_am.core.layers.planes.stacking import rank_directions
+from freecad_am.core.layers.stacking import rank_directions
 from freecad_am.core.parameters.filled import SolidParameters
 
 CORNERS = np.array([[x, y, z] for x in (0, 40) for y in (0, 40) for z in (0, 10)], dtype=float)

@@ -10,7 +10,7 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.placement import reach
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 
 CELLS = {
     "tool": CellParameters(

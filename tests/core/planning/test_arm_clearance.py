@@ -20,15 +20,14 @@ from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.core.planning.arm import clear as arm_clear
-from freecad_am.core.planning.arm import kept as arm_kept
+from freecad_am.core.planning import arm_clear, arm_kept
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
 from freecad_am.core.planning.rotation import search
 from freecad_am.core.planning.task import Task
 from freecad_am.core.strategies.revolution import plan as revolution
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 from tests.core.planning.conftest import sphere
 from tests.kdl_links import KdlLinks
 

@@ -18,7 +18,7 @@ from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.rapids import clearance
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 from tests.core.planning.test_random_cells import conditions
 
 UP = np.array([0.0, 0.0, 1.0])

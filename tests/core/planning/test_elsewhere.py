@@ -5,6 +5,7 @@ together but have nothing to do with each other."""
 import numpy as np
 import pytest
 
+from freecad_am import kdl
 from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning.plan import plan_joints
@@ -12,7 +13,6 @@ from freecad_am.core.planning.points import gather
 from freecad_am.core.planning.rotation import refine, search
 from freecad_am.core.planning.rotation.refine import evaluate_paths
 from freecad_am.core.planning.task import Task
-from freecad_am.kdl import chain as kdl
 
 INSIDE = np.linspace(0.0, 1.0, 9)[1:-1]
 

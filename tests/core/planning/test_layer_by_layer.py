@@ -6,6 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from freecad_am import kdl
 from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.parameters.joints import OBJECTIVES, JointParameters
 from freecad_am.core.planning import criteria
@@ -16,7 +17,6 @@ from freecad_am.core.planning.points import gather
 from freecad_am.core.planning.reserve import RESERVE
 from freecad_am.core.planning.rotation import refine_state, search
 from freecad_am.core.planning.task import Task
-from freecad_am.kdl import chain as kdl
 
 FLIP = opw.branch_index(("front", "up", "flip"))
 

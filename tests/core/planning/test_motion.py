@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from freecad_am import verify
+from freecad_am import kdl, verify
 from freecad_am.core.collision.bead_ends import Beads
 from freecad_am.core.issues import InputError, has_errors
 from freecad_am.core.kinematics.inverse import opw
@@ -31,7 +31,6 @@ from freecad_am.core.program import (
     WaitInput,
 )
 from freecad_am.core.simulation import rapid_look
-from freecad_am.kdl import chain as kdl
 from freecad_am.objects.checks.controllers import check_controller
 from freecad_am.posts import catalogue
 from tests.programs import build

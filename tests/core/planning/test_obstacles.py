@@ -15,7 +15,7 @@ from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.cell_records import OBSTACLES, Obstacle
 from freecad_am.core.simulation import rapid_look
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 from tests.core.planning.test_arm_clearance import (
     CELL,
     CLEARANCE,

@@ -4,12 +4,12 @@ tip, with the condition that its Jacobian has there, within limits and speeds; a
 
 import numpy as np
 
+from freecad_am import kdl
 from freecad_am.core.issues import ERROR
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
-from freecad_am.kdl import chain as kdl
 from tests.core.planning.test_random_cells import LENGTH
 from tests.posts.planned_jobs import SETUPS
 

@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from freecad_am import kdl
 from freecad_am.core.issues import ERROR, has_errors
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.kdl import chain as kdl
 from freecad_am.posts import catalogue
 from tests.batch import row_limits
 from tests.programs import build

@@ -4,12 +4,12 @@
 import numpy as np
 import pytest
 
+from freecad_am import kdl
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
-from freecad_am.kdl import chain as kdl
 
 TURN, UP = 2.0 * np.pi, np.array([0.0, 0.0, 1.0])
 

@@ -16,7 +16,7 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
-from freecad_am.kdl.chain import KdlArm, available
+from freecad_am.kdl import KdlArm, available
 
 MACHINES = ["table-xyzac", "table-xyzbc", "head-table-xyzbc"]
 

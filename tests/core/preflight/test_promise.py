@@ -4,7 +4,7 @@
 import pytest
 
 from freecad_am.core.preflight.promise import Promise
-from freecad_am.gui.texts.in_language import in_language
+from freecad_am.gui.in_language import in_language
 from tests.told_in_french import table
 
 

@@ -8,7 +8,7 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.simulation.table_links import at_rest, placing, standing_link
-from freecad_am.kdl.chain import KdlArm
+from freecad_am.kdl import KdlArm
 
 TILTED = frames.bryant((10.0, -20.0, 30.0, 0.2, -0.1, 0.4))
 CELLS = {

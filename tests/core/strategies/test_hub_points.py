@@ -10,7 +10,7 @@ from freecad_am.core.geometry.curves.plane_curve import divide_edges
 from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.on_hub import Base
 from freecad_am.core.geometry.plane import Plane
-from freecad_am.core.layers.planes.field import PlaneLayer
+from freecad_am.core.layers.plane_field import PlaneLayer
 from freecad_am.core.layers.rotary_field import RoundLayer
 from freecad_am.core.layers.surface import Slice
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters

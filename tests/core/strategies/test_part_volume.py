@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.obstacles import Body, box
-from freecad_am.core.layers.planes.stacking import prepare_stack
+from freecad_am.core.layers.stacking import prepare_stack
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters

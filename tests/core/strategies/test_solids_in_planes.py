@@ -14,7 +14,7 @@ from scipy.spatial import ConvexHull, cKDTree
 from freecad_am.core.geometry.mesh.solid import SolidMesh
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import InputError, summarised
-from freecad_am.core.layers.planes.stacking import prepare_stack
+from freecad_am.core.layers.stacking import prepare_stack
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters, SeamParameters, WireParameters

@@ -14,8 +14,7 @@ from ...geometry.ties import first_most
 from ...issues import NOTE, Issue, Text
 from ...toolpath import Bead
 from ...types import Array
-from .. import criteria
-from ..arm import clear as arm_clear
+from .. import arm_clear, criteria
 from ..joint_path import BeadPath, numbered
 from ..points import Points, gather
 from ..rotation import search

@@ -14,7 +14,7 @@ import numpy as np
 from ...issues import Issue
 from ...toolpath import Bead
 from ...types import Array
-from ..arm import clear as arm_clear
+from .. import arm_clear
 from ..joint_path import BeadPath
 from ..points import Points, gather
 from ..rotation import given, refine, search

@@ -17,7 +17,7 @@ from ...motion import APPROACH, RETRACT, TRAVEL
 from ...parameters.joints import JointParameters
 from ...types import Array, Integers, Mask
 from .. import nozzle_obstacles
-from ..arm.kept import Cylinders, check_moves, clearance_issue, contact_of
+from ..arm_kept import Cylinders, check_moves, clearance_issue, contact_of
 from ..joint_path import BeadPath, JointPath
 from .clearance import Moves, RapidObstacles
 from .retracts import DEFAULT_CHOICE, LIMIT, SINGULAR, Ends, Failure, Leg, Retracts, branch_of

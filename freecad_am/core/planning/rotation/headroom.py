@@ -11,7 +11,7 @@ import numpy as np
 from ...kinematics.limits import Limits
 from ...types import Array, Integers
 from ..joint_path import BeadPath
-from ..redundancy.curve import durations
+from ..redundancy_curve import durations
 
 
 @dataclass(frozen=True)

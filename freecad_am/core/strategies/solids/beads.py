@@ -23,7 +23,7 @@ from ...geometry.curves.plane_curve import (
 )
 from ...geometry.on_hub import SolidsOnHub
 from ...geometry.regions.region import select_significant, simplified
-from ...layers.planes.slabs import group_of, slabs
+from ...layers.slabs import group_of, slabs
 from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters

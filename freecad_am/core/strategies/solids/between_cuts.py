@@ -23,7 +23,7 @@ from ...geometry.on_hub import Group, SolidsOnHub
 from ...geometry.plane import Plane
 from ...geometry.step_count import step_counts
 from ...issues import WARNING, Issue, Text
-from ...layers.planes.field import CLEARANCE_SHARE, EXACT
+from ...layers.plane_field import CLEARANCE_SHARE, EXACT
 from ...parameters.filled import FilledParameters
 from ...process.order import RankedBead
 from ...toolpath import Bead
@@ -125,7 +125,7 @@ def _levels(group: Group, points: Array) -> Array:
 
 
 def _is_cut(low: float, high: float, strategy: FilledParameters) -> bool:
-    """Whether a layer is cut between two levels, mm; a cut in a face of a solid is moved aside as `planes.field` does it."""
+    """Whether a layer is cut between two levels, mm; a cut in a face of a solid is moved aside as `plane_field` does it."""
     aside = CLEARANCE_SHARE * strategy.chord_error
     share = strategy.share_of_cut
     if share == 1.0:  # at the top

@@ -12,12 +12,11 @@ from ....objects.curves_feature import CurvesFeature
 from ....objects.fields.preferences import in_user_units
 from ....objects.shapes.bodies import FIXTURES
 from ....objects.stage_parts import Link, Outcome
-from ... import recorded
+from ... import picking, recorded
+from ...in_language import marked, sentence, tr
 from ...nodes.wall import WallNodes
-from ...picking import picking
-from ...picking.pick_field import PickField
-from ...texts.in_language import marked, sentence, tr
 from ...views.preview import Draft
+from ...widgets.pick_field import PickField
 from ..preview import PickPanel
 
 CURVES = Link(

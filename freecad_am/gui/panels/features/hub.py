@@ -17,12 +17,11 @@ from ....objects.developable_feature import DevelopableFeature
 from ....objects.fields.preferences import in_user_units
 from ....objects.shapes.bodies import FIXTURES
 from ....objects.stage_parts import Link, Outcome
-from ... import recorded
+from ... import picking, recorded
+from ...in_language import marked, sentence, tr
 from ...nodes.hub import NOTHING, Drawing, HubNodes, drawing
-from ...picking import picking
-from ...picking.pick_field import PickField
-from ...texts.in_language import marked, sentence, tr
 from ...views.preview import Draft
+from ...widgets.pick_field import PickField
 from ..preview import PickPanel, coarsened
 
 SOLIDS = Link(

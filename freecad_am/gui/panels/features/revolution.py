@@ -13,10 +13,10 @@ from ....objects.checks import deposit
 from ....objects.feature import RevolutionFeature
 from ....objects.fields.preferences import in_user_units
 from ....objects.stage_parts import Outcome
+from ...in_language import sentence, tr, translated
 from ...nodes.lines import MeridianNodes
-from ...picking import shape_inputs
-from ...texts.in_language import sentence, tr, translated
 from ...views.preview import Draft
+from ...widgets import shape_inputs
 from ..preview import PreviewPanel
 
 Drawing = tuple[RevolutionParameters, Slices, list[Issue]]

@@ -11,9 +11,9 @@ import numpy as np
 from PySide import QtCore, QtGui
 
 from ....core.issues import AmError
-from ....core.layers.along import centre_line
-from ....core.layers.along import field as along
-from ....core.layers.planes.stacking import CONTACT_HEIGHTS, Leaning, find_leaning, prepare_stack
+from ....core.layers import centre_line
+from ....core.layers import guide_field as along
+from ....core.layers.stacking import CONTACT_HEIGHTS, Leaning, find_leaning, prepare_stack
 from ....core.parameters.filled import SolidParameters
 from ....core.strategies import size
 from ....core.types import Array
@@ -21,13 +21,12 @@ from ....objects.fields.preferences import in_user_units
 from ....objects.shapes.bodies import FIXTURES
 from ....objects.solid_feature import SolidFeature
 from ....objects.stage_parts import Link, Outcome
-from ... import recorded
+from ... import picking, recorded
+from ...in_language import marked, sentence, tr
 from ...nodes.hub import NOTHING, Drawing, HubNodes, drawing
 from ...nodes.lines import Faces
-from ...picking import picking
-from ...picking.pick_field import PickField
-from ...texts.in_language import marked, sentence, tr
 from ...views.preview import Draft
+from ...widgets.pick_field import PickField
 from ...widgets.upright import scrolls
 from ..preview import PickPanel, coarsened
 

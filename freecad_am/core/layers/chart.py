@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A curved piece of a layer with its picture on the plane: places of the one brought to the other."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ..geometry.mesh.triangle_mesh import Mesh
+from ..geometry.step_count import step_counts
+from ..types import Array, Index, Mask
+from .surface import Wrapped
+
+CELL = 1.5  # typical edges; side of the squares that triangles are sorted into
+OUTSIDE = -1e-6  # least share of a corner for a place that is in a triangle
+
+
+class Place(NamedTuple):
+    """Positions in a picture: the triangle (n,) and the shares (n, 3) of its corners, negative
+    outside it.
+    """
+
+    triangle: Index
+    share: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Chart:
+    """mesh: the piece, mm in the part. flat: (n, 2) mm, its vertices on the plane, triangles counter-clockwise."""
+
+    mesh: Mesh
+    flat: Array
+
+    def wrap(self, points: Array) -> Array:
+        """Return the points (n, 3) in the part of points (n, 2) of the picture; outside it the
+        nearest triangle is extended.
+        """
+        return self.to_part(self.find(points))
+
+    def to_part(self, location: Place) -> Array:
+        """Return the points (n, 3) in the part at locations in the picture."""
+        wrapped: Array = np.einsum(
+            "nk,nkc->nc", location.share, self.mesh.vertices[self.mesh.faces[location.triangle]]
+        )
+        return wrapped
+
+    def heading(self, location: Place) -> Array:
+        """Return the direction (n, 3) in the part of the picture's x, not of unit length."""
+        corners, flat = (
+            values[self.mesh.faces[location.triangle]] for values in (self.mesh.vertices, self.flat)
+        )
+        edge_a, edge_b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        a, b = flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]
+        heading: Array = b[:, 1, None] * edge_a - a[:, 1, None] * edge_b
+        return heading
+
+    def find(self, points: Array) -> Place:
+        """Return the triangles of points (n, 2), and the positions in them."""
+        square, is_covered = self._squares.find_square(points)
+        count = self._squares.count[square]
+        point_number = np.repeat(np.arange(len(points)), count)
+        index = (
+            np.repeat(self._squares.first[square], count)
+            + np.arange(len(point_number))
+            - np.repeat(np.cumsum(count) - count, count)
+        )
+        triangle = self._squares.triangles[index]
+        share = self._shares(triangle, points[point_number])
+        inmost = share.min(axis=1)
+        best = np.full(len(points), -np.inf)
+        np.maximum.at(best, point_number, inmost)
+        inmost_rows = np.flatnonzero(inmost == best[point_number])[::-1]
+        best_triangle = np.full(len(points), -1, dtype=np.intp)
+        best_triangle[point_number[inmost_rows]] = triangle[inmost_rows]
+        uncovered = np.flatnonzero((best < OUTSIDE) | ~is_covered)
+        if len(uncovered):
+            best_triangle[uncovered] = self._nearest(points[uncovered])
+        return Place(best_triangle, self._shares(best_triangle, points))
+
+    def _shares(self, triangle: Index, points: Array) -> Array:
+        a, b, c = (self.flat[self.mesh.faces[triangle, k]] for k in range(3))
+        edge_a, edge_b, offset = b - a, c - a, points - a
+        area = edge_a[:, 0] * edge_b[:, 1] - edge_a[:, 1] * edge_b[:, 0]
+        area = np.where(area == 0.0, 1e-300, area)
+        to_b = (offset[:, 0] * edge_b[:, 1] - offset[:, 1] * edge_b[:, 0]) / area
+        to_c = (edge_a[:, 0] * offset[:, 1] - edge_a[:, 1] * offset[:, 0]) / area
+        return np.stack([1.0 - to_b - to_c, to_b, to_c], axis=1)
+
+    def _nearest(self, points: Array) -> Index:
+        """Return the triangles (n,) with the nearest middles."""
+        triangles: Index = self._middles.query(points)[1].astype(np.intp)
+        return triangles
+
+    @cached_property
+    def _middles(self) -> cKDTree:
+        return cKDTree(self.flat[self.mesh.faces].mean(axis=1))
+
+    @cached_property
+    def _squares(self) -> _Squares:
+        corners = self.flat[self.mesh.faces]
+        return _Squares(corners, CELL * self.mesh.typical_edge)
+
+
+class _Squares:
+    """Triangles (m, 3, 2) sorted into squares of a plane.
+
+    triangles: (k,), consecutive for each square; first, count: (s,) where they begin and how
+    many they are.
+    """
+
+    def __init__(self, corners: Array, size: float) -> None:
+        self.low, self.size = corners.min(axis=(0, 1)), size
+        low = ((corners.min(axis=1) - self.low) / size).astype(np.intp)
+        high = ((corners.max(axis=1) - self.low) / size).astype(np.intp)
+        self.shape = high.max(axis=0) + 1
+        across = high - low + 1
+        total = across[:, 0] * across[:, 1]
+        triangle = np.repeat(np.arange(len(corners)), total)
+        number = np.arange(len(triangle)) - np.repeat(np.cumsum(total) - total, total)
+        square = (
+            (low[triangle, 0] + number // across[triangle, 1]) * self.shape[1]
+            + low[triangle, 1]
+            + number % across[triangle, 1]
+        )
+        order = np.argsort(square, kind="stable")
+        self.triangles = triangle[order]
+        self.count = np.bincount(square, minlength=int(self.shape.prod()))
+        self.first = np.cumsum(self.count) - self.count
+
+    def find_square(self, points: Array) -> tuple[Index, Mask]:
+        """Return the square (n,) of points (n, 2), and whether it exists and has triangles; if not,
+        any square.
+        """
+        cell = np.floor((points - self.low) / self.size).astype(np.intp)
+        is_inside = ((cell >= 0) & (cell < self.shape)).all(axis=1)
+        cell = np.clip(cell, 0, self.shape - 1)
+        square = cell[:, 0] * self.shape[1] + cell[:, 1]
+        return square, is_inside & (self.count[square] > 0)
+
+
+MIN_HORIZONTAL = (
+    0.9  # of 1; a normal nearer to X than that takes Y for what its first direction follows
+)
+
+Same = TypeVar("Same", bound="Charted")
+
+
+@dataclass(frozen=True, eq=False)
+class Charted:
+    """A layer on a chart of one of its pieces.
+
+    As `LayerSurface`; distances and angles in its picture are those in the part, except for
+    the stretch.
+    """
+
+    chart: Chart
+
+    @property
+    @abstractmethod
+    def look(self) -> float:
+        """Length of edge, mm, between tests for bending."""
+
+    @abstractmethod
+    def in_part(self, location: Place) -> tuple[Array, Array]:
+        """Return the points (n, 3) in the part of beads at locations of the chart, and the unit
+        normals (n, 3) there.
+        """
+
+    @property
+    def period(self) -> None:
+        """None: nothing goes around the layer; pieces that would are cut."""
+        return None
+
+    @property
+    def bends_freely(self) -> bool:
+        """It bends as the faces do."""
+        return False
+
+    def unroll(self, points: Array) -> Array:
+        """(n, 2) mm, the nearest places of the chart."""
+        return self.chart.flat[np.asarray(self.chart.mesh.tree.query(points)[1], dtype=np.intp)]
+
+    def wrap(self, flat: Array) -> Wrapped:
+        """Return a curve through the chart at the position of its beads."""
+        location = self.chart.find(flat)
+        points, normals = self.in_part(location)
+        axis_x, axis_y = self.axes(normals)
+        x = self.chart.heading(location)
+        return Wrapped(
+            points,
+            normals,
+            -np.unwrap(np.arctan2((x * axis_y).sum(axis=1), (x * axis_x).sum(axis=1))),
+        )
+
+    def heights(self, flat: Array) -> None:
+        """The layer height everywhere."""
+
+    def for_sheet(self: Same, flat: Array, sheet: float) -> Same:
+        """Return the same surface: it does not overlap itself."""
+        return self
+
+    def plane_rotation(self, azimuth: float) -> float:
+        """Return 0: the plane has only one orientation."""
+        return 0.0
+
+    def pieces(self, flat: Array, chord_error: float) -> Index:
+        """Return the number of pieces that the bend of each edge, sampled every `look` mm, requires."""
+        edge = np.diff(flat, axis=0)
+        length = np.linalg.norm(edge, axis=1)
+        looks = step_counts(length, self.look, 2)
+        edge_number = np.repeat(np.arange(len(edge)), looks + 1)
+        share = (
+            np.arange(len(edge_number)) - np.repeat(np.cumsum(looks + 1) - looks - 1, looks + 1)
+        ) / looks[edge_number]
+        points = self.in_part(
+            self.chart.find(flat[edge_number] + share[:, None] * edge[edge_number])
+        )[0]
+        inner = (
+            np.flatnonzero(
+                (edge_number[1:-1] == edge_number[:-2]) & (edge_number[1:-1] == edge_number[2:])
+            )
+            + 1
+        )
+        bend = (
+            np.linalg.norm(points[inner - 1] - 2.0 * points[inner] + points[inner + 1], axis=1)
+            / 8.0
+        )
+        max_bend = np.zeros(len(edge))
+        np.maximum.at(max_bend, edge_number[inner], bend)
+        count = np.maximum(np.ceil(looks * np.sqrt(max_bend / chord_error) - 1e-9), 1.0)
+        return np.asarray(count.astype(np.intp))
+
+    def axes(self, normals: Array) -> tuple[Array, Array]:
+        """As `axes`."""
+        return axes(normals)
+
+
+def axes(normals: Array) -> tuple[Array, Array]:
+    """Return the part's X (n, 3) projected onto layers with unit normals (n, 3), and the
+    direction to its left.
+
+    Where a normal is along X, the part's Y replaces X.
+    """
+    steep: Array = np.abs(normals[:, :1]) < MIN_HORIZONTAL
+    along = np.where(steep, np.eye(3)[0], np.eye(3)[1])
+    axis_x = along - (along * normals).sum(axis=1)[:, None] * normals
+    axis_x /= np.linalg.norm(axis_x, axis=1, keepdims=True)
+    return axis_x, np.cross(normals, axis_x)

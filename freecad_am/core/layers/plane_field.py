@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The field of parallel planes: bodies on the lowest plane cut layer by layer, together or
+separately.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.obstacles import Body
+from ..geometry.on_hub import Base
+from ..geometry.regions.region import Region
+from ..geometry.step_count import round_up
+from ..issues import InputError, Issue
+from ..parameters.filled import SolidParameters
+from ..slicing.solids.plane_sections import PlaneCuts
+from ..types import Array, Index
+from .margins import sections
+from .surface import Slice, Wrapped
+
+
+class Flat:
+    """The part of `LayerSurface` that is the same for every plane."""
+
+    @property
+    def period(self) -> None:
+        """Nothing goes round it."""
+        return None
+
+    @property
+    def bends_freely(self) -> bool:
+        """It does not bend."""
+        return False
+
+    def plane_rotation(self, azimuth: float) -> float:
+        """Return 0: the plane has only one orientation."""
+        return 0.0
+
+    def pieces(self, flat: Array, chord_error: float) -> Index:
+        """Chords are where they were."""
+        return np.ones(len(flat) - 1, dtype=np.intp)
+
+
+@dataclass(frozen=True)
+class PlaneLayer(Flat):
+    """The plane at a height (mm) along the Z of its frame, with the x and y of the frame. As
+    `LayerSurface`.
+    """
+
+    height: float
+
+    def unroll(self, points: Array) -> Array:
+        """(n, 2) mm."""
+        return points[:, :2].copy()
+
+    def wrap(self, flat: Array) -> Wrapped:
+        """Every point as it is, at the height."""
+        count = len(flat)
+        points = np.column_stack([flat, np.full(count, self.height)])
+        return Wrapped(points, np.tile([0.0, 0.0, 1.0], (count, 1)), np.zeros(count))
+
+    def heights(self, flat: Array) -> None:
+        """The layer height everywhere."""
+
+    def for_sheet(self, flat: Array, sheet: float) -> PlaneLayer:
+        """Return the same plane."""
+        return self
+
+    def axes(self, normals: Array) -> tuple[Array, Array]:
+        """The x and y of the plane."""
+        count = len(normals)
+        return np.tile([1.0, 0.0, 0.0], (count, 1)), np.tile([0.0, 1.0, 0.0], (count, 1))
+
+
+CLEARANCE_SHARE = 0.02  # of the chord error, mm, minimum; clearance of a plane from faces in it
+ROUNDING = 4e-7  # of the extent of the body: rounding of vertices stored as 32-bit numbers
+EXACT = 1e-6  # of a layer
+MAX_RISE_SHARE = (
+    1e-3  # largest rise of a facet, as a share of its size, with which it counts as plane
+)
+
+
+def count(top: float, strategy: SolidParameters) -> int:
+    """Return the number of layers of a part that reaches to `top` mm above the first plane.
+
+    It counts the layers cut below the top, a cut at the top if layers are cut in their tops,
+    and the layers of the margin.
+    """
+    levels = top / strategy.layer_height - strategy.share_of_cut
+    layers_cut = (
+        math.floor(levels + EXACT) + 1 if strategy.cut_at == "top" else math.ceil(levels - EXACT)
+    )
+    return (
+        layers_cut + max(round_up(strategy.margin / strategy.layer_height) - 1, 0)
+        if layers_cut > 0
+        else 0
+    )
+
+
+def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
+    """Yield the layers of bodies upwards, on the planes 0, h, 2 h ... mm above the base; layers
+    without regions are left out.
+
+    Raises InputError TOO_LOW if no layer reaches into the bodies.
+    """
+    cuts = [PlaneCuts(base.inside(body.vertices), body.triangles) for body in bodies]
+    top = max(cut.top for cut in cuts)
+    layers = count(top, strategy)
+    if not layers:
+        points = np.vstack([cut.vertices for cut in cuts])
+        raise InputError(
+            "TOO_LOW",
+            "strategy.layer_height",
+            "{:g} mm is too high for {}, {:.4g} mm high along strategy.direction (top at {}): no "
+            "layer is cut in its {}; use at most {:.3g} mm",
+            strategy.layer_height,
+            ", ".join(body.name for body in bodies),
+            top,
+            base.where(points[points[:, 2].argmax()]),
+            strategy.cut_at,
+            0.99 * top / max(strategy.share_of_cut, 0.001),
+        )
+    for number, regions, issues in cut_together(cuts, layers, strategy):
+        yield Slice(
+            number,
+            base,
+            PlaneLayer(number * strategy.layer_height),
+            regions,
+            issues,
+            share_before=number / layers,
+        )
+
+
+def cut_together(
+    cuts: Sequence[PlaneCuts], layers: int, strategy: SolidParameters
+) -> Iterator[tuple[int, tuple[Region, ...], tuple[Issue, ...]]]:
+    """Yield the first `layers` layers of bodies that have regions: number, regions, repairs."""
+    heights: Array = strategy.layer_height * (
+        np.arange(layers, dtype=np.float64) + strategy.share_of_cut
+    )
+    return sections([cut.loops(_off_faces(cut, heights, strategy)) for cut in cuts], strategy)
+
+
+def _off_faces(cut: PlaneCuts, heights: Array, strategy: SolidParameters) -> Array:
+    """Return the heights, moved slightly up where facets are in their planes, or down if layers
+    are cut in their tops.
+
+    Rounding would decide a cut through such facets.
+    """
+    aside = max(
+        CLEARANCE_SHARE * strategy.chord_error,
+        ROUNDING * float(np.abs(cut.vertices).max(initial=0.0)),
+    )
+    corners = cut.vertices[cut.faces]
+    low, high = corners[..., 2].min(axis=1), corners[..., 2].max(axis=1)
+    size = np.ptp(corners[..., :2], axis=1).max(axis=1)
+    lying = np.sort(
+        0.5 * (low + high)[(high - low < aside) & (high - low <= MAX_RISE_SHARE * size)]
+    )
+    is_near = np.searchsorted(lying, heights - aside) < np.searchsorted(
+        lying, heights + aside, side="right"
+    )
+    return np.where(is_near, heights + (-2.0 if strategy.cut_at == "top" else 2.0) * aside, heights)

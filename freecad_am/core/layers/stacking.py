@@ -1,0 +1,357 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Bodies prepared for cuts by planes: the stacking direction, and the plane under the
+bodies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ..collision.inside import inside_of
+from ..geometry.columns import columns
+from ..geometry.curves.guide import Guide
+from ..geometry.mesh.collapsed import doubled_areas
+from ..geometry.obstacles import Body
+from ..geometry.on_hub import Base, Group, SolidsOnHub, upright
+from ..geometry.plane import Plane
+from ..issues import NOTE, Issue, Text, Word
+from ..parameters.filled import SolidParameters
+from ..types import Array, Index
+
+AXES = np.array(
+    [[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], dtype=np.float64
+)
+MAX_FACES = 12  # flat faces on which the part may be placed, in addition to the axes
+PARALLEL = np.cos(np.radians(2.0))
+CONTACT_HEIGHTS = 0.5  # layer heights above the lowest point; facets no higher are on the platform
+MIN_STABILITY_RAD = float(np.radians(5.0))  # by which a part may lean without falling over
+LEAN_DIRECTIONS = 72  # directions in which it may
+AREA_TOLERANCE = 0.01  # of the area of the part; areas nearer together are the same
+HEIGHT_TOLERANCE = (
+    1e-3  # of a height; heights nearer together are the same, whatever chords a mesh has
+)
+SAMPLES = 20_000  # on all facets of a part of several bodies, at which it is looked whether others cover them, about
+MAX_PIECES = 64  # parts of an edge of a facet between such places
+
+
+class Stacked(NamedTuple):
+    """Figures of a stacking direction: unit vector (3,), unsupported area, mm2, height, mm, and
+    stability, rad.
+
+    stable: lean at which the part falls over, 0 or less where it falls over as it is.
+    """
+
+    direction: Array
+    area: float
+    height: float
+    stable: float = np.inf
+
+
+def prepare_stack(
+    bodies: Sequence[Body], strategy: SolidParameters, label: str, issues: tuple[Issue, ...] = ()
+) -> SolidsOnHub:
+    """Return the bodies on the plane through their lowest point.
+
+    The Z of the frame is the stacking direction, its origin in the middle under them. With
+    the direction `auto` a note reports the choice and its reason.
+    """
+    requested = strategy.stacking()
+    if requested is None:
+        ranking = rank_directions(bodies, strategy)
+        direction, issues = (
+            ranking[0].direction,
+            (*issues, _note(ranking, label, np.degrees(strategy.max_overhang))),
+        )
+    else:
+        direction = np.array(requested) / np.linalg.norm(requested)
+    turned = upright(np.zeros(3), direction)
+    local = np.vstack([body.vertices for body in bodies]) @ turned[:3, :3]
+    low, high = local.min(axis=0), local.max(axis=0)
+    turned[:3, 3] = turned[:3, :3] @ np.array(
+        [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), low[2]]
+    )
+    base = Base("the first layer", Plane(), turned)
+    return SolidsOnHub(label, (Group(base, tuple(bodies)),), strategy.chord_error, (), issues)
+
+
+def rank_directions(bodies: Sequence[Body], strategy: SolidParameters) -> list[Stacked]:
+    """Return the axes and the directions normal to large flat faces, best first.
+
+    Directions in which the part is stable by MIN_STABILITY_RAD come first, then the others.
+    Within each, the order is by unsupported area within AREA_TOLERANCE, then by height within
+    HEIGHT_TOLERANCE, then by the given order. Any mesh of the same part gives the same order.
+    """
+    vertices, normals, areas = facets(
+        bodies, strategy.chord_error if strategy.fuse == "auto" else None
+    )
+    directions = _candidates(normals, areas)
+    steep, standing = float(np.sin(strategy.max_overhang)), CONTACT_HEIGHTS * strategy.layer_height
+    middle = _centre_of_mass(bodies)
+    candidates = [
+        evaluate_direction(direction, vertices, normals, areas, steep, standing)._replace(
+            stable=_stability(vertices, direction, standing, middle)
+        )
+        for direction in directions
+    ]
+    return _ranked(
+        [candidate for candidate in candidates if candidate.stable >= MIN_STABILITY_RAD], areas
+    ) + _ranked(
+        [candidate for candidate in candidates if candidate.stable < MIN_STABILITY_RAD], areas
+    )
+
+
+def _ranked(candidates: list[Stacked], areas: Array) -> list[Stacked]:
+    """Return directions, best first, whatever the part is on."""
+    ranked: list[Stacked] = []
+    while candidates:
+        max_area = min(candidate.area for candidate in candidates) + AREA_TOLERANCE * float(
+            areas.sum()
+        )
+        finalists = [candidate for candidate in candidates if candidate.area <= max_area]
+        low = min(candidate.height for candidate in finalists)
+        ranked.append(
+            next(
+                candidate
+                for candidate in finalists
+                if candidate.height <= low * (1.0 + HEIGHT_TOLERANCE)
+            )
+        )
+        candidates = [candidate for candidate in candidates if candidate is not ranked[-1]]
+    return ranked
+
+
+def _centre_of_mass(bodies: Sequence[Body]) -> Array:
+    """Return the centre of mass (3,) of closed bodies, or of their surfaces if they enclose no
+    volume.
+    """
+    corners = np.concatenate([body.corners() for body in bodies])
+    origin = corners.reshape(-1, 3).mean(axis=0)
+    local = corners - origin
+    weights = np.einsum("mk,mk->m", local[:, 0], np.cross(local[:, 1], local[:, 2]))
+    centres = local.sum(axis=1) / 4.0
+    if abs(weights.sum()) <= 1e-9 * float(np.ptp(local.reshape(-1, 3), axis=0).max()) ** 3:
+        weights, centres = np.linalg.norm(doubled_areas(corners), axis=1), local.mean(axis=1)
+    total_weight = float(weights.sum())
+    middle: Array = origin + weights @ centres / (total_weight or 1e-300)
+    return middle
+
+
+def _stability(corners: Array, direction: Array, standing: float, middle: Array) -> float:
+    """Return the lean, rad, at which the centre of mass (3,) of triangles (m, 3, 3) leaves the
+    contact area.
+
+    The contact area is the part no higher than `standing` mm above the lowest point along a
+    direction (3,); the lean is the smallest over all directions.
+    """
+    frame = upright(np.zeros(3), direction)[:3, :3]
+    local = corners @ frame
+    foot = float(local[..., 2].min())
+    level = foot + standing
+    points = [local[local[..., 2] <= level][:, :2]]
+    for k in range(3):  # where edges cross the contact height
+        start, end = local[:, k], local[:, k - 1]
+        crosses_level = (start[:, 2] <= level) != (end[:, 2] <= level)
+        share = (level - start[crosses_level, 2]) / (
+            end[crosses_level, 2] - start[crosses_level, 2]
+        )
+        points.append(start[crosses_level, :2] + share[:, None] * (end - start)[crosses_level, :2])
+    flat, centre = np.concatenate(points), middle @ frame
+    angle = np.linspace(0.0, 2.0 * np.pi, LEAN_DIRECTIONS, endpoint=False)
+    towards = np.stack([np.cos(angle), np.sin(angle)])
+    reach = ((flat - centre[:2]) @ towards).max(axis=0)
+    return float(np.arctan2(reach.min(), max(float(centre[2]) - foot, 1e-9)))
+
+
+def facets(bodies: Sequence[Body], slit: float | None) -> tuple[Array, Array, Array]:
+    """Return corners (m, 3, 3), unit normals (m, 3) and areas (m,) of all triangles with an
+    area.
+
+    Area covered by another body, within a slit of `slit` mm, does not count: touching bodies
+    are one. None: each body counts separately.
+    """
+    corners = np.concatenate([body.corners() for body in bodies])
+    normal = doubled_areas(corners)
+    doubled = np.linalg.norm(normal, axis=1)
+    has_area = doubled > 1e-12
+    corners, normal, area = (
+        corners[has_area],
+        normal[has_area] / doubled[has_area, None],
+        0.5 * doubled[has_area],
+    )
+    if len(bodies) > 1 and slit is not None:
+        body_number = np.repeat(np.arange(len(bodies)), [len(body.triangles) for body in bodies])[
+            has_area
+        ]
+        area = area * _free_share(bodies, body_number, corners, normal, area, slit)
+    return corners, normal, area
+
+
+def _free_share(
+    bodies: Sequence[Body],
+    body_number: Index,
+    corners: Array,
+    normals: Array,
+    areas: Array,
+    slit: float,
+) -> Array:
+    """Return the share (m,) of each triangle of the body `body_number` (m,) that no other body
+    covers, tested `slit` mm outside.
+    """
+    divisions = np.clip(np.ceil(np.sqrt(SAMPLES * areas / areas.sum())), 1, MAX_PIECES).astype(
+        np.intp
+    )
+    covered = np.zeros(len(areas))
+    insides = [inside_of(body) for body in bodies]
+    for count in np.unique(divisions):
+        group_rows = np.flatnonzero(divisions == count)
+        shares = _middles(int(count))
+        samples = (
+            np.einsum("pk,mkc->mpc", shares, corners[group_rows]) + slit * normals[group_rows, None]
+        )
+        is_covered = np.zeros(samples.shape[:2], dtype=bool)
+        for number, inside in enumerate(insides):
+            foreign = np.flatnonzero(body_number[group_rows] != number)
+            if inside is not None and len(foreign):
+                is_covered[foreign] |= inside.holds(samples[foreign].reshape(-1, 3)).reshape(
+                    len(foreign), -1
+                )
+        covered[group_rows] = is_covered.mean(axis=1)
+    return 1.0 - covered
+
+
+def _middles(count: int) -> Array:
+    """Return shares (count^2, 3) of the corners at the middles of the parts of a triangle whose
+    edges are cut in `count`.
+    """
+    i, j = (grid.ravel() for grid in np.meshgrid(np.arange(count), np.arange(count), indexing="ij"))
+    up = i + j < count
+    share_a = np.where(up, i + 1.0 / 3.0, count - 1 - i + 2.0 / 3.0)
+    share_b = np.where(up, j + 1.0 / 3.0, count - 1 - j + 2.0 / 3.0)
+    shares: Array = np.stack([share_a, share_b, count - share_a - share_b], axis=1) / count
+    return shares
+
+
+def _candidates(normals: Array, areas: Array) -> list[Array]:
+    """Return unit directions to evaluate: the axes first, then against the normals of the
+    largest flat faces.
+
+    The order does not depend on the triangulation.
+    """
+    keys = np.round(normals, 4) + 0.0
+    faces, number = np.unique(keys, axis=0, return_inverse=True)
+    size = np.bincount(np.ravel(number), weights=areas)
+    directions = list(AXES)
+    shares = np.round(size / max(float(areas.sum()), 1e-300), 3)
+    # equal faces are ordered by direction, rounded to the digits that a mesh has
+    for k in np.lexsort(np.vstack([columns(faces.round(2)), -shares]))[: 4 * MAX_FACES]:
+        direction = -faces[k] / np.linalg.norm(faces[k])
+        if (
+            size[k] > AREA_TOLERANCE * areas.sum()
+            and max(float(direction @ accepted) for accepted in directions) < PARALLEL
+        ):
+            directions.append(direction)
+        if len(directions) >= len(AXES) + MAX_FACES:
+            break
+    return directions
+
+
+def evaluate_direction(
+    direction: Array, corners: Array, normals: Array, areas: Array, steep: float, standing: float
+) -> Stacked:
+    """Return the figures of a unit direction (3,) from the facets of a part.
+
+    Unsupported facets overhang by more than `steep`, the sine of an angle from the direction,
+    and reach more than `standing` mm above the lowest point.
+    """
+    heights = corners @ direction
+    low, high = float(heights.min()), float(heights.max())
+    over = (normals @ direction < -steep - 1e-9) & (heights.max(axis=1) > low + standing)
+    return Stacked(direction, float(areas[over].sum()), high - low)
+
+
+def _note(ranking: Sequence[Stacked], label: str, lean: float) -> Issue:
+    best_direction = ranking[0]
+    upright_one = next(
+        candidate
+        for candidate in ranking
+        if candidate.direction is AXES[0] or np.array_equal(candidate.direction, AXES[0])
+    )
+    comparison = (
+        ""
+        if best_direction is upright_one
+        else (
+            Text(
+                "; along (0, 0, 1) they would be {:.4g} mm^2 and {:.4g} mm",
+                upright_one.area,
+                upright_one.height,
+            )
+        )
+    )
+    x, y, z = (round(float(value), 6) + 0.0 for value in best_direction.direction)
+    return Issue(
+        NOTE,
+        "DIRECTION",
+        Text(
+            "{} is stacked along ({:g}, {:g}, {:g}): {:.4g} mm^2 overhang by more than {:.4g} "
+            "deg, and the height is {:.4g} mm{}",
+            label,
+            x,
+            y,
+            z,
+            best_direction.area,
+            lean,
+            best_direction.height,
+            Word(comparison),
+        ),
+    )
+
+
+# ---- Overhang of the facets of a part, before it is cut
+
+MIN_LEAN_RAD = 1e-9  # rad; what leans by less is a wall
+
+
+class Leaning(NamedTuple):
+    """Overhanging facets: corners (m, 3, 3) mm, overhang (m,) rad, rising, and areas (m,) mm2.
+    total_area: mm2 of the part.
+    """
+
+    corners: Array
+    lean: Array
+    area: Array
+    total_area: float
+
+    def steeper_than(self, angle: float) -> tuple[Array, float]:
+        """Return the corners (k, 3, 3) of facets that overhang by more than an angle, rad, and their
+        area, mm2.
+        """
+        first_steeper = int(np.searchsorted(self.lean, angle + MIN_LEAN_RAD, side="right"))
+        return self.corners[first_steeper:], float(self.area[first_steeper:].sum())
+
+
+def find_leaning(
+    bodies: Sequence[Body], base: Base, standing: float, slit: float | None = None
+) -> Leaning:
+    """Return the facets of bodies that face against the stacking direction of layers on a base,
+    or along a guide.
+
+    The overhang of a wall is 0, of a ceiling a right angle. Facets at most `standing` mm
+    above the lowest point are carried by the surface under the part. slit: as in
+    `stacking.facets`.
+    """
+    corners, normals, areas = facets(bodies, slit)
+    inside = base.inside(corners)
+    heights = np.asarray(base.surface.distance(inside))
+    directions = base.frame[:3, 2]
+    if isinstance(base.surface, Guide):
+        middles = base.surface.distance(inside.mean(axis=1))
+        directions = base.rotate_to_part(base.surface.at(middles)[1])
+    lean = np.arcsin(np.clip(-(normals * directions).sum(axis=1), -1.0, 1.0))
+    out = np.flatnonzero(
+        (lean > MIN_LEAN_RAD) & (areas > 0.0) & (heights.max(axis=1) > heights.min() + standing)
+    )
+    order = out[np.argsort(lean[out], kind="stable")]
+    return Leaning(corners[order], lean[order], areas[order], float(areas.sum()))

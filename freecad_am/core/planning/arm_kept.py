@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The links of a robot in its cell, and against each other, as `cell.arm_clearance` keeps them clear while planning."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..collision.bead_ends import LINK_GRAIN, Beads
+from ..geometry.cylinders import Cylinder
+from ..geometry.obstacles import Body
+from ..issues import ERROR, Issue, Text, Word
+from ..kinematics.cell import Cell
+from ..kinematics.links.contact import BASE, NOZZLE, PART, TORCH, ArmContact, Touches
+from ..toolpath import Bead, Toolpath
+from ..types import Array, Index, Mask
+from .points import Points
+from .rapids.clearance import evenly
+
+Place = tuple[int, int]
+Cylinders = Sequence[Sequence[Cylinder]]
+
+CODE = "ARM_CLEARANCE"
+STEP, SLIDE = (
+    float(np.radians(2.0)),
+    10.0,
+)  # of the joint that moves most on rapids, rad and mm, between two looks
+
+
+@dataclass(frozen=True)
+class ArmKept:
+    """Links in their cell, and how many points of the deposit are there when a bead begins, by layer and index."""
+
+    contact: ArmContact
+    before: Mapping[Place, int]
+
+    def touches(self, joints: Array, points: Points, bead_ids: Sequence[Place]) -> Touches:
+        """Return the contacts of links with joints (T, axes) at the points of these beads."""
+        return self.contact.touches(
+            joints,
+            np.array([self.moment(bead_id) for bead_id in bead_ids], dtype=np.int64)[points.bead],
+        )
+
+    def rotations_near(self, joints: Array, bead: Index, bead_ids: Sequence[Place]) -> Mask:
+        """(R, T) with which joints (R, T, axes), of R rotations at points of the beads (T,), a link comes too near."""
+        when = np.array([self.moment(bead_id) for bead_id in bead_ids], dtype=np.int64)[bead]
+        met = self.contact.touches(joints.reshape(-1, joints.shape[2]), np.tile(when, len(joints)))
+        return met.any.reshape(joints.shape[:2])
+
+    def moment(self, bead_id: Place) -> int:
+        """How many points are there before a bead; before its layer, of one that was divided since."""
+        return self.before.get(bead_id, self.before[bead_id[0], 0])
+
+
+def build_arm_clearance(toolpath: Toolpath, cell: Cell, cylinders: Cylinders) -> ArmKept | None:
+    """Return the link clearance check of a job, with `cylinders` for each link.
+
+    None if the job does not ask for a clearance or the link geometry is unknown.
+    """
+    beads = [bead for _, _, bead in toolpath]
+    contact = contact_of(
+        beads,
+        cell,
+        cylinders,
+        toolpath.surroundings,
+        toolpath.bead_width or toolpath.layer_height,
+        toolpath.layer_height,
+    )
+    if contact is None:
+        return None
+    counts = np.cumsum([0, *(len(bead) for bead in beads)])
+    points_before = {
+        (layer, index): int(count)
+        for (layer, index, _), count in zip(toolpath, counts, strict=False)
+    }
+    return ArmKept(contact, points_before)
+
+
+def contact_of(
+    beads: Sequence[Bead],
+    cell: Cell,
+    cylinders: Cylinders,
+    bodies: Sequence[Body],
+    width: float,
+    height: float,
+) -> ArmContact | None:
+    """Return the links against bodies and beads; width, height: mm, for beads without their own."""
+    if cell.arm_clearance is None or not cylinders:
+        return None
+    deposited = Beads.of(beads, width, height).solid(LINK_GRAIN)
+    return ArmContact(cell, cylinders, bodies, deposited, cell.arm_clearance)
+
+
+def check_moves(
+    contact: ArmContact, start: Array, end: Array, deposited: Index
+) -> tuple[Index, Touches]:
+    """Find links that come too near on moves that are straight in the joints (k, axes).
+
+    deposited: (k,) number of printed points at each move. Returns the move (l,) of each check and
+    its contacts. Moves with NaN joints have no contacts.
+    """
+    steps = np.where(contact.cell.machine.chain.sliding, SLIDE, STEP)
+    step_count = np.nan_to_num(np.abs(end - start) / steps).max(axis=1, initial=0.0)
+    move, share = evenly(1 + np.ceil(step_count).astype(np.intp))
+    joints = start[move] + share[:, None] * (end - start)[move]
+    return move, contact.touches(joints, deposited[move])
+
+
+def clearance_issue(
+    cell: Cell, link: str, what: str, layer: int, bead: int, on_way: bool = False
+) -> Issue:
+    """Build the issue for a link that comes too near to something at a bead or on the rapid to it.
+
+    `link` is a name of `ArmContact.links`.
+    """
+    where = " on the rapid way to the bead" if on_way else ""
+    stands = what in [external_link.name for external_link in cell.external_links]
+    if link == NOZZLE:
+        moved = (
+            "lift the part over it by cell.platform, or move it in cell.external"
+            if stands
+            else ("move it in cell.obstacles, the part or cell.deposition_point")
+        )
+        return Issue(
+            ERROR,
+            CODE,
+            Text("the nozzle touches {}{}; {}", what, Word(where), Word(moved)),
+            layer,
+            bead,
+        )
+    name = (
+        "the part"
+        if link == PART
+        else "the torch"
+        if link == TORCH
+        else "the base"
+        if link == BASE
+        else Text("link {}", link)
+    )
+    remedy = (
+        "move one in cell.external or the part"
+        if stands
+        else "move the part or cell.deposition_point"
+    )
+    return Issue(
+        ERROR,
+        CODE,
+        Text(
+            "{} comes nearer than {:g} mm to {}, or touches it{}; {}, try another cell.branch, or lower "
+            "cell.arm_clearance",
+            Word(name),
+            cell.arm_clearance,
+            what,
+            Word(where),
+            Word(remedy),
+        ),
+        layer,
+        bead,
+    )

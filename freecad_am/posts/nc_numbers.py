@@ -1,0 +1,305 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What programs of five-axis machines say in numbers, whatever the controller: axis words, direction vectors, feeds."""
+
+from __future__ import annotations
+
+import math
+import re
+import textwrap
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..core.issues import InputError
+from ..core.program import DEPOSIT, LINEAR, LINEAR_MOVE, RAPID, ROTARY, Moves, Program, slide_feeds
+from ..core.types import Array
+from .catalogue import plain
+from .parts import place
+from .refusals import refuse_incomplete
+
+
+def wrapped(text: str) -> list[str]:
+    """A remark on as many lines as it needs, in plain characters."""
+    return textwrap.wrap(plain(text), 80)
+
+
+def refuse_table(program: Program, post: str) -> None:
+    """Raises InputError UNSUPPORTED_AXES, NOTHING_TO_WRITE, UNREACHABLE, NO_POSITIONS: what no such program can say."""
+    refuse_incomplete(program, post, len(program.axis_names))
+    linear = [
+        name
+        for name, kind in zip(program.axis_names, program.axis_kinds, strict=True)
+        if kind == LINEAR
+    ]
+    rotary = [
+        name
+        for name, kind in zip(program.axis_names, program.axis_kinds, strict=True)
+        if kind == ROTARY
+    ]
+    if (
+        sorted(linear) != ["X", "Y", "Z"]
+        or not set(rotary) <= set("ABC")
+        or len(set(rotary)) != len(rotary)
+    ):
+        raise InputError(
+            "UNSUPPORTED_AXES",
+            "cell.machine",
+            "the post {} writes linear axes X Y Z and rotary axes of A B C, one each; the machine has {}: name its joints "
+            "mx my mz and a, b or c",
+            post,
+            " ".join(program.axis_names),
+        )
+    if program.motion == "cartesian" and any(
+        run.position is None or run.direction is None
+        for run in program.moves
+        if run.kind == DEPOSIT
+    ):
+        raise InputError(
+            "NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`"
+        )
+
+
+def refuse_words(program: Program, reserved: frozenset[str]) -> None:
+    """Raises InputError DEPOSIT_WORD for words that cannot switch the deposit: other than M or H
+    words, the same one twice, or words with another meaning (`reserved`; H for every such word).
+    """
+    words = {
+        "program.nc.deposit_on": program.nc.deposit_on,
+        "program.nc.deposit_off": program.nc.deposit_off,
+    }
+    if not any(words.values()):
+        return
+    for key, word in words.items():
+        if not re.fullmatch(r"M\d{1,3}|H\d{1,2}=\d{1,5}", word):
+            raise InputError(
+                "DEPOSIT_WORD",
+                key,
+                "{!r} is not a word such as M7 or H2=1; give one for on and one for off",
+                word,
+            )
+        if re.sub(r"^([MH])0+(?=\d)", r"\1", word) in reserved or (
+            word.startswith("H") and "H" in reserved
+        ):
+            raise InputError(
+                "DEPOSIT_WORD",
+                key,
+                "{} has another meaning on the controller; use another word",
+                word,
+            )
+    if program.nc.deposit_on == program.nc.deposit_off:
+        raise InputError(
+            "DEPOSIT_WORD", key, "{} cannot switch both on and off; give two different words", word
+        )
+
+
+def refuse_wire_output(program: Program, highest: int) -> None:
+    """Raises InputError WIRE_OUTPUT where the program sets the speed of the wire by an analogue
+    output beyond `highest`.
+    """
+    if any(run.wire is not None for run in program.moves) and program.nc.wire_output > highest:
+        raise InputError(
+            "WIRE_OUTPUT",
+            "program.nc.wire_output",
+            "the controller program sets analogue outputs 1 to {}, not {}; choose one in this "
+            "range",
+            highest,
+            program.nc.wire_output,
+        )
+
+
+def refuse_setup(post: str, motion: str, setup: str) -> None:
+    """Raises InputError UNSUPPORTED_SETUP for other machines than ones with rotary axes; both
+    motions are supported.
+    """
+    if setup != "rotary-table":
+        raise InputError(
+            "UNSUPPORTED_SETUP",
+            "cell.setup",
+            "the post {} cannot write {} ({} motion); use rotary-table",
+            post,
+            setup,
+            motion,
+        )
+
+
+def dwell(address: str, seconds: float) -> list[str]:
+    """Standing still for a time, to 0.001 s; nothing for no time."""
+    return [f"G4 {address}{max(seconds, 0.001):.3f}"] if seconds > 0.0 else []
+
+
+# of mm and deg; Siemens' manual on 5-axis machining asks for 5 of positions and 6 of direction vectors
+DECIMALS, VECTOR_DECIMALS = 5, 6
+# significant digits of a feed, within the range of every controller; digits of the wire speed
+# output
+FEED_DIGITS, WIRE_DIGITS = 7, 5
+SLOWEST, FASTEST = 0.001, 999_999.0
+# mm: where the linear axes go less than this, their speed is no measure of the time of a move
+SHORTEST_WAY = 0.01
+# feed as one over the time of the move, and as a speed
+TIME, PATH = "G93", "G94"
+
+
+def controller_values(joints: Array, kinds: Sequence[str]) -> Array:
+    """Joint values (n, axes) in mm and deg, as the text has them."""
+    factor = np.array([1.0 if kind == LINEAR else math.degrees(1.0) for kind in kinds])
+    values: Array = np.round(joints * factor, DECIMALS) + 0.0
+    return values
+
+
+def rows(template: str, values: Array) -> list[str]:
+    """One text per row of the values (n, columns)."""
+    return [template % row for row in zip(*values.T.tolist(), strict=True)]
+
+
+def template(names: Sequence[str]) -> str:
+    """Plain words with these addresses: X%.5f Y%.5f."""
+    return " ".join(f"{name}%.{DECIMALS}f" for name in names)
+
+
+def feed(value: float) -> str:
+    """A feed with its significant digits, never in exponents."""
+    return f"F{_significant(value, FEED_DIGITS)}"
+
+
+def _significant(value: float, digits: int) -> str:
+    return f"{value:.{max(digits - 1 - math.floor(math.log10(value)), 0)}f}"
+
+
+def level(value: float) -> str:
+    """A value of an analogue input, never in exponents."""
+    text = f"{value:.6f}".rstrip("0")
+    return f"{text}0" if text.endswith(".") else text
+
+
+def wire(program: Program, speeds: Sequence[float]) -> list[str]:
+    """Values of the analogue output at speeds of the wire, mm/s."""
+    values = [program.nc.wire_gain * 0.06 * speed for speed in speeds]
+    return [_significant(value, WIRE_DIGITS) if value > 1e-9 else "0" for value in values]
+
+
+def insert_wire_statements(
+    program: Program, moves: Moves, lines: Sequence[str], statement: str
+) -> list[str]:
+    """The lines of a run of moves, the last ones one per move, with the statement that sets the
+    analogue output in front of each move at which its value changes. The first value was set before
+    the run.
+    """
+    if moves.wire is None:
+        return list(lines)
+    values = wire(program, moves.wire.tolist())
+    changed = [value != previous for previous, value in zip(values, values[1:])]
+    head_count = len(lines) - len(values) + 1
+    statements = [
+        [statement.format(value)] if new else []
+        for new, value in zip(changed, values[1:], strict=True)
+    ]
+    return [
+        *lines[:head_count],
+        *(
+            line
+            for words, move in zip(statements, lines[head_count:], strict=True)
+            for line in (*words, move)
+        ),
+    ]
+
+
+class Feeds:
+    """Feed words of the moves of a program, asked for run by run in the order of motion.
+
+    Moves of axes last as long as planned: F is one over that time in minutes (G93). With
+    `program.nc.path_feed` it is the speed of the linear axes in mm/min (G94) wherever these move.
+    Beads in positions run at the speed of the tip. slowest: mm/min or deg/min, a controller's lower
+    limit for any programmed time; slower moves get this speed for the linear axes, or for the
+    rotary ones if only these move.
+    """
+
+    def __init__(self, program: Program, slowest: float = 0.0) -> None:
+        self.linear = np.array([kind == LINEAR for kind in program.axis_kinds])
+        self.kinds, self.by_tip = program.axis_kinds, program.motion == "cartesian"
+        self.path_feed, self.slowest = program.nc.path_feed and not self.by_tip, slowest
+        self.before: Array | None = None
+        self.after_tip = False
+
+    def __call__(self, moves: Moves) -> list[str]:
+        """One text per move: the sort of feed and its value, such as 'G93 F120.0000' or 'G94 F300.0000'.
+
+        Raises InputError MOVE_SPEED or MOVE_TIME, naming the bead.
+        """
+        axis_values = controller_values(moves.joints, self.kinds)
+        start = axis_values[0] if self.before is None else self.before
+        self.before = axis_values[-1]
+        if moves.interpolation == LINEAR_MOVE:
+            self.after_tip = True
+            return [f"{PATH} {feed(value)}" for value in _tip_feeds(moves).tolist()]
+        inverse = _inverse_times(moves)
+        steps = np.diff(np.concatenate([start[None], axis_values]), axis=0)
+        slide_lengths = np.linalg.norm(steps[:, self.linear], axis=1)
+        speeds = 60.0 * slide_feeds(start, axis_values, 60.0 / inverse, self.kinds)
+        turning = slide_lengths == 0.0
+        speeds[turning] = (np.linalg.norm(steps[:, ~self.linear], axis=1) * inverse)[turning]
+        by_speed = (speeds > 0.0) & (speeds < self.slowest)
+        if self.path_feed and moves.kind != RAPID:
+            by_speed |= (slide_lengths >= SHORTEST_WAY) & (speeds >= SLOWEST) & (speeds <= FASTEST)
+        by_speed[
+            0
+        ] &= not self.after_tip  # a text that ended in a position does not give the path length
+        self.after_tip = False
+        return [
+            f"{PATH} {feed(speed)}" if is_slow else f"{TIME} {feed(by_time)}"
+            for is_slow, speed, by_time in zip(
+                by_speed.tolist(), speeds.tolist(), inverse.tolist(), strict=True
+            )
+        ]
+
+
+def blocks(words: Sequence[str], feeds: Sequence[str]) -> list[str]:
+    """G1 blocks with words and feeds; the first block, and blocks that change it, have the sort of
+    feed in front.
+    """
+    lines, sort = [], ""
+    for word, (sort_of_feed, value) in zip(words, (feed.split() for feed in feeds), strict=True):
+        if not sort:
+            lines.append(sort_of_feed)
+        lines.append(
+            f"{sort_of_feed} G1 {word} {value}"
+            if sort not in ("", sort_of_feed)
+            else f"G1 {word} {value}"
+        )
+        sort = sort_of_feed
+    return lines
+
+
+def _inverse_times(moves: Moves) -> Array:
+    """(n,) 1/min of the moves."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse: Array = 60.0 / moves.duration
+    if moves.kind == RAPID:  # one that hardly moves may take no time at all
+        inverse = np.clip(np.nan_to_num(inverse, nan=FASTEST, posinf=FASTEST), SLOWEST, FASTEST)
+    wrong = ~((inverse >= SLOWEST) & (inverse <= FASTEST))
+    if wrong.any():
+        raise InputError(
+            "MOVE_TIME",
+            place(moves),
+            "a move of {:.4g} s cannot be written; the range is {:.2g} to {:.0f} s: use another "
+            "speed or a larger chord error",
+            moves.duration[wrong][0],
+            60.0 / FASTEST,
+            60.0 / SLOWEST,
+        )
+    return inverse
+
+
+def _tip_feeds(moves: Moves) -> Array:
+    """(n,) mm/min at the tip."""
+    feeds: Array = 60.0 * moves.speed
+    wrong = ~((feeds >= SLOWEST) & (feeds <= FASTEST))
+    if wrong.any():
+        raise InputError(
+            "MOVE_SPEED",
+            place(moves),
+            "{:.4g} mm/s cannot be written; use {:.2g} to {:.0f} mm/s",
+            moves.speed[wrong][0],
+            SLOWEST / 60.0,
+            FASTEST / 60.0,
+        )
+    return feeds
