@@ -13,12 +13,13 @@ from typing import Any
 import numpy as np
 
 from ..core.inspection import table
-from ..core.inspection.bands import band_of, bands, css
 from ..core.issues import InfeasibleError, InputError, Issue, Text, Word
-from ..core.types import Array
+from ..plots.chart import Bars, Chart, Quantity
+from ..plots.deviation import UP, X, dots_by_band
+from ..report.pictures import HALF, MAP, MISSING, draw_charts, plotting_modules
 from ..report.scan_figures import key_of
-from ..report.style import STYLE
-from ..report.svg import Plot
+from ..report.tables import grid_of
+from ..report.template import fill_page
 from . import paths
 from .outputs import folder as outputs
 
@@ -26,27 +27,24 @@ from .outputs import folder as outputs
 
 _MAX_POINTS = 6000  # points of a map
 _TILT = np.radians(30.0)  # viewing angle of the map, from above
-_DOT = 1.7
 
 
 def render(planned: str, results: list[Any], labels: list[str]) -> str:
     """The page of inspections of the same object."""
-    title = f"{escape(planned)}: measured against planned"
+    title = f"{planned}: measured against planned"
     html_parts = [
-        f'<header><h1>{title}</h1></header><p class="sub">Defects are widths of the narrowest zone (ISO 1101); '
+        f'<header><h1>{escape(title)}</h1></header><p class="sub">Defects are widths of the narrowest zone (ISO 1101); '
         "deviations are positive where there is more than planned.</p>",
         _table(results, labels),
     ]
     for result, label in zip(results, labels, strict=True):
+        pictures = draw_charts([_map(result), _histogram(result)], HALF, MAP)
         html_parts.append(
-            f'<h2>{escape(label)}</h2><div class="grid"><figure>{_map(result)}{_key(result.tolerance)}</figure>'
-            f"<figure>{_histogram(result)}</figure></div>{_notes(result)}"
+            f"<h2>{escape(label)}</h2>{grid_of(pictures)}{_key(result.tolerance)}{_notes(result)}"
         )
-    return (
-        f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
-        f'<meta name="viewport" content="width=device-width,initial-scale=1"><style>{STYLE}</style></head>'
-        f"<body><main>{''.join(html_parts)}</main></body></html>\n"
-    )
+    if plotting_modules() is None:
+        html_parts.append(f'<p class="sub">{MISSING}</p>')
+    return fill_page(title, html_parts)
 
 
 def _table(results: list[Any], labels: list[str]) -> str:
@@ -66,69 +64,40 @@ def _number(value: float, unit: str) -> str:
     return table.Row("", value, unit).text if unit or float(value).is_integer() else f"{value:.1f}"
 
 
-def _map(result: Any) -> str:
-    """The points as they are seen from the front, a little from above."""
+def _map(result: Any) -> Chart:
+    """Return the points as they are seen from the front, a little from above, the nearer half on
+    top."""
     selected = np.unique(np.linspace(0, len(result.points) - 1, _MAX_POINTS).astype(np.intp))
     selected = selected[result.counted[selected]]
     x, y, z = result.points[selected].T
     up = z * np.cos(_TILT) + y * np.sin(_TILT)
-    order = np.argsort(-y)  # the nearer ones last
-    plot = _framed("Deviation map, seen from the front", x, up)
-    shades, number = (
-        [css(band.colour) for band in bands(result.tolerance)],
-        band_of(result.deviation[selected], result.tolerance),
-    )
-    px, py = plot.to_x(x), plot.to_y(up)
-    plot.elements += [
-        f'<circle cx="{px[k]:.1f}" cy="{py[k]:.1f}" r="{_DOT}" fill="{shades[number[k]]}"/>'
-        for k in order
-    ]
-    return plot.text()
-
-
-def _framed(title: str, x: Array, y: Array) -> Plot:
-    """A plot in which lengths across and up are the same."""
-    plot = Plot(title, (0.0, 1.0), (0.0, 1.0), "mm", "mm", height=330)
-    wide, high = plot.width - plot.left - plot.right, plot.height - plot.top - plot.bottom
-    scale = 1.08 * max(float(np.ptp(x)) / wide, float(np.ptp(y)) / high, 1e-6)
-    plot.x, plot.y = (
-        (
-            0.5 * (values.min() + values.max()) - 0.5 * scale * size,
-            0.5 * (values.min() + values.max()) + 0.5 * scale * size,
+    is_near = y <= np.median(y)
+    dots = [
+        dot
+        for half in (~is_near, is_near)
+        for dot in dots_by_band(
+            x[half], up[half], result.deviation[selected][half], result.tolerance
         )
-        for values, size in ((x, wide), (y, high))
-    )
-    return plot
+    ]
+    return Chart("Deviation map, seen from the front", X, UP, tuple(dots), plane=True)
 
 
-def _histogram(result: Any) -> str:
+def _histogram(result: Any) -> Chart:
+    """Return the points by deviation, with room for both limits."""
     edges, counts = result.spread.edges, result.spread.counts
-    low, high = min(float(edges[0]), -result.tolerance), max(float(edges[-1]), result.tolerance)
-    plot = Plot(
+    limit = result.tolerance
+    low, high = min(edges[0], -1.05 * limit), max(edges[-1], 1.05 * limit)
+    return Chart(
         "Points by deviation",
-        (low, high),
-        (0.0, 1.05 * float(counts.max())),
-        "deviation, mm",
-        "points",
-        height=330,
+        Quantity("deviation", "mm"),
+        Quantity("points"),
+        bars=Bars("points", np.r_[low, edges, high], np.r_[0, counts, 0].astype(float)),
+        upright=((-limit, ""), (limit, "tolerance")),
     )
-    shades = [css(band.colour) for band in bands(result.tolerance)]
-    number = band_of(0.5 * (edges[:-1] + edges[1:]), result.tolerance)
-    lefts, top, ground = plot.to_x(edges), plot.to_y(counts), float(plot.to_y(np.zeros(1))[0])
-    plot.elements += [
-        f'<rect x="{lefts[k]:.1f}" y="{top[k]:.1f}" width="{max(lefts[k + 1] - lefts[k] - 0.5, 0.5):.1f}" '
-        f'height="{ground - top[k]:.1f}" fill="{shades[number[k]]}"/>'
-        for k in range(len(counts))
-    ]
-    for limit in plot.to_x(np.array([-result.tolerance, result.tolerance])):
-        plot.elements.append(
-            f'<line class="asked" x1="{limit:.1f}" x2="{limit:.1f}" y1="{plot.top}" y2="{ground:.1f}"/>'
-        )
-    return plot.text()
 
 
 def _key(tolerance: float) -> str:
-    return f"<figcaption>deviation, mm: {key_of(tolerance)}</figcaption>"
+    return f'<p class="sub">deviation, mm: {key_of(tolerance)}</p>'
 
 
 def _notes(result: Any) -> str:

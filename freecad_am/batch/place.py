@@ -14,9 +14,7 @@ import numpy as np
 from ..core.issues import ERROR, NOTE, InputError, Issue, Text, Word, has_errors
 from ..core.one_thread import one_thread
 from ..core.placement.place import Placed, outer, ranked
-from ..core.types import Array
-from ..report.style import STYLE
-from ..report.svg import Plot
+from ..report.template import fill_page
 from . import paths
 from .job.features import in_words_of_job
 from .job.job import SECTIONS, Job
@@ -33,7 +31,7 @@ _OUT_OF_RANGE_COLOUR = "#b9bec8"
 
 def render(name: str, placement: Placed) -> str:
     """The page of the poses of a job."""
-    title = f"{escape(name)}: where it can stand"
+    title = f"{name}: where it can stand"
     serve = sum(pose_result.feasible for pose_result in placement.judged)
     what = placement.moves.replace("-", " ")
     text = (
@@ -41,19 +39,17 @@ def render(name: str, placement: Placed) -> str:
         "show. Each square is the best of its rotations; its colour is the least share of a joint's "
         "range that is left to a limit, grey where the pose is not feasible; the number is the share of points served."
     )
-    html_parts = [f'<header><h1>{title}</h1></header><p class="sub">{text}</p>', _table(placement)]
+    html_parts = [
+        f'<header><h1>{escape(title)}</h1></header><p class="sub">{text}</p>',
+        _table(placement),
+    ]
     heights = np.unique(placement.poses[:, 2])[:_MOST_MAPS]
     low, high = _range(placement)
     html_parts.append(
         f'<p class="sub">margin from {100.0 * low:.3g} % {_key()} to {100.0 * high:.3g} %</p>'
     )
-    html_parts.append('<div class="grid">')
-    html_parts += [f"<figure>{_map(placement, height, low, high)}</figure>" for height in heights]
-    return (
-        f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
-        f'<meta name="viewport" content="width=device-width,initial-scale=1"><style>{STYLE}</style></head>'
-        f"<body><main>{''.join(html_parts)}</div></main></body></html>\n"
-    )
+    html_parts += [_map(placement, height, low, high) for height in heights]
+    return fill_page(title, html_parts)
 
 
 def _table(placement: Placed) -> str:
@@ -96,41 +92,42 @@ def _range(placement: Placed) -> tuple[float, float]:
 
 
 def _map(placement: Placed, height: float, low: float, high: float) -> str:
-    """The poses of one height, seen from above."""
+    """Return the poses of one height as a table, as they are seen from above."""
     rows = np.flatnonzero(placement.poses[:, 2] == height)
-    x, y = placement.poses[rows, 0], placement.poses[rows, 1]
-    across, up = (_step(values) for values in (x, y))
-    plot = Plot(
-        f"z = {height:g} mm",
-        (x.min() - across, x.max() + across),
-        (y.min() - up, y.max() + up),
-        "x, mm",
-        "y, mm",
-        height=330,
-    )
     best_at: dict[tuple[float, float], int] = {}
     for number in sorted(rows.tolist(), key=lambda k: _rank_key(placement, k)):
-        best_at[float(placement.poses[number, 0]), float(placement.poses[number, 1])] = (
-            number  # the best of them stays
-        )
-    for (place_x, place_y), number in best_at.items():
-        pose_result = placement.result_of(number)
-        x_left, right = plot.to_x(np.array([place_x - 0.48 * across, place_x + 0.48 * across]))
-        top, bottom = plot.to_y(np.array([place_y + 0.48 * up, place_y - 0.48 * up]))
-        share = (pose_result.margin - low) / (high - low) if high > low else 1.0
-        fill = (
-            _COLOURS[min(int(4.0 * max(share, 0.0)), 3)]
-            if pose_result.feasible
-            else _OUT_OF_RANGE_COLOUR
-        )
-        edge = ' stroke="#c0182b" stroke-width="3"' if number == placement.best else ""
-        plot.elements.append(
-            f'<rect x="{x_left:.1f}" y="{top:.1f}" width="{right - x_left:.1f}" height="{bottom - top:.1f}" '
-            f'fill="{fill}"{edge}><title>{escape(_pose_text(placement, number))}</title></rect>'
-            f'<text class="tick" x="{0.5 * (x_left + right):.1f}" y="{0.5 * (top + bottom) + 4.0:.1f}" '
-            f'text-anchor="middle">{100.0 * pose_result.share:.0f} %</text>'
-        )
-    return plot.text()
+        x, y, *_ = placement.poses[number].tolist()
+        best_at[x, y] = number  # the best of them stays
+    columns = sorted({x for x, _ in best_at})
+    lines = []
+    for y in sorted({y for _, y in best_at}, reverse=True):
+        cells = [_map_cell(placement, best_at.get((x, y)), low, high) for x in columns]
+        lines.append(f"<tr><th>{y:.6g}</th>{''.join(cells)}</tr>")
+    heads = "".join(f"<th>{x:.6g}</th>" for x in columns)
+    lines.append(f"<tr><th>y, mm / x, mm</th>{heads}</tr>")
+    return (
+        f'<div class="table"><table class="map"><caption>z = {height:g} mm</caption>'
+        f"{''.join(lines)}</table></div>"
+    )
+
+
+def _map_cell(placement: Placed, number: int | None, low: float, high: float) -> str:
+    """Return the cell of a pose: its colour by margin, its share of points served, its figures as
+    a tooltip."""
+    if number is None:
+        return "<td></td>"
+    pose_result = placement.result_of(number)
+    share = (pose_result.margin - low) / (high - low) if high > low else 1.0
+    colour = (
+        _COLOURS[min(int(4.0 * max(share, 0.0)), 3)]
+        if pose_result.feasible
+        else _OUT_OF_RANGE_COLOUR
+    )
+    best = ' class="best"' if number == placement.best else ""
+    return (
+        f'<td{best} style="background:{colour}" title="{escape(_pose_text(placement, number))}">'
+        f"{100.0 * pose_result.share:.0f} %</td>"
+    )
 
 
 def _rank_key(placement: Placed, number: int) -> tuple[float, float, float]:
@@ -149,11 +146,6 @@ def _pose_text(placement: Placed, number: int) -> str:
         f"{values}: {pose_result.code or 'feasible'}; margin {_format(100.0 * pose_result.margin, '.3g')} %, {_format(pose_result.time, '.0f')} s, "
         f"arm {_format(pose_result.clearance, '.3g')} mm"
     )
-
-
-def _step(values: Array) -> float:
-    gaps = np.diff(np.unique(values))
-    return float(gaps.min()) if len(gaps) else 1.0
 
 
 def _key() -> str:

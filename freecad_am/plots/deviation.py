@@ -38,13 +38,38 @@ _VIEWS = (
     _View("Seen from behind", (-1.0, 0.0, 0.0), (0.0, math.cos(TILT), math.sin(TILT))),
     _View("Seen from below", (1.0, 0.0, 0.0), (0.0, 0.0, -1.0)),
 )
-X = Quantity("across", "mm")
+X, UP = Quantity("across", "mm"), Quantity("up in the picture", "mm")
 
 
 def charts(deviations: DeviationMap, allowance: float) -> tuple[Chart, ...]:
     """The part from the sides on which places face the eye, the spread of deviations, and the layers."""
     maps = [chart for view in _VIEWS if (chart := _map(deviations, view)) is not None]
     return (*maps, _histogram(deviations, allowance), *_layers(deviations, allowance))
+
+
+def dots_by_band(x: Array, y: Array, deviation: Array, step: float) -> tuple[Curve, ...]:
+    """Return dots coloured by the band of their deviation, the lowest band last.
+
+    Parameters
+    ----------
+    x, y : (n,) array
+        Places in the picture, mm.
+    deviation : (n,) array
+        Their deviations, mm.
+    step : float
+        Width of a band, mm.
+
+    Returns
+    -------
+    tuple of Curve
+        A curve per band that has dots.
+    """
+    number = band_of(deviation, step)
+    return tuple(
+        Curve(band.text, x[number == k], y[number == k], css(band.colour), DOTS)
+        for k, band in reversed(list(enumerate(bands(step))))
+        if (number == k).any()
+    )
 
 
 def _map(deviations: DeviationMap, view: _View) -> Chart | None:
@@ -57,18 +82,12 @@ def _map(deviations: DeviationMap, view: _View) -> Chart | None:
     if not facing.any():
         return None
     x, y = deviations.places @ np.asarray(view.across), deviations.places @ view.up
-    number = band_of(deviations.beyond, step_of(deviations.beyond))
-    dots = [
-        Curve(band.text, x[rows], y[rows], css(band.colour), DOTS)
-        for k, band in reversed(list(enumerate(bands(step_of(deviations.beyond)))))
-        if (rows := facing & (number == k)).any()
-    ]
+    step = step_of(deviations.beyond)
+    dots = dots_by_band(x[facing], y[facing], deviations.beyond[facing], step)
     names = tuple(
         (float(x[k]), float(y[k]), name_of(k)) for k in range(len(deviations.worst)) if facing[k]
     )
-    return Chart(
-        view.title, X, Quantity("up in the picture", "mm"), tuple(dots), plane=True, names=names
-    )
+    return Chart(view.title, X, UP, dots, plane=True, names=names)
 
 
 def _histogram(deviations: DeviationMap, allowance: float) -> Chart:

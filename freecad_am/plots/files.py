@@ -104,6 +104,7 @@ _SETTINGS = {
 }
 PNG_DPI = 150  # dots per inch of PNG
 _ROWS_AT_ONCE = 20_000
+_TAG, _LONG_NUMBER = re.compile(r"<[^>]*>"), re.compile(r"(\d\.\d)\d+")
 
 
 def image(figure: Figure, kind: str) -> bytes:
@@ -133,7 +134,7 @@ def inline(figure: Figure, title: str) -> str:
         r"font: \1 system-ui, sans-serif",
         text,
     )
-    text = re.sub(r"(\d\.\d)\d+", r"\1", text)
+    text = _TAG.sub(lambda tag: _LONG_NUMBER.sub(r"\1", tag[0]), text)  # not the texts of labels
     for colour, variable in VARIABLES.items():
         text = text.replace(colour, f"var({variable})")
     box = re.search(r'viewBox="[^"]*"', text)

@@ -10,25 +10,40 @@ import numpy as np
 from ..core.geometry.curves.guide import Guide
 from ..core.geometry.on_hub import Group, SolidsOnHub, middle_azimuth
 from ..core.geometry.plane import Plane
+from ..core.issues import Text
 from ..core.layers.guide_field import between
 from ..core.process.model.bead_model import MINUTE
-from ..core.toolpath import Bead, Layer, Toolpath
+from ..core.toolpath import Layer, Toolpath
 from ..core.types import Array
+from ..plots.chart import OUTLINE, Chart, Curve, Quantity
 from ..plots.look import shade
-from . import svg
+from .pictures import TALLEST
 
-FRAME_WIDTH, EDGES = 388.0, 68.0  # px: width of the frame, and of both margins
-AXES = (("around the hub, mm", "along it, mm"), ("x, mm", "y, mm"))
-PIECES = 6  # colours along a bead
+FRAME_WIDTH, MARGINS = 380.0, 61.0  # px: width of the frame, and of the margins above and below
+AXES = (
+    (Quantity("around the hub", "mm"), Quantity("along it", "mm")),
+    (Quantity("x", "mm"), Quantity("y", "mm")),
+)
+LEVELS = 6  # of speed, with a colour each
+PEN_UP = np.full((1, 2), np.nan)
 
 
-def layer_plots(solids: SolidsOnHub, toolpath: Toolpath) -> list[str]:
-    """Draw the first and middle layer of each group unrolled, coloured by speed if a bead model
-    sets it, else by order.
+def layer_charts(solids: SolidsOnHub, toolpath: Toolpath) -> list[tuple[Chart, int]]:
+    """Return the first and middle layer of each group unrolled, with the height of each picture.
 
-    A layer that is too narrow for a bead has no picture.
+    Parameters
+    ----------
+    solids : SolidsOnHub
+        The solids and their groups.
+    toolpath : Toolpath
+        Their toolpath; a layer that is too narrow for a bead has no picture.
+
+    Returns
+    -------
+    list of (Chart, int)
+        Lines coloured by speed if a bead model sets it, else by order; heights in pixels.
     """
-    plots = []
+    charts = []
     runs = _runs(toolpath.layers)
     by_group = np.array_split(np.arange(len(runs)), len(solids.groups))
     if len(runs) != len(solids.groups):  # solid by solid: the first of each group
@@ -37,12 +52,12 @@ def layer_plots(solids: SolidsOnHub, toolpath: Toolpath) -> list[str]:
     for group, indices in zip(solids.groups, by_group):
         run = runs[int(indices[0])]
         numbers = dict.fromkeys((0, len(run) // 2))
-        plots += [
+        charts += [
             _flat(group, toolpath.layers[run[number]], number, toolpath.layer_height)
             for number in numbers
             if toolpath.layers[run[number]].beads
         ]
-    return plots
+    return charts
 
 
 def _runs(layers: Sequence[Layer]) -> list[range]:
@@ -51,7 +66,7 @@ def _runs(layers: Sequence[Layer]) -> list[range]:
     return [range(start, end) for start, end in zip(starts, [*starts[1:], len(layers)])]
 
 
-def _flat(group: Group, layer: Layer, index: int, height: float) -> str:
+def _flat(group: Group, layer: Layer, index: int, height: float) -> tuple[Chart, int]:
     base, lines = group.base, [group.base.inside(bead.points) for bead in layer.beads]
     if isinstance(base.surface, Guide):
         plane = between(base.surface, index * height, (index + 1) * height, 0.0)
@@ -63,40 +78,33 @@ def _flat(group: Group, layer: Layer, index: int, height: float) -> str:
     low, high = np.vstack(lines).min(axis=0), np.vstack(lines).max(axis=0)
     pad = 0.03 * float((high - low).max())
     ratio = float((high[1] - low[1] + 2.0 * pad) / (high[0] - low[0] + 2.0 * pad))
-    plot = svg.Plot(
-        f"{group.base.name}, layer {index}, laid flat",
-        (low[0] - pad, high[0] + pad),
-        (low[1] - pad, high[1] + pad),
-        *AXES[isinstance(base.surface, (Plane, Guide))],
-        height=int(np.clip(EDGES + ratio * FRAME_WIDTH, 140.0, 620.0)),
-    )
+    axes = AXES[isinstance(base.surface, (Plane, Guide))]
+    title = f"{group.base.name}, layer {index}, laid flat"
+    chart = Chart(title, *axes, _curves(layer, lines), plane=True)
+    return chart, int(np.clip(MARGINS + ratio * FRAME_WIDTH, 140.0, TALLEST))
+
+
+def _curves(layer: Layer, lines: Sequence[Array]) -> tuple[Curve, ...]:
+    """Return the lines of a layer's beads, coloured by speed where it varies, else by order."""
     speeds = np.concatenate([bead.speed[1:] for bead in layer.beads])
     slow, fast = float(speeds.min()), float(speeds.max())
-    for number, (bead, line) in enumerate(zip(layer.beads, lines)):
-        if fast - slow > 1e-6 * fast:
-            _coloured(plot, bead, line, slow, fast)
-        else:
-            plot.curve(
-                line[:, 0],
-                line[:, 1],
-                shade(number / max(len(lines) - 1, 1)),
-                f"bead {number}",
-                1.2,
-            )
-    if fast - slow > 1e-6 * fast:
-        plot.legend(
-            [
-                (f"{MINUTE * slow:.0f} mm/min", shade(0.0)),
-                (f"{MINUTE * fast:.0f} mm/min", shade(1.0)),
-            ]
+    if fast - slow <= 1e-6 * fast:
+        last = max(len(lines) - 1, 1)
+        return tuple(
+            Curve("", *line.T, shade(number / last), OUTLINE) for number, line in enumerate(lines)
         )
-    return plot.text()
-
-
-def _coloured(plot: svg.Plot, bead: Bead, line: Array, slow: float, fast: float) -> None:
-    """A bead in runs of like speed."""
-    level = np.round(PIECES * (bead.speed[1:] - slow) / (fast - slow)).astype(int)
-    cuts = [0, *(np.flatnonzero(np.diff(level)) + 1).tolist(), len(level)]
-    for start, end in zip(cuts, cuts[1:]):
-        stretch = line[start : end + 1]
-        plot.curve(stretch[:, 0], stretch[:, 1], shade(level[start] / PIECES), "", 1.4)
+    pieces: list[list[Array]] = [[] for _ in range(LEVELS + 1)]
+    for bead, line in zip(layer.beads, lines):
+        level = np.round(LEVELS * (bead.speed[1:] - slow) / (fast - slow)).astype(int)
+        cuts = [0, *(np.flatnonzero(np.diff(level)) + 1).tolist(), len(level)]
+        for start, end in zip(cuts, cuts[1:]):
+            pieces[level[start]] += [line[start : end + 1], PEN_UP]
+    names = {
+        0: Text("{:.0f} mm/min", MINUTE * slow),
+        LEVELS: Text("{:.0f} mm/min", MINUTE * fast),
+    }
+    return tuple(
+        Curve(names.get(number, ""), *np.vstack(piece).T, shade(number / LEVELS), OUTLINE)
+        for number, piece in enumerate(pieces)
+        if piece
+    )

@@ -18,13 +18,11 @@ from . import (
     places,
     predicted_figures,
     scan_figures,
-    toolpath_picture,
     units,
     wall_figures,
 )
 from .of_feature import OfFeature
-from .pictures import MISSING, Pictures
-from .style import STYLE
+from .pictures import FULL_WIDTH, HALF, MISSING, TALLEST, Pictures, draw_charts, plotting_modules
 from .tables import (
     axis_names,
     classes_of,
@@ -36,9 +34,11 @@ from .tables import (
     pairs_of,
     table_of,
 )
+from .template import fill_page
 from .viewer_3d import columns
 from .viewer_3d.columns import build_viewer, policy, style
 
+NO_VIEWER = "A browser that runs scripts and has WebGL draws the path here in 3D."
 _PER_METHOD = (
     ("feasible", "feasible"),
     ("objective_value", "objective"),
@@ -106,10 +106,9 @@ def render(content: Content) -> str:
         f'<header><h1>{name}</h1><span class="status {status}">{status}</span></header>'
         f'<p class="sub">{escape(_subtitle(content))}</p>{_cards(report)}{places.findings(report["issues"], path_rows)}',
         f"<h2>Path</h2>{path.element}",
-        f'<figure id="path-still">{toolpath_picture.picture(toolpath, content.platform_diameter)}<figcaption>The beads, coloured by '
-        "layer; short strokes show the build direction.</figcaption></figure>",
+        f'<p class="sub" id="path-still">{NO_VIEWER}</p>',
         places.preflight(report["preflight"], path_rows),
-        "" if pictures.modules else f'<p class="sub">{MISSING}</p>',
+        "" if plotting_modules() else f'<p class="sub">{MISSING}</p>',
         *_joints(content, pictures),
         ""
         if content.toolpath.fitted is None
@@ -130,13 +129,7 @@ def render(content: Content) -> str:
         ),
         _programs(report["programs"]),
     ]
-    return (
-        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{name}</title>'
-        f'<meta name="viewport" content="width=device-width,initial-scale=1">'
-        f'<meta http-equiv="Content-Security-Policy" content="{policy()}">'
-        f"<style>{STYLE}{style()}</style></head>"
-        f"<body><main>{''.join(sections)}</main>{path.data}</body></html>\n"
-    )
+    return fill_page(report["name"], sections, policy(), style(), path.data)
 
 
 def _select_rows(content: Content) -> columns.Shown:
@@ -226,7 +219,9 @@ def _hub_layers(content: Content, pictures: Pictures) -> str:
     """Draw unrolled layers of solids on a hub, and the charts of the bead model."""
     if content.solids is None:
         return ""
-    plots = hub_figures.layer_plots(content.solids, content.toolpath) + pictures.beads()
+    layers = hub_figures.layer_charts(content.solids, content.toolpath)
+    plots = [plot for chart, height in layers for plot in draw_charts([chart], HALF, height)]
+    plots += pictures.beads()
     return f"<h2>Layers laid flat</h2>{grid_of(plots)}"
 
 
@@ -235,19 +230,19 @@ def _spacings(wall: OfFeature) -> str:
     rows, toolpath = wall.rows, wall.toolpath
     compared = [result for result in wall.compared if isinstance(result, Compared)]
     height = toolpath.layer_height
-    plots = wall_figures.distance_plots(compared, height) if compared else []
-    plots += [
-        wall_figures.step_plot(result, height)
+    charts = wall_figures.distance_charts(compared, height) if compared else []
+    charts += [
+        wall_figures.step_chart(result, height)
         for result in compared
         if result.method == "constant-distance"
     ]
-    plots.append(wall_figures.deposit_plot(toolpath, local_distances(toolpath)))
-    overlay = wall_figures.both_paths(compared)
-    if overlay:
-        overlay = (
-            f'<figure style="margin-top:10px">{overlay}<figcaption>Both paths: along the lines up the wall, and at a '
-            "constant distance from the layer below.</figcaption></figure>"
-        )
+    charts.append(wall_figures.deposit_chart(toolpath, local_distances(toolpath)))
+    plots = draw_charts(charts, HALF)
+    overlay = "".join(
+        f'<figure class="wide">{picture}<figcaption>Both paths: along the lines up the wall, and at a '
+        "constant distance from the layer below.</figcaption></figure>"
+        for picture in draw_charts(wall_figures.path_charts(compared), FULL_WIDTH, TALLEST)
+    )
     cut = [row for row in rows if row["layers"] is not None]
     names = [row["method"] + (" (planned)" if row["planned"] else "") for row in cut]
     columns = [(word, key) for key, word in _SPACING if any(row[key] is not None for row in cut)]

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cache, cached_property
 from types import ModuleType
 
 import numpy as np
@@ -19,8 +19,58 @@ from ..plots.source import Source
 from . import units
 from .of_feature import OfFeature
 
-HALF, FULL_WIDTH, TALL, MAP = 460, 940, 230, 330  # pixels
+HALF, FULL_WIDTH, TALL, MAP, TALLEST = 460, 940, 230, 330, 620  # pixels
 MISSING = "The plots are left out, because matplotlib is not installed here; install python3-matplotlib and plan again."
+
+
+@cache
+def plotting_modules() -> tuple[ModuleType, ModuleType] | None:
+    """Return what draws; None without matplotlib, whose import takes longer than a picture."""
+    try:
+        from freecad_am.plots import draw, files
+    except ImportError:
+        return None
+    return draw, files
+
+
+def draw_charts(
+    charts: Sequence[Chart], width: int, height: int = TALL, travel: bool = False
+) -> list[str]:
+    """Draw charts as elements of a page, in its units.
+
+    Parameters
+    ----------
+    charts : sequence of Chart
+        In the units of report.json.
+    width, height : int
+        Size of each picture, pixels.
+    travel : bool
+        Whether speeds are those of the deposition point.
+
+    Returns
+    -------
+    list of str
+        An SVG element per chart; empty without matplotlib.
+    """
+    modules = plotting_modules()
+    if modules is None:
+        return []
+    draw, files = modules
+    converted = [convert_chart(_convert_texts(chart), units.scale, travel) for chart in charts]
+    return [
+        files.inline(draw.figure([chart], PAGE, width, height)[0], chart.title)
+        for chart in converted
+    ]
+
+
+def _convert_texts(chart: Chart) -> Chart:
+    """Return a chart whose texts have the units of the page."""
+    return replace(
+        chart,
+        title=units.message(chart.title),
+        marks=tuple((value, units.message(name)) for value, name in chart.marks),
+        curves=tuple(replace(curve, name=units.message(curve.name)) for curve in chart.curves),
+    )
 
 
 class Pictures:
@@ -29,15 +79,6 @@ class Pictures:
     def __init__(self, source: Source) -> None:
         self.source = source
         self.layers = (0, len(source.toolpath.layers) - 1)
-
-    @cached_property
-    def modules(self) -> tuple[ModuleType, ModuleType] | None:
-        """What draws; None without matplotlib, whose import takes longer than the drawing of a picture."""
-        try:
-            from freecad_am.plots import draw, files
-        except ImportError:
-            return None
-        return draw, files
 
     @cached_property
     def rows(self) -> Rows:
@@ -60,7 +101,7 @@ class Pictures:
             jerks,
             *joints.condition(self.source, self.rows),
         )
-        return self._draw(charts, FULL_WIDTH)
+        return draw_charts(charts, FULL_WIDTH)
 
     def process(self, features: Sequence[OfFeature]) -> list[str]:
         """Distances between the layers of each feature, speed along the path, deposit rate and mass."""
@@ -94,22 +135,7 @@ class Pictures:
             return []
         charts = deviation.charts(shape.deviation, shape.allowance)
         tall = sum(chart.plane for chart in charts)
-        return [*self._draw(charts[:tall], HALF, MAP), *self._half(charts[tall:])]
+        return [*draw_charts(charts[:tall], HALF, MAP), *self._half(charts[tall:])]
 
     def _half(self, charts: Sequence[Chart], travel: bool = True) -> list[str]:
-        return self._draw(charts, HALF, travel=travel)
-
-    def _draw(
-        self, charts: Sequence[Chart], width: int, height: int = TALL, travel: bool = False
-    ) -> list[str]:
-        if self.modules is None:
-            return []
-        draw, files = self.modules
-        converted = [
-            replace(convert_chart(chart, units.scale, travel), title=units.message(chart.title))
-            for chart in charts
-        ]
-        return [
-            files.inline(draw.figure([chart], PAGE, width, height)[0], chart.title)
-            for chart in converted
-        ]
+        return draw_charts(charts, HALF, travel=travel)

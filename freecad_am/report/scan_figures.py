@@ -10,10 +10,13 @@ from typing import Any
 import numpy as np
 
 from ..core.geometry.fitted import Fitted
-from ..core.inspection.bands import band_of, bands, css
+from ..core.inspection.bands import bands, css
+from ..core.issues import Text
 from ..core.types import Array
+from ..plots.chart import Chart, Quantity
+from ..plots.deviation import dots_by_band
 from . import units
-from .svg import Plot
+from .pictures import HALF, MAP, draw_charts
 from .tables import grid_of
 
 
@@ -28,7 +31,6 @@ def key_of(tolerance: float) -> str:
 
 TOLERANCE = 0.1  # mm, of the bands that both pictures are coloured by
 MAX_DOTS = 4000  # dots of a picture
-DOT = 2.2
 
 
 def as_dict(fitted: Fitted) -> dict[str, Any]:
@@ -57,36 +59,18 @@ def section(fitted: Fitted, frame: Array) -> str:
     planned = _map(f"Layer {fitted.layer} as planned", fitted.places, fitted.off, frame)
     deposited = _map(f"Layer {fitted.layer} as laid", fitted.laid, fitted.left, frame)
     return (
-        f"<h2>Fitted to {escape(fitted.file)}</h2>{grid_of([planned, deposited])}"
+        f"<h2>Fitted to {escape(fitted.file)}</h2>{grid_of(draw_charts([planned, deposited], HALF, MAP))}"
         f'<p class="sub">How far the scan lies above the layer, {unit}: {key_of(factor * TOLERANCE)}</p>'
     )
 
 
-def _map(title: str, points: Array, off: Array, frame: Array) -> str:
+def _map(title: str, points: Array, off: Array, frame: Array) -> Chart:
     rows = np.unique(np.linspace(0, len(points) - 1, MAX_DOTS).astype(np.intp))
     x, y = ((points[rows] - frame[:3, 3]) @ frame[:3, :2]).T
-    plot = Plot(
-        f"{title}: {off.min():.3f} to {off.max():.3f} mm",
-        (0.0, 1.0),
-        (0.0, 1.0),
-        "mm",
-        "mm",
-        height=300,
+    return Chart(
+        Text("{}: {:.3f} to {:.3f} mm", title, off.min(), off.max()),
+        Quantity("x", "mm"),
+        Quantity("y", "mm"),
+        dots_by_band(x, y, off[rows], TOLERANCE),
+        plane=True,
     )
-    wide, high = plot.width - plot.left - plot.right, plot.height - plot.top - plot.bottom
-    scale = 1.08 * max(float(np.ptp(x)) / wide, float(np.ptp(y)) / high, 1e-6)
-    plot.x, plot.y = (
-        (
-            0.5 * (float(values.min()) + float(values.max())) - 0.5 * scale * size,
-            0.5 * (float(values.min()) + float(values.max())) + 0.5 * scale * size,
-        )
-        for values, size in ((x, wide), (y, high))
-    )
-    shades, number = [css(band.colour) for band in bands(TOLERANCE)], band_of(off[rows], TOLERANCE)
-    plot.elements += [
-        f'<circle cx="{px:.1f}" cy="{py:.1f}" r="{DOT}" fill="{shades[k]}"/>'
-        for px, py, k in zip(
-            plot.to_x(x).tolist(), plot.to_y(y).tolist(), number.tolist(), strict=True
-        )
-    ]
-    return plot.text()

@@ -300,7 +300,6 @@ def test_the_example_is_planned_and_its_report_shows_layers_in_their_planes(work
     pictures = [part for part in page.split("<svg") if ", laid flat</" in part]
     assert len(pictures) == 2
     for picture in pictures:
-        width, height = (
-            float(re.search(rf'[ "]{name}="([\d.]+)"', picture)[1]) for name in ("width", "height")
-        )
+        box = re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', picture)
+        width, height = map(float, box.groups())
         assert 0.9 < height / width < 1.25  # as wide as high, with the frame

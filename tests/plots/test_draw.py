@@ -131,6 +131,15 @@ def test_pictures_in_a_page_take_its_colours(dome):
     assert [node for node in tree.iter() if node.tag.endswith("text") and node.text == "q1"]
 
 
+def test_scales_in_a_page_keep_their_decimals():
+    chart = Chart("a", Quantity("x"), Quantity("y"), (Curve("", *np.array([[0, 1], [0.0, 0.25]])),))
+    text = files.inline(draw.figure((chart,), PAGE, 460, 230)[0], "a")
+    labels = [
+        node.text for node in ElementTree.fromstring(text).iter() if node.tag.endswith("text")
+    ]
+    assert {"0.00", "0.05", "0.10", "0.15", "0.20", "0.25"} <= set(labels)
+
+
 @pytest.mark.parametrize("name", ["angles", "jerks", "deposit", "condition"])
 def test_tables_give_the_values_back(dome, name):
     source, _ = dome

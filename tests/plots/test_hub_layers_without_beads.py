@@ -3,10 +3,10 @@
 
 from types import SimpleNamespace
 
-from freecad_am.report.hub_figures import layer_plots
+from freecad_am.report.hub_figures import layer_charts
 
 
 def test_a_layer_without_beads_has_no_picture():
     layers = [SimpleNamespace(first=number == 0, beads=()) for number in range(3)]
     solids = SimpleNamespace(groups=[SimpleNamespace(bodies=[0])])
-    assert layer_plots(solids, SimpleNamespace(layers=layers, layer_height=1.0)) == []
+    assert layer_charts(solids, SimpleNamespace(layers=layers, layer_height=1.0)) == []

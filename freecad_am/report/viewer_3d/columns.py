@@ -9,7 +9,6 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +20,7 @@ from ...core.toolpath import Toolpath
 from ...core.types import Array, Integers, Mask, NDArray
 from ...plots.look import shade
 from .. import units
+from ..template import read_part
 
 if TYPE_CHECKING:
     from freecad_am.plots.source import Source  # slow to import, and not every report has a page
@@ -234,25 +234,9 @@ def _column(column: Column, into: Bytes) -> dict[str, Any]:
     }
 
 
-_FOLDER = Path(__file__).resolve().parent
 _SCRIPTS = ("camera.js", "pieces.js", "drawing.js", "viewer.js")
 _MOST_TRIANGLES = 30_000  # of the bodies around the path
 _SHADES = 32
-
-_CONTROLS = """<div class="row"><label>colour <select name="colour"></select></label><span class="least"></span>
-<span class="ramp"></span><span class="most"></span><label><input type="checkbox" name="rapids"/>rapids</label>
-<label><input type="checkbox" name="directions"/>build directions</label>
-<button name="above">Above</button><button name="front">Front</button><button name="side">Side</button>
-<button name="reset">Reset view</button></div>
-<canvas tabindex="0" role="img" aria-label="the path, to turn and to step through"></canvas>
-<div class="row"><label class="wide">layers <input type="range" name="from" min="0" value="0" aria-label="first layer"/>
-<input type="range" name="to" min="0" aria-label="last layer"/><span class="layers"></span></label></div>
-<div class="row"><button name="play">Play</button><button name="back" aria-label="a point back">&lsaquo;</button>
-<button name="on" aria-label="a point on">&rsaquo;</button><label class="wide">up to
-<input type="range" name="row" aria-label="point"/></label><button name="whole">Whole path</button></div>
-<div class="told" role="status"></div>
-<div class="row hint">Drag to turn, with Shift to move; click a bead to read it; after a click the wheel and + and - enlarge,
-, and . step.</div>"""
 
 
 @dataclass(frozen=True)
@@ -284,7 +268,7 @@ def build_viewer(
     caption = f"<figcaption>The path with its beads{note}. Underlined places in the tables are shown here.</figcaption>"
     data = json.dumps(facts, separators=(",", ":")).replace("<", "\\u003c")
     return Turned(
-        f'<figure class="turned" id="path" hidden>{_CONTROLS}{caption}</figure>',
+        f'<figure class="turned" id="path" hidden>{read_part("viewer_3d/controls.html")}{caption}</figure>',
         f'<script type="application/json" id="path-facts">{data}</script>'
         f'<script type="text/plain" id="path-columns">{into.text()}</script><script>{script()}</script>',
     )
@@ -293,14 +277,13 @@ def build_viewer(
 @lru_cache(maxsize=1)
 def script() -> str:
     """The script of the page, in a scope of its own."""
-    text = "".join((_FOLDER / name).read_text(encoding="utf-8") for name in _SCRIPTS)
+    text = "".join(read_part(f"viewer_3d/{name}") for name in _SCRIPTS)
     return f"(() => {{\n{text}}})();\n"
 
 
-@lru_cache(maxsize=1)
 def style() -> str:
     """How the element looks."""
-    return (_FOLDER / "viewer.css").read_text(encoding="utf-8")
+    return read_part("viewer_3d/viewer.css")
 
 
 def policy() -> str:
