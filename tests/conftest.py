@@ -4,6 +4,7 @@
 import gc
 import os
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -29,6 +30,7 @@ if (
     gc.set_threshold(300_000, 50, 50)
 
 REASON_LINES, REASON_WIDTH = 6, 220  # of a failed test in the summary
+SLOWEST_FILES, LONG_RUN_S = 25, 60.0  # files are listed where the tests take longer
 
 
 def pytest_addoption(parser):
@@ -104,8 +106,23 @@ def pytest_handlecrashitem():
     return True
 
 
+def print_slowest_files(terminalreporter):
+    """Print the time of the slowest files of tests, with what they share, where they take long."""
+    seconds = Counter()
+    for reports in terminalreporter.stats.values():
+        for report in reports:
+            if hasattr(report, "duration") and hasattr(report, "nodeid"):
+                seconds[report.nodeid.partition("::")[0]] += report.duration
+    if sum(seconds.values()) < LONG_RUN_S:
+        return
+    terminalreporter.write_line(f"slowest files of {sum(seconds.values()):.0f} s:")
+    for name, duration in seconds.most_common(SLOWEST_FILES):
+        terminalreporter.write_line(f"{duration:8.0f} s {name}")
+
+
 def pytest_terminal_summary(terminalreporter):
-    """Print the failures and totals that tests/run.py sums up."""
+    """Print the slowest files, and the failures and totals that tests/run.py sums up."""
+    print_slowest_files(terminalreporter)
     stats = terminalreporter.stats
     failed = [*stats.get("failed", ()), *stats.get("error", ())]
     for report in failed:
