@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 
 from freecad_am.core.geometry import frames
-from freecad_am.core.geometry.angles import TURN, shortest
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall, sample_curve
+from freecad_am.core.geometry.frames import TURN, shortest
 from freecad_am.core.geometry.obstacles import box
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics import cell as cells

@@ -28,8 +28,7 @@ def run_of_points(layer_height: float, points: int, document: str):
     from freecad_am.core.planning.motion import assemble
     from freecad_am.core.planning.plan import plan_joints
     from freecad_am.core.simulation.achievable_feed import achievable_feed
-    from freecad_am.core.simulation.timeline import timeline
-    from freecad_am.core.simulation.totals import totals
+    from freecad_am.core.simulation.timeline import timeline, totals
     from freecad_am.core.simulation.watch import watch
     from freecad_am.core.strategies.revolution import plan as revolution
     from freecad_am.gui.simulation.player import Run

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Programs of motions as the document makes them: what the controller of the post does not take is refused before."""
 
-from freecad_am.core.planning.program import build as programs
+from freecad_am.core.planning import program as programs
 from freecad_am.objects.checks import controllers
 from freecad_am.posts import catalogue
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from freecad_am.core.families.registry import AUTO, FAMILIES
-from freecad_am.core.parameters.fills import FILLS
+from freecad_am.core.parameters.filled import FILLS
 
 PACKAGE = Path(__file__).resolve().parent.parent / "freecad_am"
 KINDS = {family.kind for family in FAMILIES}
@@ -24,7 +24,7 @@ LAYERS = {"planes", "geodesic", "offset", "along", "PLANES", "GEODESIC", "OFFSET
 MAX_LAYER_SWITCHES = 9  # comparisons with a kind of layers
 MAX_FILL_SWITCHES = 12  # comparisons with a fill, most where it is made; three are other words
 OTHER_WORDS = {  # files in which a word is no kind
-    "brep/files/stl_check.py",
+    "brep/files/read.py",
     "brep/files/three_mf.py",
     "core/geometry/curves/gcode.py",
     "core/geometry/curves/gcode_roles.py",

@@ -362,7 +362,7 @@ def test_parts_of_revolution_wait_for_no_splines_and_no_optimiser():
         "strategies.clearance.look",
         "planning.plan",
         "planning.motion",
-        "planning.program.build",
+        "planning.program",
         "process.deposit.balance",
         "process.deposit.support",
         "preflight.checks",

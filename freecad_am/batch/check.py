@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.geometry.file_content import MB, read_content
+from ..core.geometry.job_files import MB, read_content
 from ..core.issues import ERROR, NOTE, InputError, Issue, Text
 from ..core.kinematics import cell as cells
 from ..core.kinematics import jacobian
@@ -23,7 +23,7 @@ from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.joints import JointParameters
 from ..core.parameters.program import ProgramParameters
-from ..core.planning.program.build import build_header
+from ..core.planning.program import build_header
 from ..core.planning.task import CONDITION_FLOOR
 from ..core.preflight import clearance
 from ..core.preflight.promise import Promise, row_place

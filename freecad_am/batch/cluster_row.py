@@ -3,7 +3,7 @@
 
 It reads a line of JSON from stdin: the folder of the batch and the order, if any. It writes a line
 of JSON to stdout: the versions of the software and the result. Its environment says where the files
-of the job are (`core.geometry.located`). It ends at SIGTERM, and when stdin ends, because then the
+of the job are (`core.geometry.job_files`). It ends at SIGTERM, and when stdin ends, because then the
 worker is lost and cannot remove the folder of the batch.
 """
 

@@ -260,7 +260,7 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
 
     from freecad_am import api
 
-    from ..core.process.model.notes import HEIGHTS
+    from ..core.process.model_notes import HEIGHTS
 
     stages = as_far_as_toolpath(job, document, session, fails)
     job = stages.job

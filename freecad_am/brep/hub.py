@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from ..core.geometry.angles import TURN
 from ..core.geometry.columns import lengths
 from ..core.geometry.developable import Developable
+from ..core.geometry.frames import TURN
 from ..core.geometry.mesh.manifold import find_holes, separate_vertices
 from ..core.geometry.mesh.repair import Repaired, crossing_messages, mended_issues, repair_mesh
 from ..core.geometry.mesh.solid import SolidMesh
@@ -26,8 +26,8 @@ from ..core.types import Array
 from .kernel.limits import refuse_bare
 from .kernel.process import in_kernel_process
 from .revolution.axis import from_normals
-from .sections_agree import sections_agree
 from .shapes.no_solid import no_solid
+from .shapes.part_depths import sections_agree
 from .shapes.tessellate import WELDED, Tessellation, fine
 
 FINER = (1.0, 0.8, 1.2, 0.5)  # of the deflection asked for, in the order in which they are tried

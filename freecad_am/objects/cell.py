@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.geometry.file_content import digest
+from ..core.geometry.job_files import digest
 from ..core.kinematics import cell as cells
 from ..core.kinematics.urdf.elements import MAX_FILE_MB
 from ..core.parameters.cell import CellParameters

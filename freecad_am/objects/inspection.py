@@ -10,8 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..brep.shapes.distance import skin
-from ..core.geometry.file_content import digest
-from ..core.geometry.located import is_there
+from ..core.geometry.job_files import digest, is_there
 from ..core.inspection import inspect, point_file, surfaces, table
 from ..core.inspection.planned import Planned, triangle_surface
 from ..core.issues import InputError, Text

@@ -25,11 +25,10 @@ from ..core.planning.motion import assemble
 from ..core.planning.other_cells import Fixed, Tried
 from ..core.planning.plan import plan_joints
 from ..core.planning.remedies import LONGEST_SEARCH, most_points, remedies
-from ..core.process.model import wire
-from ..core.process.model.notes import height_issue
+from ..core.process import wire
+from ..core.process.model_notes import height_issue
 from ..core.simulation import payload
-from ..core.simulation.timeline import timeline
-from ..core.simulation.totals import MM3_PER_CM3, totals
+from ..core.simulation.timeline import MM3_PER_CM3, timeline, totals
 from ..core.toolpath import Toolpath
 from . import user_machines
 from .checks.collisions import collision_issues, look, margin_issues

@@ -14,10 +14,9 @@ from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
+from ..core.planning import linear_approach, program_beads
+from ..core.planning import program as programs
 from ..core.planning.beads import steps
-from ..core.planning.program import beads as program_beads
-from ..core.planning.program import build as programs
-from ..core.planning.program import linear_approach
 from ..core.program import ROTARY
 from ..core.program import Program as ProgramText
 from ..core.toolpath import Toolpath

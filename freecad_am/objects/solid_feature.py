@@ -6,7 +6,7 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
-from ..brep.guide import edges_of, triangles_of_faces
+from ..brep.curves import edges_of, triangles_of_faces
 from ..brep.hub import bodies_of
 from ..core.geometry.obstacles import Body
 from ..core.issues import InputError, Issue, Text

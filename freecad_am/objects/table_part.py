@@ -12,9 +12,9 @@ from typing import Any
 import FreeCAD as App
 import Part
 
-from ..core.geometry.curves import ada3dp, curve_table, gcode, gcode_roles
+from ..core.geometry.curves import ada3dp, bead_curves, gcode, gcode_roles
 from ..core.geometry.curves.bead_curves import POINT_FILES, ReadCurves
-from ..core.geometry.file_content import read_content
+from ..core.geometry.job_files import read_content
 from ..core.issues import InputError, Word
 
 CSV, GCODE, ADA = "csv", "gcode", "ada3dp"
@@ -44,7 +44,7 @@ class Points:
             refuse_gcode_keys(label, gcode_roles.PART, rotary)
             return ada3dp.read(base64.b64decode(self.text), label, roles)
         refuse_gcode_keys(label, roles, rotary)
-        return ReadCurves(curve_table.curves_of(self.text, label))
+        return ReadCurves(bead_curves.curves_of(self.text, label))
 
 
 def open_points(document: Any, path: str) -> Any:

@@ -14,8 +14,8 @@ from ..core.parameters.cell import CellParameters
 from ..core.parameters.process import OF_FEATURE, ProcessParameters
 from ..core.parameters.scan import ScanParameters
 from ..core.parameters.strategy import RevolutionParameters, SurfaceParameters
+from ..core.process import wire
 from ..core.process.deposit import balance as deposit_balance
-from ..core.process.model import wire
 from ..core.strategies.sequence import BY_FEATURE, BY_HEIGHT
 from ..core.toolpath import Toolpath as CoreToolpath
 from .checks.on_its_part import check_on_part

@@ -8,8 +8,8 @@ import os
 
 import FreeCAD as App
 
-from ..core.geometry import located
-from ..core.geometry.located import is_there
+from ..core.geometry import job_files
+from ..core.geometry.job_files import is_there
 from ..core.issues import InputError
 from ..core.kinematics.machines import calibration, machine
 from ..core.kinematics.urdf import reference as urdf_reference
@@ -20,7 +20,7 @@ FOLDER = os.path.join("RoboticAM", "machines")
 
 def folders() -> tuple[str, ...]:
     """Existing folders with the user's machine files; for a job of another machine, those there."""
-    relocation = located.relocation()
+    relocation = job_files.relocation()
     if relocation is not None:
         return relocation.machines
     own_folder = os.path.join(App.getUserAppDataDir(), FOLDER)

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..core.issues import Text
-from ..core.process.model.bead_model import MINUTE, BeadModel
-from ..core.process.model.wire import Measured
+from ..core.process.bead_model import MINUTE, BeadModel
+from ..core.process.wire import Measured
 from ..core.quantities import SPEEDS
 from ..core.types import Array, Integers, Mask
 

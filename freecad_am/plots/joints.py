@@ -10,8 +10,8 @@ import numpy as np
 
 from ..core.issues import Text, Word
 from ..core.kinematics.cell import Cell
-from ..core.layers.slabs import outline
-from ..core.process.model import notes
+from ..core.layers.plane_field import outline
+from ..core.process import model_notes
 from ..core.types import Array, Index, Integers, Mask
 from .chart import INF, LINE, MARKED, OUTLINE, STEP, Bars, Chart, Curve, Quantity
 from .source import Source
@@ -396,7 +396,7 @@ def distributions(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
 def heights(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
     """Predicted heights against the layer height, layer by layer, and how far the layers are off by them; none without a
     bead model."""
-    return height_charts(notes.beads(source.toolpath), layers)
+    return height_charts(model_notes.beads(source.toolpath), layers)
 
 
 def height_charts(figures: dict[str, Any] | None, layers: tuple[int, int]) -> tuple[Chart, ...]:

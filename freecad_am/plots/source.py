@@ -10,13 +10,13 @@ import numpy as np
 
 from ..core.geometry.on_hub import Group, SolidsOnHub
 from ..core.kinematics.cell import Cell
-from ..core.layers.slabs import Slabs, group_of, slabs
+from ..core.layers.plane_field import Slabs, group_of, slabs
 from ..core.motion import Motion
 from ..core.parameters.process import ProcessParameters
+from ..core.process import bead_model, model_notes, wire
+from ..core.process.bead_model import BeadModel
 from ..core.process.deposit import spacing
-from ..core.process.model import bead_model, notes, wire
-from ..core.process.model.bead_model import BeadModel
-from ..core.process.model.wire import Measured
+from ..core.process.wire import Measured
 from ..core.simulation.achievable_feed import AchievableFeed, achievable_feed
 from ..core.simulation.table_links import Rates, rates
 from ..core.simulation.timeline import Timeline, timeline, volumes
@@ -104,7 +104,9 @@ class Source:
         measured = wire.read_table(self.process.bead_model)
         return measured, bead_model.fit(*measured)
 
-    def segments(self, layers: tuple[int, int]) -> notes.Segments:
+    def segments(self, layers: tuple[int, int]) -> model_notes.Segments:
         """What the bead model predicts of the beads of layers, the last one included."""
         low, high = layers
-        return notes.segments([bead for layer, _, bead in self.toolpath if low <= layer <= high])
+        return model_notes.segments(
+            [bead for layer, _, bead in self.toolpath if low <= layer <= high]
+        )

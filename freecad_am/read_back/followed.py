@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..core.geometry import frames
-from ..core.geometry.angles import TURN
+from ..core.geometry.frames import TURN
 from ..core.issues import InputError
 from ..core.kinematics.cell import Cell
 from ..core.kinematics.inverse import opw

@@ -25,11 +25,11 @@ from ..core.planning import criteria
 from ..core.planning.external import level, optimised
 from ..core.planning.joint_path import JointPath
 from ..core.planning.task import Task
+from ..core.process import model_notes
 from ..core.process.deposit import balance as deposit_balance
 from ..core.process.deposit import spacing as layer_spacing
 from ..core.process.deposit.balance import Balance
-from ..core.process.model import notes
-from ..core.simulation import totals
+from ..core.simulation import timeline as totals
 from ..core.simulation.timeline import timeline
 from ..core.toolpath import Toolpath
 from ..core.types import Array
@@ -130,7 +130,7 @@ def build(
         "comparison": [],
         "spacing_comparison": [],
         "process": _process(process, toolpath),
-        "beads": notes.beads(toolpath),
+        "beads": model_notes.beads(toolpath),
         "classes": totals.figures_by_class(motion, process),
         "machine": None,
         "timing_s": {},
@@ -173,7 +173,7 @@ def features(
                 "spacing_comparison": rows_of_wall,
                 "beads": None
                 if feature.process.bead_model == "none"
-                else notes.beads(path, numbers),
+                else model_notes.beads(path, numbers),
             }
         )
     return entries

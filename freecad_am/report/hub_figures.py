@@ -8,11 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..core.geometry.curves.guide import Guide
+from ..core.geometry.developable import Plane
 from ..core.geometry.on_hub import Group, SolidsOnHub, middle_azimuth
-from ..core.geometry.plane import Plane
 from ..core.issues import Text
 from ..core.layers.guide_field import between
-from ..core.process.model.bead_model import MINUTE
+from ..core.process.bead_model import MINUTE
 from ..core.toolpath import Layer, Toolpath
 from ..core.types import Array
 from ..plots.chart import OUTLINE, Chart, Curve, Quantity

@@ -16,7 +16,7 @@ from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.joints import JointParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
-from ..core.process.model.notes import HEIGHTS
+from ..core.process.model_notes import HEIGHTS
 from ..objects import user_machines
 from ..objects.checks import preflight
 from ..objects.current import check_current

@@ -20,7 +20,7 @@ from ..core.planning import criteria
 from ..core.planning.joint_path import JointPath
 from ..core.planning.motion import assemble
 from ..core.planning.plan import plan_joints
-from ..core.process.deposit.layer_curve import SMOOTH
+from ..core.process.deposit.spacing import SMOOTH
 from ..core.strategies.walls import comparison as wall_comparison
 from ..core.strategies.walls.comparison import METHODS, NORMAL, Compared, Refused
 from ..core.toolpath import Toolpath

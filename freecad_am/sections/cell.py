@@ -6,7 +6,7 @@ from __future__ import annotations
 import contextlib
 from typing import Any
 
-from ..core.geometry.located import is_there
+from ..core.geometry.job_files import is_there
 from ..core.issues import InputError
 from ..core.kinematics import arrangement, proposed_cell
 from ..core.kinematics.machines import calibration

@@ -10,11 +10,11 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from ..core.geometry.located import expanded, is_there, locate
+from ..core.geometry.job_files import expanded, is_there, locate
 from ..core.kinematics.machines import calibration
 from ..core.kinematics.urdf import reference as urdf_reference
 from ..core.parameters.records import NONE
-from ..core.process.model import wire
+from ..core.process import wire
 
 ANY_INDEX = "[]"
 FEATURES = "features"

@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..core.geometry.file_content import read_content
+from ..core.geometry.job_files import read_content
 from ..core.issues import InputError, Text
 
 _INTEGER = re.compile(r"[-+]?\d{1,18}", re.ASCII)

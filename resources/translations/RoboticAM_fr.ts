@@ -1417,7 +1417,7 @@
         <translation>, car son contenu ne fait pas partie de la forme ({0})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/notes.py"/>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>. At a constant wire feed faster stretches are lower; process.wire.feed_mode: proportional would keep the cross-section, at {0} to {1} mm/s of wire</source>
         <translation>. Au même dévidage les passages plus rapides sont plus bas ; process.wire.feed_mode: proportional garderait la section, à {0} à {1} mm/s de fil</translation>
     </message>
@@ -1427,7 +1427,7 @@
         <translation>. Multiplié par {0} il atteindrait {1} : son fichier est-il en {2} ? Alors exportez-le en mm, ou donnez `scale: {3} mm` avec lui, comme part.scale (dans la fenêtre : Maillages, Échelle)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/notes.py"/>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>. The wire feed follows the speed, at {0} to {1} mm/s, and keeps the cross-section</source>
         <translation>. Le fil court en proportion de la vitesse, de {0} à {1} mm/s, et garde leur section</translation>
     </message>
@@ -1507,7 +1507,7 @@
         <translation>: le modèle de cordon prédit jusqu&apos;à {0} mm de plus en largeur ; au-dessous de {1} mm/s il n&apos;y a pas de mesures</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>; and rows with the same settings have different results: {0}; measure them again</source>
         <translation>; et des lignes déposées de la même façon ont été mesurées différemment : {0} ; mesurez-les à nouveau</translation>
     </message>
@@ -6982,7 +6982,7 @@
         <translation>un cordon est parallèle à la direction de son outil, en {0}, si bien que la buse le heurterait ; fixez un autre strategy.direction, choisissez des faces, ou donnez des directions dans le tableau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/directions/wall.py"/>
+        <location filename="../../freecad_am/core/slicing/wall_directions.py"/>
         <source>a build direction of {0} is normal to its plane of symmetry; use local</source>
         <translation>une direction de dépôt de {0} est normale à son plan de symétrie ; utilisez local</translation>
     </message>
@@ -7047,7 +7047,7 @@
         <translation>une surface de forme libre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
         <source>a front splits in {0} at layer {1}</source>
         <translation>un front se divise en {0} à la couche {1}</translation>
     </message>
@@ -7412,7 +7412,7 @@
         <translation>un sommet d&apos;une face n&apos;est pas un nombre ; exportez la pièce de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/stl_check.py"/>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>a vertex of a triangle is not a number; export the part again</source>
         <translation>un sommet d&apos;un triangle n&apos;est pas un nombre ; exportez la pièce de nouveau</translation>
     </message>
@@ -7507,12 +7507,12 @@
         <translation>sur tout le tour</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>all beads have the same wire length per millimetre; measure at least two speeds at one wire feed</source>
         <translation>tous les cordons reçoivent la même longueur de fil par millimètre ; mesurez au moins deux vitesses à une même vitesse de fil</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>all beads have the {0} {1} {2}</source>
         <translation>tous les cordons ont : {0} {1} {2}</translation>
     </message>
@@ -7527,22 +7527,22 @@
         <translation>toutes ses faces sont planes ; choisissez une pièce, ou des faces, de révolution</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/roundness.py"/>
+        <location filename="../../freecad_am/core/inspection/figures.py"/>
         <source>all points are in one line, and no circle fits; measure over a wider arc</source>
         <translation>tous les points sont sur une ligne, à laquelle aucun cercle ne convient ; mesurez sur un arc plus large</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/roundness.py"/>
+        <location filename="../../freecad_am/core/inspection/figures.py"/>
         <source>all points are in one line, and no sphere fits; measure over a wider arc</source>
         <translation>tous les points sont sur une ligne, à laquelle aucune sphère ne convient ; mesurez sur un arc plus large</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/roundness.py"/>
+        <location filename="../../freecad_am/core/inspection/figures.py"/>
         <source>all points are in one plane, and no circle fits; measure over a wider arc</source>
         <translation>tous les points sont dans un plan, auquel aucun cercle ne convient ; mesurez sur un arc plus large</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/roundness.py"/>
+        <location filename="../../freecad_am/core/inspection/figures.py"/>
         <source>all points are in one plane, and no sphere fits; measure over a wider arc</source>
         <translation>tous les points sont dans un plan, auquel aucune sphère ne convient ; mesurez sur un arc plus large</translation>
     </message>
@@ -7942,7 +7942,7 @@
         <translation>cordon {0} de {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
         <source>bead {0} starts a second time; keep the lines of a bead together</source>
         <translation>le cordon {0} recommence ; gardez ensemble les lignes d&apos;un cordon</translation>
     </message>
@@ -7957,12 +7957,12 @@
         <translation>largeur de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/notes.py"/>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>beads are predicted {0} to {1} mm high, {2} mm on average, for layers of {3} mm; set strategy.layer_height to the predicted height{4}</source>
         <translation>les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm ; réglez strategy.layer_height sur ce que font les cordons{4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/notes.py"/>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>beads are predicted {0} to {1} mm high, {2} mm on average, for layers of {3} mm{4}</source>
         <translation>les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
     </message>
@@ -7982,12 +7982,12 @@
         <translation>les cordons laissent {0} jour(s) ouverts, le plus large de {1} mm en {2} ; strategy.gap permet {3} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program/beads.py"/>
+        <location filename="../../freecad_am/core/planning/program_beads.py"/>
         <source>beads of the class {0} have no schedule, and would use the schedule of the previous bead; set process.schedule, or one in process.classes.{1}</source>
         <translation>les cordons de la classe {0} n&apos;ont pas de programme de soudage, et prendraient celui du cordon précédent ; donnez process.schedule, ou un dans process.classes.{1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program/beads.py"/>
+        <location filename="../../freecad_am/core/planning/program_beads.py"/>
         <source>beads of the class {0} have no schedule, which arc instructions need; set process.schedule, or one in process.classes.{1}</source>
         <translation>les cordons de la classe {0} n&apos;ont pas de programme de soudage, que les instructions d&apos;arc nomment ; donnez process.schedule, ou un dans process.classes.{1}</translation>
     </message>
@@ -8112,7 +8112,7 @@
         <translation>directions de dépôt de {0} couches, en tenant la buse éloignée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/directions/wall.py"/>
+        <location filename="../../freecad_am/core/slicing/wall_directions.py"/>
         <source>build directions still turn faster than {0} deg/mm on a bead of {1} mm: allow a faster turn, or use the mode fixed</source>
         <translation>les directions de dépôt ne peuvent pas être ramenées sous {0} deg/mm sur un cordon de {1} mm : permettez une rotation plus rapide, ou utilisez le mode fixed</translation>
     </message>
@@ -8727,7 +8727,7 @@
         <translation>freecad-am machines</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program/beads.py"/>
+        <location filename="../../freecad_am/core/planning/program_beads.py"/>
         <source>from an earlier version</source>
         <translation>d&apos;une version antérieure</translation>
     </message>
@@ -8737,12 +8737,12 @@
         <translation>à partir d&apos;ici la pièce pèse plus de {0} kg, {1} kg finie dont {2} kg de substrat, plus que la charge de {3} ; {4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution/spiral.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>from here the flat last turn descends from {0} to 0 mm above the previous turn, so the second half of it is over-deposited. Machine the top, or use path: layers</source>
         <translation>à partir d&apos;ici le dernier tour plat descend de {0} à 0 mm au-dessus du tour précédent, si bien que sa deuxième moitié reçoit trop de matière. Usinez le haut, ou utilisez path: layers</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution/spiral.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>from here the second turn rises from 0 to {0} mm above the flat first turn, so the first half of it is over-deposited; the end of the turn is correct. Machine the foot, or use path: layers</source>
         <translation>à partir d&apos;ici le deuxième tour monte de 0 à {0} mm au-dessus du premier tour plat, si bien que sa première moitié reçoit trop de matière ; la fin du tour est juste. Usinez le pied, ou utilisez path: layers</translation>
     </message>
@@ -8832,7 +8832,7 @@
         <translation>donnez une grandeur en {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
         <source>give a table with the columns x,y,z, then i,j,k for directions, then bead for several beads</source>
         <translation>donnez un tableau des colonnes x,y,z, puis i,j,k si des directions sont données, puis bead s&apos;il y en a plusieurs</translation>
     </message>
@@ -8922,7 +8922,7 @@
         <translation>la façon dont un programme INFORM commute une sortie avant un lieu n&apos;a pas été confirmée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
         <source>i, j, k are 0; give a direction, such as 0, 0, 1</source>
         <translation>i, j, k sont 0 ; donnez une direction, comme 0, 0, 1</translation>
     </message>
@@ -9217,7 +9217,7 @@
         <translation>elle convient aussi bien à la pièce tournée de {0} deg, si bien que son orientation est ambiguë ; donnez trois paires de points comme substrate.scan_pairs, ou mesurez dans les coordonnées de la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>it has 1 row; measure at least {0} beads</source>
         <translation>il a 1 ligne ; mesurez au moins {0} cordons</translation>
     </message>
@@ -9322,7 +9322,7 @@
         <translation>elle n&apos;a pas de points à jouer ; choisissez une autre trajectoire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
         <source>it has no points; {0}</source>
         <translation>il n&apos;a pas de points ; {0}</translation>
     </message>
@@ -9342,7 +9342,7 @@
         <translation>il n&apos;a pas de {0}, mais {1} {2}(s) ; nommez-en d&apos;autres, à partir de {3}1</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/guide.py"/>
+        <location filename="../../freecad_am/brep/curves.py"/>
         <source>it has no {0}; choose from Edge1 to Edge{1}</source>
         <translation>il n&apos;a pas de {0} ; choisissez de Edge1 à Edge{1}</translation>
     </message>
@@ -9377,12 +9377,12 @@
         <translation>il a {0} axes, dont {1} prismatiques</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
         <source>it has {0} columns; {1}</source>
         <translation>il a {0} colonnes ; {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/guide.py"/>
+        <location filename="../../freecad_am/brep/curves.py"/>
         <source>it has {0} edges, and a guide uses only some; choose them, as in edges: [Edge1]</source>
         <translation>il a {0} arêtes, et un guide n&apos;en utilise que quelques-unes ; choisissez-les, comme dans edges: [Edge1]</translation>
     </message>
@@ -9392,12 +9392,12 @@
         <translation>il a {0} faces qui ne sont pas planes ; nommez celles de la paroi dans part.faces</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
         <source>it has {0} numbers in place of {1}; fill the gap, or remove the line</source>
         <translation>elle a {0} nombres au lieu de {1} ; remplissez le vide, ou enlevez la ligne</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>it has {0} rows; measure at least {1} beads</source>
         <translation>il a {0} lignes ; mesurez au moins {1} cordons</translation>
     </message>
@@ -9512,7 +9512,7 @@
         <translation>il est vide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
         <source>it is empty; fill the gap, or remove the line</source>
         <translation>elle est vide ; remplissez le vide, ou enlevez la ligne</translation>
     </message>
@@ -9632,7 +9632,7 @@
         <translation>ce n&apos;est pas une étape de cet atelier ; choisissez-en une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/wire.py"/>
+        <location filename="../../freecad_am/core/process/wire.py"/>
         <source>it is not a table: it contains bytes that are not UTF-8 text; save it as CSV in UTF-8</source>
         <translation>ce n&apos;est pas un tableau : il contient des octets qui ne sont pas du texte UTF-8 ; enregistrez-le en CSV UTF-8</translation>
     </message>
@@ -9722,12 +9722,12 @@
         <translation>il est coupé après {0} de {1} sommets ; exportez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/stl_check.py"/>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>it is truncated, or not an STL file: its header counts {0} triangles, but its size holds {1}; export the part again</source>
         <translation>il est tronqué ou n&apos;est pas un fichier STL : il annonce {0} triangles et n&apos;en contient que {1} ; exportez la pièce de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/stl_check.py"/>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>it is truncated: the last solid has no end; export the part again</source>
         <translation>il est tronqué : son dernier solide n&apos;a pas de fin ; exportez la pièce de nouveau</translation>
     </message>
@@ -9922,7 +9922,7 @@
         <translation>ses colonnes s&apos;appellent {0} ; appelez celles des coordonnées x, y et z</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
         <source>its columns are {0}; {1}</source>
         <translation>ses colonnes sont {0} ; {1}</translation>
     </message>
@@ -10332,12 +10332,12 @@
         <translation>à plat</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/notes.py"/>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>limited to the speed of the axes, beads are predicted {0} to {1} mm high, {2} mm on average, for layers of {3} mm; set strategy.layer_height to the predicted height{4}</source>
         <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm ; réglez strategy.layer_height sur ce que font les cordons{4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/notes.py"/>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>limited to the speed of the axes, beads are predicted {0} to {1} mm high, {2} mm on average, for layers of {3} mm{4}</source>
         <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
     </message>
@@ -10677,7 +10677,7 @@
         <translation>le poignet n&apos;est pas sphérique et les axes 4 et 5 ne se coupent pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/wire.py"/>
+        <location filename="../../freecad_am/core/process/wire.py"/>
         <source>no access</source>
         <translation>pas d&apos;accès</translation>
     </message>
@@ -11097,7 +11097,7 @@
         <translation>sur {0} % des faces le dépôt prédit ne dépasse pas la pièce de {1} mm, sur {2} % il finit dans la pièce : en {3} il reste {4} mm à usiner. {5}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/notes.py"/>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>on {0} % of the length, in {1} of {2} beads and {3} segments, the required width needs a speed outside the {4} to {5} mm/min of the table; the speed is clamped, and the width deviates: it is {6} mm at worst instead of {7} mm. Straight beads of the table are {8} to {9} mm wide: set process.bead_width in this range, or measure beads at other speeds</source>
         <translation>sur {0} % de la longueur, dans {1} de {2} cordons et {3} segments, la largeur demandée exige une vitesse hors de celles du tableau, {4} à {5} mm/min ; elle y est maintenue, et la largeur n&apos;est pas tenue : elle est de {6} mm au plus loin des {7} mm. Les cordons droits du tableau ont {8} à {9} mm de large : demandez une process.bead_width parmi celles-ci, ou mesurez des cordons à d&apos;autres vitesses</translation>
     </message>
@@ -11142,7 +11142,7 @@
         <translation>seule une boucle d&apos;attente est comprise</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program/beads.py"/>
+        <location filename="../../freecad_am/core/planning/program_beads.py"/>
         <source>only an output can change the schedule within a bead: calls stop the machine, and arc instructions may; use output, or remove the schedules of start and end</source>
         <translation>un autre programme de soudage à l&apos;intérieur d&apos;un cordon n&apos;est transmis que par une sortie : les appels arrêtent la machine, et que les instructions d&apos;arc ne le fassent pas n&apos;a pas été confirmé ; prenez output, ou omettez les programmes de start et end</translation>
     </message>
@@ -11592,12 +11592,12 @@
         <translation>rotation non permise</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/notes.py"/>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>rows of the bead table have the same settings but different results: {0}; measure these beads again, or remove one of each pair</source>
         <translation>des lignes du tableau de cordons ont les mêmes réglages et des mesures différentes : {0} ; mesurez ces cordons de nouveau ou retirez une ligne de chaque paire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>rows with the same settings have different results: {0}; with both of each pair the bead width would increase with speed; measure these beads again, or remove the wrong row</source>
         <translation>des lignes aux mêmes réglages ont des résultats différents : {0} ; avec les deux de chaque paire la largeur augmenterait avec la vitesse ; mesurez ces cordons à nouveau, ou retirez la ligne fausse</translation>
     </message>
@@ -11632,7 +11632,7 @@
         <translation>recherche d&apos;un changement faisable : {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/suited.py"/>
+        <location filename="../../freecad_am/core/planning/remedies.py"/>
         <source>searching for a suitable cell: {0}</source>
         <translation>recherche d&apos;une cellule où cela peut se faire : {0}</translation>
     </message>
@@ -11837,7 +11837,7 @@
         <translation>vitesse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>speeds and radii vary only together</source>
         <translation>vitesses et rayons ne varient qu&apos;ensemble</translation>
     </message>
@@ -12112,7 +12112,7 @@
         <translation>la base touche {what}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
         <source>the bead has only one point; give at least two</source>
         <translation>un cordon d&apos;un seul point n&apos;a pas de chemin ; donnez-lui deux points ou plus</translation>
     </message>
@@ -12122,12 +12122,12 @@
         <translation>le modèle de cordon règle la vitesse d&apos;avance de tous les cordons ; omettez-la, ou prenez bead_model: none</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>the bead width increases with speed (m = {0}); check the columns of the table</source>
         <translation>les cordons s&apos;élargissent avec la vitesse (m = {0}) ; vérifiez les colonnes du tableau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/wire.py"/>
+        <location filename="../../freecad_am/core/process/wire.py"/>
         <source>the calibration table cannot be read ({0}); use none, csw or the path of a table</source>
         <translation>le tableau d&apos;étalonnage ne peut pas être lu ({0}) ; donnez none, csw ou le chemin d&apos;un tableau</translation>
     </message>
@@ -12167,12 +12167,12 @@
         <translation>la forme explicite est pour six articulations, il y en a {0} ; omettez opw</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/wire.py"/>
+        <location filename="../../freecad_am/core/process/wire.py"/>
         <source>the column {0} appears twice; remove one</source>
         <translation>la colonne {0} est là deux fois ; gardez-en une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/wire.py"/>
+        <location filename="../../freecad_am/core/process/wire.py"/>
         <source>the column {0} is missing; name in its first line {1}</source>
         <translation>il n&apos;a pas de colonne {0} ; nommez dans sa première ligne {1}</translation>
     </message>
@@ -12267,7 +12267,7 @@
         <translation>le dépôt est commandé autrement que planifié</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program/linear_approach.py"/>
+        <location filename="../../freecad_am/core/planning/linear_approach.py"/>
         <source>the deposit needs a linear approach to the bead, but the program begins at the bead itself; set a retract distance, or another {0}</source>
         <translation>le dépôt commence par un mouvement linéaire vers le cordon, et le programme commence au cordon même ; donnez une distance de retrait, ou un autre {0}</translation>
     </message>
@@ -12282,7 +12282,7 @@
         <translation>la documentation ne dit pas si WAIT FOR relit $ANIN</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/start_edges.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>the edge is {0} mm off the wall at {1}; choose edges of the wall faces</source>
         <translation>l&apos;arête est à {0} mm de la paroi en {1} ; choisissez des arêtes des faces mêmes de la paroi</translation>
     </message>
@@ -12657,7 +12657,7 @@
         <translation>la ligne de {0} mm traverse {1} % du volume</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program/linear_approach.py"/>
+        <location filename="../../freecad_am/core/planning/linear_approach.py"/>
         <source>the linear approach to the bead would leave the checked path by {0} mm; use a shorter retract distance, or another {1}</source>
         <translation>le dépôt commence par un mouvement linéaire vers le cordon, qui s&apos;écarterait de {0} mm du chemin examiné ; donnez une distance de retrait plus courte, ou un autre {1}</translation>
     </message>
@@ -12752,7 +12752,7 @@
         <translation>la machine attend avant {0} couches sur {1}, jusqu&apos;à {2} s et {3} s en tout, afin qu&apos;aucune couche ne dure moins de {4} s et qu&apos;on ne revienne à aucun solide avant {5} s</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>the material</source>
         <translation>le matériau</translation>
     </message>
@@ -13017,7 +13017,7 @@
         <translation>le plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
         <source>the point repeats the previous line; remove it</source>
         <translation>le point répète la ligne précédente ; retirez-le</translation>
     </message>
@@ -13192,7 +13192,7 @@
         <translation>le vecteur de rotation a une longueur de {0} rad, plus d&apos;un tour ; donnez RX RY RZ en rad, comme le pupitre les affiche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/wire.py"/>
+        <location filename="../../freecad_am/core/process/wire.py"/>
         <source>the row has more values than columns; write decimals with a point</source>
         <translation>il a plus de valeurs que de colonnes ; écrivez les décimales avec un point</translation>
     </message>
@@ -13387,12 +13387,12 @@
         <translation>il n&apos;y a pas de ligne ; donnez-en une par articulation</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/notes.py"/>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>the table was measured at a wire feed of {0} mm/s, but the job uses {1} mm/s; set process.wire.feed to auto or to the measured feed, or measure a table at the feed of the job</source>
         <translation>le tableau a été mesuré avec un dévidage de {0} mm/s, le travail a {1} mm/s ; mettez process.wire.feed à auto ou à cette valeur, ou mesurez un tableau avec celle du travail</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/notes.py"/>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>the table was measured at a wire feed of {0} to {1} mm/s, but the job uses {2} mm/s; set process.wire.feed to auto or to the measured feed, or measure a table at the feed of the job</source>
         <translation>la table a été mesurée à une vitesse de fil de {0} à {1} mm/s, le travail a {2} mm/s ; mettez process.wire.feed à auto ou à une de celles-ci, ou mesurez une table à cette vitesse</translation>
     </message>
@@ -13562,12 +13562,12 @@
         <translation>la transformation change pendant que le dépôt est en marche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>the travel speed of beads is {0} to {1} mm/s, but {2} at {3} mm/s or more; change process.travel_speed, process.bead_width or process.classes, or measure beads at these speeds</source>
         <translation>les cordons sont déposés de {0} à {1} mm/s, et {2} à {3} mm/s ou plus ; changez process.travel_speed, process.bead_width ou process.classes, ou mesurez des cordons à ces vitesses</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>the travel speed of beads is {0} to {1} mm/s, but {2} at {3} to {4} mm/s; change process.travel_speed, process.bead_width or process.classes, or measure beads at these speeds</source>
         <translation>les cordons sont déposés de {0} à {1} mm/s, et {2} de {3} à {4} mm/s ; changez process.travel_speed, process.bead_width ou process.classes, ou mesurez des cordons à ces vitesses</translation>
     </message>
@@ -13732,12 +13732,12 @@
         <translation>le fil de ArcL est dit par ses welddata</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/wire.py"/>
+        <location filename="../../freecad_am/core/process/wire.py"/>
         <source>the wire feeds {0} mm3/s, but beads of these classes, at their own travel speeds, need {1} mm3/s, so they are over- or under-filled; give them a schedule with a matching wire feed, or the travel speed of the other beads</source>
         <translation>le fil amène {0} mm3/s, mais les cordons de ces classes, à leurs propres vitesses d&apos;avance, demandent {1} mm3/s, si bien qu&apos;ils reçoivent trop ou trop peu ; donnez-leur un programme de soudage au dévidage voulu, ou la vitesse d&apos;avance des autres cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/wire.py"/>
+        <location filename="../../freecad_am/core/process/wire.py"/>
         <source>the wire feeds {0} mm3/s, {1} mm/s of {2} mm wire, but beads of {3} x {4} mm at {5} mm/s need {6} mm3/s; set process.wire.feed to {7} mm/s or to auto, or correct width, layer height and travel speed</source>
         <translation>le fil amène {0} mm3/s, {1} mm/s de fil de {2} mm, mais des cordons de {3} x {4} mm à {5} mm/s demandent {6} mm3/s ; mettez process.wire.feed à {7} mm/s ou à auto, ou corrigez largeur, hauteur de couche et vitesse d&apos;avance</translation>
     </message>
@@ -13797,7 +13797,7 @@
         <translation>il y a trop de valeurs ; donnez-en au plus {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program/build.py"/>
+        <location filename="../../freecad_am/core/planning/program.py"/>
         <source>there is no bead {0} in a layer {1}; choose from layers 0 to {2}</source>
         <translation>il n&apos;y a pas de cordon {0} dans une couche {1} ; choisissez parmi les couches 0 à {2}</translation>
     </message>
@@ -13827,7 +13827,7 @@
         <translation>il n&apos;y a pas de couche au-dessus de {0} : la dernière des {1} est {2} ; donnez-en une plus basse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/wire.py"/>
+        <location filename="../../freecad_am/core/process/wire.py"/>
         <source>there is no {0}; correct or remove the row</source>
         <translation>il n&apos;y a pas de {0} ; corrigez la ligne, ou retirez-la</translation>
     </message>
@@ -13892,7 +13892,7 @@
         <translation>ceci n&apos;est pas une cellule ; choisissez-en une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/file_content.py"/>
+        <location filename="../../freecad_am/core/geometry/job_files.py"/>
         <source>this is not a file but a device, a pipe or a folder; name a file</source>
         <translation>ce n&apos;est pas un fichier mais un périphérique, un tube ou un dossier ; nommez un fichier</translation>
     </message>
@@ -14092,7 +14092,7 @@
         <translation>&lt;{0}&gt; dans l&apos;articulation {1} est inconnu et peut déplacer les corps ; supprimez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/wire.py"/>
+        <location filename="../../freecad_am/core/process/wire.py"/>
         <source>unknown column {0}; remove it, or rename it to one of {1}</source>
         <translation>la colonne {0} est inconnue ; supprimez-la ou nommez-la l&apos;un de {1}</translation>
     </message>
@@ -14227,7 +14227,7 @@
         <translation>volume de la pièce moins ce que les cordons couvrent de chaque couche, à la largeur comptée, fois la hauteur de couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/notes.py"/>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>w = {0} v^(-1/3) + {1} / r + {2} with R2 = {3} and RMSE = {4} mm; a width of {5} mm takes travel speeds of {6} to {7} mm/min</source>
         <translation>w = {0} v^(-1/3) + {1} / r + {2} avec R2 = {3} et RMSE = {4} mm ; une largeur de {5} mm demande des vitesses d&apos;avance de {6} à {7} mm/min</translation>
     </message>
@@ -14307,7 +14307,7 @@
         <translation>largeur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/wire.py"/>
+        <location filename="../../freecad_am/core/process/wire.py"/>
         <source>wire feed {0} m/min is not a positive number; correct or remove the row</source>
         <translation>le dévidage {0} m/min n&apos;est pas un nombre positif ; corrigez la ligne, ou retirez-la</translation>
     </message>
@@ -14427,7 +14427,7 @@
         <translation>{0} % des vitesses articulaires n&apos;est pas de 1 à 100</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/notes.py"/>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>{0} % of the length bends more tightly than the beads of the table, of {1} mm radius or more, and is treated like these; widths are only estimates there</source>
         <translation>{0} % de la longueur est plus courbée que les cordons du tableau, de {1} mm ou plus, et compte comme courbée pareillement ; les largeurs n&apos;y sont qu&apos;estimées</translation>
     </message>
@@ -14502,12 +14502,12 @@
         <translation>{0} et {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>{0} and {1} (height {2} and {3} mm)</source>
         <translation>{0} et {1} (hauteur {2} et {3} mm)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>{0} and {1} (width {2} and {3} mm)</source>
         <translation>{0} et {1} (largeur {2} et {3} mm)</translation>
     </message>
@@ -14607,7 +14607,7 @@
         <translation>{0} est un objet d’un autre document, {1} ; donnez-en un de {2}, par exemple une copie</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/stl_check.py"/>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>{0} bytes follow its {1} triangles, possibly more triangles; export the part again, as one solid</source>
         <translation>{0} octets suivent ses {1} triangles et peuvent en être d&apos;autres ; exportez la pièce de nouveau en un solide</translation>
     </message>
@@ -14847,17 +14847,17 @@
         <translation>{0} de {1} à {2} : {3} ; le robot commence au corps {4} ; ou écrivez `external: {5}` pour utiliser le rail et le positionneur du fichier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
         <source>{0} fronts merge at layer {1}</source>
         <translation>{0} fronts se rejoignent à la couche {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
         <source>{0} fronts merge, in {1} places, at layer {2}</source>
         <translation>{0} fronts se rejoignent, en {1} endroits, à la couche {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
         <source>{0} fronts split in {1} each at layer {2}</source>
         <translation>{0} fronts se divisent chacun en {1} à la couche {2}</translation>
     </message>
@@ -15347,7 +15347,7 @@
         <translation>{0} n&apos;est pas une face ; choisissez des faces ou toute la forme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution/spiral.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>{0} is not a full turn; use path: layers</source>
         <translation>{0} n&apos;est pas un tour entier ; utilisez path: layers</translation>
     </message>
@@ -15432,7 +15432,7 @@
         <translation>{0} n&apos;est pas un nombre ; donnez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
         <source>{0} is not a number; give {1} as a number with a decimal point</source>
         <translation>{0} n&apos;est pas un nombre ; donnez {1} comme nombre à point décimal</translation>
     </message>
@@ -15862,7 +15862,7 @@
         <translation>{0} est balayé et a {1} points avec son approche, et il n&apos;a pas été confirmé qu&apos;un balayage se poursuit dans un autre programme ; permettez plus de points dans un seul, ou une plus grande erreur de corde</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
         <source>{0} is {1}; give a number of at most {2}</source>
         <translation>{0} est {1} ; donnez un nombre d&apos;au plus {2}</translation>
     </message>
@@ -15947,12 +15947,12 @@
         <translation>à {0} mm au-dessus de sa pointe la torche s&apos;étend à {1} mm de son axe, mais le cône de la buse à {2} mm seulement, et c&apos;est le cône qui est tenu à l&apos;écart du dépôt ; donnez un cell.nozzle.half_angle d&apos;au moins {3} deg, ou une cell.nozzle.length plus petite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/iso_height.py"/>
+        <location filename="../../freecad_am/core/slicing/meridian_levels.py"/>
         <source>{0} mm exceeds the height of the wall ({1} mm); use a smaller layer height, or layers along the wall (spacing: arc-length)</source>
         <translation>{0} mm sont plus que la hauteur de la paroi ({1} mm) ; donnez moins, ou des couches le long de la paroi (spacing: arc-length)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/arc_length.py"/>
+        <location filename="../../freecad_am/core/slicing/meridian_levels.py"/>
         <source>{0} mm exceeds the length of the wall ({1} mm); use a smaller layer height</source>
         <translation>{0} mm sont plus que la longueur de la paroi ({1} mm) ; donnez moins</translation>
     </message>
@@ -16037,7 +16037,7 @@
         <translation>{0} mm/s ne peuvent pas être écrits ; utilisez {1} à {2} mm/s</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>{0} mm/s is more than the fastest, {1} mm/s; give the slower speed here</source>
         <translation>{0} mm/s est plus que le plus rapide, {1} mm/s ; donnez ici la vitesse la plus lente</translation>
     </message>
@@ -16342,12 +16342,12 @@
         <translation>{0} points ne tiennent pas une pièce ; mesurez-en {1} ou plus partout</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/roundness.py"/>
+        <location filename="../../freecad_am/core/inspection/figures.py"/>
         <source>{0} points do not define a circle; measure at least {1}</source>
         <translation>{0} points ne font pas un cercle ; mesurez-en {1} ou plus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/roundness.py"/>
+        <location filename="../../freecad_am/core/inspection/figures.py"/>
         <source>{0} points do not define a sphere; measure at least {1}</source>
         <translation>{0} points ne font pas une sphère ; mesurez-en {1} ou plus</translation>
     </message>
@@ -16382,12 +16382,12 @@
         <translation>{0} tourne un axe et strategy.rotary vaut {1} ; indiquez-y comment A, B et C tournent l&apos;outil ({2}), ou retirez-les</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>{0} row {1}</source>
         <translation>{0} ligne {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>{0} row {1} (line {2})</source>
         <translation>{0} ligne {1} (ligne {2} du fichier)</translation>
     </message>
@@ -16522,7 +16522,7 @@
         <translation>{0} serait à {1} {2}, sa limite est {3} {4} ; déplacez la pièce sur la table</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/wire.py"/>
+        <location filename="../../freecad_am/core/process/wire.py"/>
         <source>{0} {1} is not a number; correct or remove the row</source>
         <translation>{0} {1} n&apos;est pas un nombre ; corrigez la ligne, ou retirez-la</translation>
     </message>
@@ -16542,7 +16542,7 @@
         <translation>{0} {1} est choisi, mais le travail a {2} : les mouvements sont parcourus avec celui de la cellule ; comparez les deux, et corrigez le programme ou le travail</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>{0} {1} {2} is not a positive number; correct or remove the row</source>
         <translation>{0} {1} {2} n&apos;est pas un nombre positif ; corrigez la ligne, ou retirez-la</translation>
     </message>
@@ -16567,7 +16567,7 @@
         <translation>{0}, et moins de 1 % de sa surface surplombe de plus de 45 deg, empilé suivant {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>{0}, and {1}</source>
         <translation>{0}, et {1}</translation>
     </message>
@@ -16812,7 +16812,7 @@
         <translation>{0} : {1} = {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/stl_check.py"/>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>{0}: {1} bytes after its triangles are not read</source>
         <translation>{0} : {1} octets après ses triangles ne sont pas lus</translation>
     </message>
@@ -16902,12 +16902,12 @@
         <translation>{0} ; pour une seule vitesse, donnez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>{0}; measure at least two speeds</source>
         <translation>{0} ; mesurez au moins deux vitesses</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>{0}; measure at least two speeds and two radii</source>
         <translation>{0} ; mesurez au moins deux vitesses et deux rayons</translation>
     </message>

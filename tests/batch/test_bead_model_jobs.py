@@ -11,7 +11,7 @@ import numpy as np
 import Part
 import pytest
 
-from freecad_am.core.process.model.wire import BUILT_IN, FOLDER
+from freecad_am.core.process.wire import BUILT_IN, FOLDER
 from freecad_am.posts import catalogue
 
 FIN = """\

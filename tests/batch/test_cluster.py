@@ -472,5 +472,5 @@ def test_files_of_jobs_are_opened_by_where_they_are():
         if looks.search(line) and "locate(" not in line
     }
     assert found == {
-        'geometry/file_content.py: with open(descriptor, "rb") as stream:',  # of what is located
+        'geometry/job_files.py: with open(descriptor, "rb") as stream:',  # of what is located
     }

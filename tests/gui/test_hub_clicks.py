@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from freecad_am import api
-from freecad_am.core.process.model import wire
+from freecad_am.core.process import wire
 from freecad_am.gui.path import colouring, legend
 from freecad_am.gui.views.hub import HubView
 

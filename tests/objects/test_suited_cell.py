@@ -15,7 +15,7 @@ from freecad_am import api
 from freecad_am.core.kinematics import external
 from freecad_am.core.kinematics.proposed_cell import cell_of
 from freecad_am.core.parameters.cell_records import EXTERNAL
-from freecad_am.core.planning import suited
+from freecad_am.core.planning import remedies
 from freecad_am.macro import suit
 
 pytestmark = pytest.mark.any_version
@@ -41,9 +41,9 @@ def dome(doc, monkeypatch):
 @pytest.fixture
 def looked(monkeypatch):
     """How many layers were planned to find a cell."""
-    counts, errors = [], suited._errors
+    counts, errors = [], remedies._errors
     monkeypatch.setattr(
-        suited,
+        remedies,
         "_errors",
         lambda job, some, told: counts.append(len(some.layers)) or errors(job, some, told),
     )
@@ -157,7 +157,7 @@ def test_layers_that_failed_are_planned_in_the_next_search(doc, dome, monkeypatc
         planned.append(numbers)
         return {"SINGULAR"} if beside in numbers and job.settings == usual else set()
 
-    monkeypatch.setattr(suited, "_errors", errors)
+    monkeypatch.setattr(remedies, "_errors", errors)
     usual = api.result(first)
     assert not suit.suit(first, toolpath)
     assert all(beside not in numbers for numbers in planned)

@@ -9,10 +9,10 @@ import pytest
 from freecad_am.core.layers.stacking import prepare_stack
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.process import bead_model, model_notes, wire
 from freecad_am.core.process.deposit import spacing
-from freecad_am.core.process.model import bead_model, notes, wire
 from freecad_am.core.simulation import timeline
-from freecad_am.core.simulation.totals import totals
+from freecad_am.core.simulation.timeline import totals
 from freecad_am.plots import catalogue, draw, joints
 from freecad_am.plots.chart import together
 from freecad_am.plots.joints import PATH, TIME, rows
@@ -170,7 +170,7 @@ def test_spacing_is_that_of_the_layers(dome):
 
 
 def test_what_a_bead_model_predicts(modelled):
-    told = notes.beads(modelled.toolpath)
+    told = model_notes.beads(modelled.toolpath)
     height, drift = joints.heights(modelled, (1, 3))
     for number, kind in enumerate(("min", "mean", "max")):
         assert curve([height], 0, number).y.tolist() == [

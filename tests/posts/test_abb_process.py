@@ -18,7 +18,7 @@ from freecad_am.core.parameters.program import (
     ScheduleParameters,
     TriggerParameters,
 )
-from freecad_am.core.planning.program import linear_approach
+from freecad_am.core.planning import linear_approach
 from freecad_am.core.program import Call, DepositOff, DepositOn, Moves, WaitBelow, WaitInput, Weave
 from freecad_am.core.read_moves import Event
 from freecad_am.objects.program import refuse

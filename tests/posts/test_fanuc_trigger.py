@@ -11,7 +11,7 @@ import pytest
 
 from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.parameters.program import ProgramParameters, StartParameters, TriggerParameters
-from freecad_am.core.planning.program.build import rows_from
+from freecad_am.core.planning.program import rows_from
 from freecad_am.core.program import DepositOff, DepositOn, Moves, Weave
 from freecad_am.posts.fanuc import post as fanuc
 from freecad_am.verify import verify

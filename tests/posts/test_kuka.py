@@ -16,7 +16,7 @@ from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.external import MECHANISMS
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.planning.program.build import build_header
+from freecad_am.core.planning.program import build_header
 from freecad_am.core.program import (
     Call,
     DepositOff,

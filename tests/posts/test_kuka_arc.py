@@ -14,7 +14,7 @@ from freecad_am import kdl as kdl_chain
 from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.parameters.bead_classes import BeadStart
 from freecad_am.core.parameters.program import ProgramParameters, ScheduleParameters
-from freecad_am.core.planning.program import linear_approach
+from freecad_am.core.planning import linear_approach
 from freecad_am.objects.program import Job, posted
 from freecad_am.posts import catalogue
 from freecad_am.posts.kuka import post as kuka

@@ -11,7 +11,7 @@ import pytest
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.cell import CellParameters
-from freecad_am.core.planning.program.build import external_kinds
+from freecad_am.core.planning.program import external_kinds
 from freecad_am.objects.checks import controllers
 from freecad_am.posts import catalogue
 from tests.posts.planned_jobs import PULSES, WAYS

@@ -10,7 +10,7 @@ import pytest
 from freecad_am.core.issues import ERROR
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters, StartParameters
 from freecad_am.core.planning.beads import steps
-from freecad_am.core.planning.program.build import rows_from
+from freecad_am.core.planning.program import rows_from
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
 from tests.posts.driven import Drive, depth_in_hub, depths_in_nozzle

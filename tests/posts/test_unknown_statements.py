@@ -11,7 +11,7 @@ import pytest
 from freecad_am.batch.check import _add_statement
 from freecad_am.core.issues import ERROR, WARNING, InputError
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.planning.program.build import build_header
+from freecad_am.core.planning.program import build_header
 from freecad_am.posts import catalogue
 from freecad_am.read_back import followed
 from freecad_am.read_back.selected import selection_findings

@@ -17,7 +17,7 @@ from ...core.parameters.build_direction import BuildDirectionParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.records import NONE as NO_RECORDS
 from ...core.parameters.strategy import LayerParameters
-from ...core.process.model import wire
+from ...core.process import wire
 from ...sections import fields
 from . import material
 from .part_source import PartSource, part_of

@@ -17,8 +17,8 @@ from ...core.parameters.build_direction import BuildDirectionParameters
 from ...core.parameters.filled import SolidParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.strategy import LayerParameters
-from ...core.process.model import wire
-from ...core.process.model.wire import model_wire_feed
+from ...core.process import wire
+from ...core.process.wire import model_wire_feed
 from ...sections import fields, tree
 from .feature_sections import (
     direction_as_text,

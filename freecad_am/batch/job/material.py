@@ -10,11 +10,11 @@ import os
 from pathlib import Path
 from typing import Any
 
-from ...core.geometry.located import is_there
+from ...core.geometry.job_files import is_there
 from ...core.issues import InputError
 from ...core.parameters import bead_classes
 from ...core.parameters import field as f
-from ...core.process.model.wire import BUILT_IN, load
+from ...core.process.wire import BUILT_IN, load
 from ...sections import fields, tree
 from ...sections.paths import absolute, folder_of
 

@@ -8,7 +8,7 @@ import re
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ...core.geometry.located import is_there
+from ...core.geometry.job_files import is_there
 from ...core.geometry.mesh.file_unit import MESHES, refuse_scale
 from ...core.issues import InputError, Text
 from ...core.parameters import field as f

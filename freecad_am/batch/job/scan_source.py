@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from ...core.families.registry import family_of
-from ...core.geometry.located import is_there
+from ...core.geometry.job_files import is_there
 from ...core.issues import InputError
 from ...core.parameters import field as f
 from ...core.parameters.filled import PLANES

@@ -16,7 +16,7 @@ import os
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from ...core.geometry import located
+from ...core.geometry import job_files
 from ...core.issues import InputError, Text
 from ...sections import tree
 from .. import run
@@ -126,7 +126,7 @@ def _folders(columns: list[str], cells: list[list[str]]) -> list[str]:
 def _checked(row: Row, files_by_cell: dict[Any, frozenset[str]]) -> Row:
     """The row with its error or files; `files_by_cell`: files of cells met before."""
     try:
-        with located.record_names() as named:
+        with job_files.record_names() as named:
             job_read = job.from_tree(row.tree(), row.path)
     except InputError as error:
         return replace(row, error=error)
@@ -140,11 +140,11 @@ def _checked(row: Row, files_by_cell: dict[Any, frozenset[str]]) -> Row:
 
 def _files_of_cell(job_read: job.Job) -> frozenset[str]:
     """Files of the machines, with the shapes of their links. Planning the row reports their errors."""
-    with located.record_names() as named, contextlib.suppress(InputError):
+    with job_files.record_names() as named, contextlib.suppress(InputError):
         cell = run.resolved_cell(job_read)
         for shape in () if cell is None else cell.machine.shapes:
             if shape is not None:
-                located.locate(shape.path)
+                job_files.locate(shape.path)
     return frozenset(named)
 
 

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shapes from files, without a document."""
+"""Shapes from files, without a document; checks of STL files."""
 
 from __future__ import annotations
 
 import os
+import struct
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -16,9 +17,9 @@ import Mesh
 import numpy as np
 import Part
 
-from ...core.geometry.located import locate
+from ...core.geometry.job_files import locate
 from ...core.geometry.mesh.file_unit import HEAD, MESHES, unit_issues
-from ...core.issues import InputError, Issue
+from ...core.issues import NOTE, InputError, Issue, Text
 from ...core.types import Array, Index, Integers
 from . import sandbox
 from .sandbox import read_in_sandbox
@@ -111,7 +112,7 @@ def placed_mesh(mesh: Any, matrix: Any) -> Any:
 
 
 def _mesh(file: Path, where: str, scale: float) -> tuple[Any, tuple[Issue, ...]]:
-    from . import obj_mesh, stl_check, three_mf  # few parts are meshes
+    from . import obj_mesh, three_mf  # few parts are meshes
 
     mesh = Mesh.Mesh()
     issues: tuple[Issue, ...] = ()
@@ -127,7 +128,7 @@ def _mesh(file: Path, where: str, scale: float) -> tuple[Any, tuple[Issue, ...]]
         if obj.is_mixed:
             mesh.removeDuplicatedPoints()
     else:
-        corners, issues = stl_check.stl_triangles(file, where)
+        corners, issues = stl_triangles(file, where)
         _read_stl(mesh, file, corners)
     if not mesh.CountFacets:
         raise InputError("EMPTY_FILE", where, "it holds no triangles; export the part again")
@@ -290,3 +291,116 @@ def _triangles(path: Path) -> tuple[Array, Integers]:
     return np.array([(p.x, p.y, p.z) for p in points], dtype=float), np.array(
         corners, dtype=np.int64
     ).reshape(-1, 3)
+
+
+# ---- The triangles of an STL file, all accounted for
+#
+# FreeCAD's own reader drops triangles with a number that it cannot read, anything after the last
+# one, and the rest of a truncated file, without a message.
+
+CONTENT = "FILE_CONTENT"
+HEADER_BYTES, RECORD = 84, 50  # bytes of the head of a binary file, and of a triangle
+TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+COMMENTS = ("#", ";", "//")
+BETWEEN = ("outer", "endfacet", "end", "color")
+
+
+def stl_triangles(file: Path, where: str) -> tuple[Array, tuple[Issue, ...]]:
+    """Corners (m, 3, 3) of the triangles of every solid in an STL file, and a note on bytes after
+    them.
+
+    InputError BAD_FILE where it is cut off, or has anything else than triangles.
+    """
+    data = file.read_bytes()
+    count = struct.unpack_from("<I", data, 80)[0] if len(data) >= HEADER_BYTES else -1
+    is_binary = count >= 0 and (len(data) == HEADER_BYTES + RECORD * count or not _is_text(data))
+    corners, issues = _binary(data, count, where) if is_binary else (_ascii(data, where), ())
+    if not np.isfinite(corners).all():
+        raise InputError(
+            "BAD_FILE", where, "a vertex of a triangle is not a number; export the part again"
+        )
+    return corners, issues
+
+
+def _is_text(data: bytes) -> bool:
+    """Whether a file that is no sound binary one is text."""
+    head = data[:4096].removeprefix(b"\xef\xbb\xbf").lstrip().lower()
+    return b"\0" not in head and (head.startswith((b"solid", b"#", b"//")) or b"facet" in head)
+
+
+def _binary(data: bytes, count: int, where: str) -> tuple[Array, tuple[Issue, ...]]:
+    available = (len(data) - HEADER_BYTES) // RECORD
+    if available < count:
+        raise InputError(
+            "BAD_FILE",
+            where,
+            "it is truncated, or not an STL file: its header counts {:,} triangles, but its size "
+            "holds {:,}; export the part again",
+            count,
+            available,
+        )
+    trailing = data[HEADER_BYTES + RECORD * count :]
+    if len(trailing.strip(b"\0 \t\r\n")) >= RECORD:
+        raise InputError(
+            "BAD_FILE",
+            where,
+            "{:,} bytes follow its {:,} triangles, possibly more triangles; export the part "
+            "again, as one solid",
+            len(trailing),
+            count,
+        )
+    issues: tuple[Issue, ...] = ()
+    if trailing.strip(b"\0 \t\r\n"):
+        message = Text("{}: {} bytes after its triangles are not read", where, len(trailing))
+        issues = (Issue(NOTE, CONTENT, message),)
+    records = np.frombuffer(data, TRIANGLE, count, HEADER_BYTES)
+    return records["corners"].astype(np.float64), issues
+
+
+def _ascii(data: bytes, where: str) -> Array:
+    corners: list[tuple[float, float, float]] = []
+    in_loop = -1  # corners of the current loop, -1 outside loops
+    is_open = False  # a solid
+    for number, line in enumerate(data.decode("latin-1").splitlines(), start=1):
+        words = line.split()
+        key = words[0].lower() if words else ""
+        if not key or key.startswith(COMMENTS):
+            continue
+        if key == "vertex" and in_loop >= 0:
+            corners.append(_corner(words, number, line, where))
+            in_loop += 1
+        elif key.startswith("facet") and is_open and in_loop < 0:
+            in_loop = 0
+        elif key == "endloop" and in_loop == 3:
+            in_loop = -1
+        elif key.removeprefix("ï»¿") == "solid" and in_loop < 0:
+            is_open = True
+        elif key.startswith("endsolid") and in_loop < 0:
+            is_open = False
+        elif key not in BETWEEN:
+            raise _bad_line(number, line, where)
+    if is_open or in_loop >= 0:
+        raise InputError(
+            "BAD_FILE", where, "it is truncated: the last solid has no end; export the part again"
+        )
+    return np.array(corners, dtype=np.float64).reshape(-1, 3, 3)
+
+
+def _corner(words: list[str], number: int, line: str, where: str) -> tuple[float, float, float]:
+    try:
+        if len(words) != 4 or "_" in line:
+            raise ValueError
+        x, y, z = (float(word) for word in words[1:])
+    except ValueError:
+        raise _bad_line(number, line, where) from None
+    return x, y, z
+
+
+def _bad_line(number: int, line: str, where: str) -> InputError:
+    return InputError(
+        "BAD_FILE",
+        where,
+        "line {} cannot be read: {!r}; export the part again",
+        number,
+        line.strip()[:60],
+    )

@@ -15,8 +15,17 @@ from ...core.geometry.curves.contour import Chain, Piece
 from ...core.geometry.curves.profile import Curve, arc, line
 from ...core.issues import InputError, Text
 from ...core.types import Array
-from ..files.lost_pole import edges_of, has_lost_pole, restore_meridian
-from .cylindrical import AxisFrame, as_array, edge_points, flattened, pieces_of, smooth_pieces
+from .cylindrical import (
+    AxisFrame,
+    as_array,
+    edge_points,
+    edges_of,
+    flattened,
+    has_lost_pole,
+    pieces_of,
+    restore_meridian,
+    smooth_pieces,
+)
 
 MERIDIAN_MM = 1e-3  # mm between meridians that are one
 SAME_AZIMUTH = 1e-4  # rad

@@ -14,9 +14,8 @@ from ...core.geometry.curves.contour import Chain, Piece
 from ...core.geometry.curves.profile import Meridian, RevolvedWall
 from ...core.issues import NOTE, WARNING, InputError, Issue, Text, Word
 from ...core.types import Array, Index, Mask
-from ..files.lost_pole import has_lost_pole
 from .axis import candidates
-from .cylindrical import AxisFrame, as_array, axis_frame, edge_points, pieces_of
+from .cylindrical import AxisFrame, as_array, axis_frame, edge_points, has_lost_pole, pieces_of
 from .patch import Patch, common_turn, merged, patch_of, planar
 
 # ---- Faces of a shape that are certainly not of revolution about an axis, judged by a few normals

@@ -10,7 +10,7 @@ import Part
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
-from ...core.geometry.angles import TURN
+from ...core.geometry.frames import TURN
 from ...core.geometry.step_count import step_count
 from ...core.geometry.walls.patch import CONE, CYLINDER, PLANE, SPHERE, SPLINE, TORUS, Patch
 from ...core.geometry.walls.surface import dot

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.geometry.angles import TURN
+from ...core.geometry.frames import TURN
 from ...core.geometry.walls.surface_wall import CONE, TABLE, TORUS, Placed, own_surface
 from ...core.issues import InputError, Word
 from ...core.types import Array

@@ -14,7 +14,7 @@ from ..geometry.regions.region import Region
 from ..geometry.regions.several import grow_regions, halves
 from ..geometry.regions.strip import Strip
 from ..issues import InfeasibleError, InputError
-from ..parameters.fills import FILLS
+from ..parameters.filled import FILLS
 from ..types import Array
 from .centre import (
     FINE,

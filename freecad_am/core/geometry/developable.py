@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cylinders and cones to grow on: their equidistant neighbours, and unrolling (Dai 2020, 2.1
-and 2.2).
+"""Planes, cylinders and cones to grow on: their equidistant neighbours, and unrolling (Dai 2020,
+2.1 and 2.2).
 
 All coordinates are in the hub's own frame: its axis is Z, the base circle of radius R is
 at z = 0, the apex of a cone at z = H (eq. 1). With tan(a) = R / H a point at (rho, theta,
@@ -22,8 +22,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..types import Array
-from .angles import TURN
 from .columns import columns
+from .frames import TURN
 
 
 @dataclass(frozen=True)
@@ -148,3 +148,31 @@ class Developable:
         rho = self.radius if self.is_cylinder else (self.height - z) * math.tan(self.taper)
         angle = theta + middle
         return np.stack([rho * np.cos(angle), rho * np.sin(angle), z], axis=-1)
+
+
+# ---- The platform plane and its parallels, with the interface of cylinders and cones
+# (`developable`)
+
+
+@dataclass(frozen=True)
+class Plane:
+    """The plane z = height, mm, of its frame."""
+
+    height: float = 0.0
+
+    def offset(self, distance: float) -> Plane:
+        """The parallel plane `distance` mm further up."""
+        return Plane(self.height + distance)
+
+    def distance(self, points: Array) -> Array:
+        """Return how far (...,) mm points (..., 3) are above the plane; negative below."""
+        above: Array = points[..., 2] - self.height
+        return above
+
+    def bend(self, distance: float, extent: float) -> float:
+        """Return the approximate bend radius, mm, of beads of a part of an extent, mm."""
+        return extent
+
+    def unroll(self, points: Array, middle: float = 0.0) -> Array:
+        """Return points (..., 3) seen from above, (..., 2) mm, whatever `middle`."""
+        return points[..., :2].copy()

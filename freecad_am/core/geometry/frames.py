@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rotations and poses as arrays: (..., 3, 3) rotations, (..., 4, 4) poses, mm and rad.
+"""Rotations, poses and angles as arrays: (..., 3, 3) rotations, (..., 4, 4) poses, mm and rad.
 
 A pose maps coordinates of its own frame to coordinates of its parent frame. Leading
 dimensions are free everywhere, so one call serves one pose and a hundred thousand.
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
@@ -164,3 +166,14 @@ def unit(vectors: Array) -> Array:
     """The vectors (..., 3) at unit length; a vector of no length stays."""
     result: Array = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300)
     return result
+
+
+# ---- Angles in radians, and the whole turn that they may be counted on by
+
+TURN = 2.0 * math.pi
+
+
+def shortest(angles: Array) -> Array:
+    """Angles brought within half a turn, rad, as short ways round are."""
+    brought: Array = angles - TURN * np.round(angles / TURN)
+    return brought

@@ -13,15 +13,14 @@ import numpy as np
 
 from ..issues import Issue
 from ..types import Array, Integers, Mask
-from .angles import TURN
 from .columns import columns, dots
 from .curves.guide import Guide
-from .developable import Developable
+from .developable import Developable, Plane
 from .formatting import place
+from .frames import TURN
 from .mesh.collapsed import doubled_areas
 from .mesh.solid import SolidMesh
 from .obstacles import Body
-from .plane import Plane
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..geometry.file_content import read_content
+from ..geometry.job_files import read_content
 from ..issues import NOTE, WARNING, InputError, Issue, Text, Word
 from ..parameters.inspection import AUTO, UNITS
 from ..types import Array, Mask

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..issues import Text, Word
+from .figures import Round
 from .inspect import Inspected
-from .roundness import Round
 
 
 class Row(NamedTuple):

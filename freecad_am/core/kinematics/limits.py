@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Joint limits: of each axis, and of sums of axes coupled by a linkage or a controller."""
+"""Joint limits: of each axis, of sums of axes coupled by a linkage or a controller, and the
+reserve beside them."""
 
 from __future__ import annotations
 
@@ -197,3 +198,9 @@ class Payload:
 
     kg: float = math.inf
     from_axis: float = math.inf
+
+
+# ---- The margin kept free at every limit (docs/decisions/0009)
+
+# rad, and as many mm of axes that slide: the program's last digit, of a degree or a mm, must not take an axis past its limit
+RESERVE = math.radians(0.05)

@@ -14,9 +14,9 @@ from scipy.sparse import coo_matrix, diags, identity
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import spsolve
 
-from ..geometry.angles import TURN
 from ..geometry.curves.guide import fit_guide
 from ..geometry.formatting import place
+from ..geometry.frames import TURN
 from ..geometry.mesh.collapsed import doubled_areas
 from ..geometry.mesh.refined import Edges
 from ..geometry.mesh.solid import SolidMesh

@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.curves.outline import estimate_outline
+from ..geometry.developable import Plane
 from ..geometry.formatting import place
 from ..geometry.mesh.triangle_mesh import Mesh
 from ..geometry.on_hub import Base
-from ..geometry.plane import Plane
 from ..geometry.regions.region import Region, regions
 from ..geometry.walls.patch_wall import PatchWall
 from ..geometry.walls.surface import dot

@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..geometry.angles import TURN
 from ..geometry.columns import columns
 from ..geometry.developable import Developable
+from ..geometry.frames import TURN
 from ..geometry.obstacles import Body
 from ..geometry.on_hub import Base, middle_azimuth
 from ..geometry.regions.region import Region, regions

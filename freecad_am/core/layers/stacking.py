@@ -13,10 +13,10 @@ import numpy as np
 from ..collision.inside import inside_of
 from ..geometry.columns import columns
 from ..geometry.curves.guide import Guide
+from ..geometry.developable import Plane
 from ..geometry.mesh.collapsed import doubled_areas
 from ..geometry.obstacles import Body
 from ..geometry.on_hub import Base, Group, SolidsOnHub, upright
-from ..geometry.plane import Plane
 from ..issues import NOTE, Issue, Text, Word
 from ..parameters.filled import SolidParameters
 from ..types import Array, Index

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How features that are filled are cut into layers: solids on cylinders and cones, in any layers, and cladding."""
+"""How features that are filled are cut into layers, solids on cylinders and cones, in any layers,
+and cladding; the list of fills."""
 
 from __future__ import annotations
 
@@ -8,8 +9,37 @@ from dataclasses import dataclass
 
 from ..issues import InputError, Text
 from . import field as f
-from .fills import FILLS
 from .strategy import LAYER_TIME, MEND, LayerParameters
+
+
+@dataclass(frozen=True)
+class Fill:
+    """A pattern of beads.
+
+    follows_border: beads run along the border everywhere, so that there are no contours around
+    them. can_be_sparse: it can fill a share of the area. all_round: the fill in its place in a
+    layer all around a hub, where its beads would have no ends; '' for none. adapts_widths: the
+    widths of its contours may follow the thickness of a region.
+    """
+
+    follows_border: bool = False
+    adapts_widths: bool = False
+    can_be_sparse: bool = True
+    all_round: str = ""
+
+
+FILLS = {
+    "contours": Fill(follows_border=True, adapts_widths=True),
+    "connected": Fill(follows_border=True, can_be_sparse=False, all_round="contours"),
+    "lines": Fill(),
+    "spiral": Fill(follows_border=True, can_be_sparse=False, all_round="contours"),
+    "zigzag": Fill(all_round="lines"),
+    "grid": Fill(all_round="lines"),
+    "triangles": Fill(all_round="lines"),
+    "honeycomb": Fill(all_round="lines"),
+    "gyroid": Fill(all_round="lines"),
+}
+
 
 LEAST_BEAD = 2.0  # mm, as short as a bead of usual width is worth a start
 PLANES, GEODESIC = "planes", "geodesic"  # layers proposed automatically

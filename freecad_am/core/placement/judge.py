@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..collision.bead_ends import LINK_GRAIN, Beads
-from ..geometry.angles import TURN
 from ..geometry.cylinders import Cylinder
+from ..geometry.frames import TURN
 from ..issues import ERROR, AmError, Issue
 from ..kinematics.cell import Cell
 from ..kinematics.inverse import opw

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry import frames
-from ..geometry.angles import TURN
+from ..geometry.frames import TURN
 from ..geometry.step_count import step_count
 from ..kinematics.cell import Cell
 from ..planning.plan import Progress

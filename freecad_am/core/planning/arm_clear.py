@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..geometry.angles import TURN
+from ..geometry.frames import TURN
 from ..issues import Issue
 from ..kinematics.links.gaps import Gaps
 from ..kinematics.links.own import NONE

@@ -18,8 +18,7 @@ from . import arm_clear, criteria
 from .arm_kept import ArmKept, Cylinders, build_arm_clearance
 from .beads import phases
 from .beads.chord_error import all_refined
-from .beads.overlap import extend_past_seam
-from .beads.retreat import go_back
+from .beads.retreat import extend_past_seam, go_back
 from .beads.speeds import corners_slowed, rings_slowed, too_fast
 from .external import optimised, track
 from .external.level import ways

@@ -9,7 +9,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from ..geometry.angles import TURN, shortest
+from ..geometry.frames import TURN, shortest
 from ..kinematics.cell import Cell
 from ..kinematics.limits import PoseFrames
 from ..toolpath import Bead

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..geometry.angles import TURN
+from ..geometry.frames import TURN
 from ..issues import Issue, has_errors
 from ..toolpath import Bead
 from ..types import Array, Integers, Mask

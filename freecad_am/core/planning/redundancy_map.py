@@ -17,7 +17,7 @@ import numpy as np
 
 from ..collision.scene import depositing, scene
 from ..geometry import frames
-from ..geometry.angles import TURN, shortest
+from ..geometry.frames import TURN, shortest
 from ..geometry.obstacles import Body, disc
 from ..kinematics.cell import Cell
 from ..kinematics.links.contact import ArmContact

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..geometry.angles import TURN
+from ..geometry.frames import TURN
 from ..parameters.joints import GivenPolynomial
 from ..toolpath import Bead, Toolpath
 from ..types import Index

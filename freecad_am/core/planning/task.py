@@ -11,17 +11,16 @@ from functools import cached_property, reduce
 
 import numpy as np
 
-from ..geometry.angles import TURN
+from ..geometry.frames import TURN
 from ..kinematics import jacobian as jac
 from ..kinematics.cell import Cell
 from ..kinematics.inverse.serial_arm import SerialArm
-from ..kinematics.limits import Limits, PoseFrames
+from ..kinematics.limits import RESERVE, Limits, PoseFrames
 from ..parameters.joints import JointParameters
 from ..toolpath import Toolpath
 from ..types import Array, Index, Mask
 from .arm_kept import ArmKept
 from .points import Points, in_pieces, unwrapped, unwrapped_by_turns
-from .reserve import RESERVE
 from .turns import configurations as following
 from .turns.directed import Lock
 

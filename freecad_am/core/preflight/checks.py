@@ -14,10 +14,10 @@ from ..issues import WARNING, Issue, Text, Word
 from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..parameters.process import ProcessParameters
+from ..process import wire
 from ..process.deposit import balance as deposit_balance
 from ..process.deposit import on_part, spacing, support
 from ..process.deposit.balance import MM3, Balance
-from ..process.model import wire
 from ..simulation.payload import CODE, finished
 from ..simulation.rapid_look import RapidsLooked
 from ..simulation.watch import ArmTouches

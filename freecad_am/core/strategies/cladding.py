@@ -12,7 +12,7 @@ from ..layers.on_faces import FaceLayer, pieces, slices
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.filled import CladdingParameters
 from ..parameters.process import ProcessParameters
-from ..process.model.bead_model import BeadModel
+from ..process.bead_model import BeadModel
 from ..process.order import IslandOrder, RankedBead, add_waits, order_beads
 from ..toolpath import Bead, Toolpath
 from .progress import Progress, silent

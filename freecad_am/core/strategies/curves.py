@@ -7,15 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..geometry.angles import TURN
 from ..geometry.curves.bead_curves import BeadCurve, Curves
 from ..geometry.formatting import place
+from ..geometry.frames import TURN
 from ..issues import InputError
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import CurvesParameters
 from ..process import classes
-from ..slicing.directions.wall import lean_tool
+from ..slicing.wall_directions import lean_tool
 from ..toolpath import Bead, Layer, Toolpath
 from ..types import Array
 from .progress import Progress, silent

@@ -11,11 +11,11 @@ import numpy as np
 
 from ..families.family import Family
 from ..geometry.curves.guide import Guide
+from ..geometry.developable import Plane
 from ..geometry.mesh.collapsed import doubled_areas
 from ..geometry.mesh.solid import Search, SolidMesh
 from ..geometry.obstacles import Body
 from ..geometry.on_hub import Base, SolidsOnHub
-from ..geometry.plane import Plane
 from ..issues import WARNING, Issue, Text, Word
 from ..process.deposit import support
 from ..process.deposit.pieces import Pieces, cut_beads

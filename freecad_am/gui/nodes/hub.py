@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...core.geometry.curves.guide import Guide
+from ...core.geometry.developable import Plane
 from ...core.geometry.on_hub import Base, Group, SolidsOnHub
-from ...core.geometry.plane import Plane
 from ...core.layers.field import footprints
 from ...core.types import Array
 from .lines import Lines

@@ -13,8 +13,7 @@ from PySide import QtCore, QtGui
 from ...core.issues import NOTE, AmError, Issue
 from ...core.parameters.program import ProgramParameters
 from ...core.preflight.promise import Place, Promise
-from ...core.simulation.timeline import timeline
-from ...core.simulation.totals import Totals, totals
+from ...core.simulation.timeline import Totals, timeline, totals
 from ...objects.checks import preflight
 from ...objects.fields import rows
 from ...objects.program import Job, Program, Written, posted

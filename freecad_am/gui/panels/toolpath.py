@@ -11,9 +11,9 @@ import numpy as np
 from PySide import QtCore, QtGui
 
 from ...core.issues import InputError
-from ...core.process.model import bead_model, wire
-from ...core.process.model.bead_model import MINUTE, BeadModel
-from ...core.process.model.wire import Measured
+from ...core.process import bead_model, wire
+from ...core.process.bead_model import MINUTE, BeadModel
+from ...core.process.wire import Measured
 from ...core.strategies.sequence import BY_FEATURE, BY_HEIGHT
 from ...objects.fields.preferences import in_user_units
 from ...objects.stage import stage_of

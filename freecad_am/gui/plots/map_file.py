@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.geometry.angles import TURN
+from ...core.geometry.frames import TURN
 from ...core.planning.redundancy_map import RZ, Picture
 from ...core.types import Array
 from ..colours import ramp

@@ -17,7 +17,7 @@ from ...core.kinematics import cell as cells
 from ...core.motion import Motion
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.program import ProgramParameters
-from ...core.planning.program import build as programs
+from ...core.planning import program as programs
 from ...core.simulation import timeline
 from ...core.simulation.achievable_feed import spread_to_deposit_rows
 from ...objects import user_machines

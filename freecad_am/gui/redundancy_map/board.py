@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.geometry.angles import TURN
+from ...core.geometry.frames import TURN
 from ...core.planning import redundancy_map
 from ...core.planning import redundancy_map as map
 from ...core.planning.joint_path import BeadPath

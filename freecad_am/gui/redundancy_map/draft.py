@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ...core.collision.bead_ends import LINK_GRAIN, Beads
-from ...core.geometry.angles import TURN
+from ...core.geometry.frames import TURN
 from ...core.issues import InputError
 from ...core.kinematics.cell import Cell
 from ...core.kinematics.inverse import opw

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from PySide import QtCore, QtGui
 
-from ...core.geometry.angles import TURN, shortest
+from ...core.geometry.frames import TURN, shortest
 from ...core.planning.redundancy_map import Picture
 from ...core.types import Array, Mask, NDArray
 from .. import colours

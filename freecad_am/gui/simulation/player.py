@@ -16,8 +16,7 @@ from ...core.parameters.cell import CellParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.program import ProgramParameters
 from ...core.simulation.achievable_feed import AchievableFeed, achievable_feed, speed_ratios
-from ...core.simulation.timeline import State, Timeline, timeline
-from ...core.simulation.totals import Totals, totals
+from ...core.simulation.timeline import State, Timeline, Totals, timeline, totals
 from ...core.simulation.watch import Finding, Watch, bad_links, shown_margins, watch
 from ...core.toolpath import Toolpath
 from ...core.types import Array, Mask

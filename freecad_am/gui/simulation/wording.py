@@ -10,7 +10,7 @@ import numpy as np
 
 from ...core.quantities import significant
 from ...core.simulation import watch
-from ...core.simulation.totals import MM3_PER_CM3
+from ...core.simulation.timeline import MM3_PER_CM3
 from ...core.simulation.watch import Finding
 from ...core.types import Array
 from ...objects.fields import preferences

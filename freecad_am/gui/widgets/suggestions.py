@@ -12,7 +12,7 @@ from ...core.issues import InputError
 from ...core.kinematics.machines import machine
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.program import ProgramParameters
-from ...core.process.model import wire
+from ...core.process import wire
 from ...objects import user_machines
 from ...objects.checks.controllers import post_of, writers, written_by
 from ...objects.fields import preferences, saved_cells

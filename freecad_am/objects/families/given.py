@@ -10,8 +10,8 @@ from ...core.kinematics.cell import mounted
 from ...core.parameters.build_direction import BuildDirectionParameters
 from ...core.parameters.cell import CellParameters, NozzleParameters
 from ...core.parameters.process import ProcessParameters
-from ...core.process.model import wire
-from ...core.process.model.bead_model import BeadModel
+from ...core.process import wire
+from ...core.process.bead_model import BeadModel
 from ...core.toolpath import Toolpath
 from ...core.types import Array
 

@@ -17,7 +17,7 @@ from ...core.parameters.cell import CellParameters
 from ...core.parameters.joints import JointParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.planning.other_cells import Tried
-from ...core.planning.suited import suited
+from ...core.planning.remedies import suited
 from ...core.strategies.support import stands_on
 from ...core.toolpath import Toolpath
 from ...core.types import Array

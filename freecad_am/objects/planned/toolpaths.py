@@ -12,12 +12,11 @@ from ...core.geometry.obstacles import Body
 from ...core.issues import InputError, Issue
 from ...core.kinematics.cell import mounted
 from ...core.parameters.cell import CellParameters
-from ...core.process import classes
+from ...core.process import classes, model_notes
+from ...core.process.bead_model import check_speeds
 from ...core.process.deposit.pieces import deposited_twice
-from ...core.process.model import notes
-from ...core.process.model.bead_model import check_speeds
-from ...core.process.model.wire import set_wire_feed
 from ...core.process.order import enforce_layer_time
+from ...core.process.wire import set_wire_feed
 from ...core.strategies import support
 from ...core.toolpath import Toolpath as CoreToolpath
 from ..families.given import Given, platform_frame
@@ -111,7 +110,7 @@ def layers_of(inputs: Given) -> CoreToolpath:
     family = family_of(inputs.strategy)
     layers, model = planner_of(family).plan_layers(inputs), inputs.model
     if model is not None and not family.is_filled:
-        layers = notes.hold_widths(layers, process, model)
+        layers = model_notes.hold_widths(layers, process, model)
     toolpath = classes.set_bead_ends(layers, process)
     if not family.is_filled:
         toolpath = enforce_layer_time(

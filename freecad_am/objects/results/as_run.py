@@ -11,8 +11,8 @@ from ...core.issues import Issue
 from ...core.kinematics.cell import Cell
 from ...core.motion import Motion
 from ...core.parameters.program import ProgramParameters
+from ...core.planning import program as programs
 from ...core.planning.beads import steps
-from ...core.planning.program import build as programs
 from ...core.simulation.achievable_feed import spread_to_deposit_rows
 from ...core.types import Array, Integers
 from ...posts import catalogue

@@ -16,8 +16,7 @@ from ...brep.files.sandbox import MAX_FILE_MB
 from ...brep.shapes.tessellate import body
 from ...core.collision.scene import depositing, scene
 from ...core.geometry import frames
-from ...core.geometry.file_content import digest
-from ...core.geometry.located import is_there, locate
+from ...core.geometry.job_files import digest, is_there, locate
 from ...core.geometry.mesh.file_unit import MESHES
 from ...core.geometry.obstacles import Body, box, disc
 from ...core.issues import InputError

@@ -14,7 +14,7 @@ import Part
 from ...brep.files.read import READABLE, mesh_content, placed_mesh, shape_content
 from ...brep.files.sandbox import read_in_sandbox
 from ...core.geometry.curves.bead_curves import POINT_FILES
-from ...core.geometry.located import is_there, locate
+from ...core.geometry.job_files import is_there, locate
 from ...core.geometry.mesh.file_unit import MESHES, refuse_scale
 from ...core.issues import NOTE, InputError, Issue, Text
 from ..results.findings import parts_of, text_of

@@ -14,7 +14,7 @@ from freecad_am.core.filling.fill import IN_FRAMES, ON_BORDERS, PATTERNS, fill
 from freecad_am.core.filling.sparse import Frame, levels_between, rows
 from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InfeasibleError, InputError
-from freecad_am.core.parameters.fills import FILLS
+from freecad_am.core.parameters.filled import FILLS
 
 _spec = importlib.util.spec_from_file_location(
     "filling_shapes", Path(__file__).with_name("shapes.py")

@@ -7,7 +7,7 @@ import tracemalloc
 
 import pytest
 
-from freecad_am.core.geometry.file_content import MB, digest, read_content
+from freecad_am.core.geometry.job_files import MB, digest, read_content
 from freecad_am.core.issues import InputError
 
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from freecad_am.core.inspection import bands, figures, point_file, table
+from freecad_am.core.inspection.figures import narrowest
 from freecad_am.core.inspection.inspect import inspect
 from freecad_am.core.inspection.planned import triangle_surface
-from freecad_am.core.inspection.roundness import narrowest
 from freecad_am.core.inspection.surfaces import planned
 from freecad_am.core.issues import AmError, InputError
 from freecad_am.core.parameters.inspection import InspectionParameters

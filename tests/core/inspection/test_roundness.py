@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from freecad_am.core.inspection.roundness import least_squares_round, narrowest
+from freecad_am.core.inspection.figures import least_squares_round, narrowest
 from freecad_am.core.issues import InputError
 
 

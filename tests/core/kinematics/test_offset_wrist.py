@@ -6,9 +6,8 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics.chain import Chain
-from freecad_am.core.kinematics.inverse import recognition
-from freecad_am.core.kinematics.inverse.offset_wrist import arm as offset_wrist
-from freecad_am.core.kinematics.inverse.offset_wrist.arm import OffsetWristArm
+from freecad_am.core.kinematics.inverse import offset_wrist, recognition
+from freecad_am.core.kinematics.inverse.offset_wrist import OffsetWristArm
 from tests.core.kinematics.arms import (
     CROOKED_CRX,
     CRX_10IA,

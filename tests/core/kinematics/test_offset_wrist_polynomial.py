@@ -4,9 +4,12 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics.inverse import recognition
-from freecad_am.core.kinematics.inverse.offset_wrist import polynomial, search
-from freecad_am.core.kinematics.inverse.offset_wrist import trigonometric_zeros as trigonometric
+from freecad_am.core.kinematics.inverse import (
+    offset_wrist_polynomial,
+    offset_wrist_search,
+    recognition,
+)
+from freecad_am.core.kinematics.inverse import trigonometric_zeros as trigonometric
 from tests.core.kinematics.arms import (
     CROOKED_CRX,
     CRX_10IA,
@@ -76,20 +79,22 @@ def test_only_arms_of_its_kind_have_the_same_zeros_on_both_sides():
     ):
         of = chain(figures)
         assert (
-            polynomial.is_even(recognition.arm_of(of)._curves(of.forward(np.zeros((1, 6)))))
+            offset_wrist_polynomial.is_even(
+                recognition.arm_of(of)._curves(of.forward(np.zeros((1, 6))))
+            )
             == wanted
         )
 
 
 def test_zeros_are_those_of_the_search(arm, most, monkeypatch):
     curves = _curves(arm, np.random.default_rng(11).uniform(-np.pi, np.pi, (1000, 6)))
-    expected = _rows(search.zeros(curves))
+    expected = _rows(offset_wrist_search.zeros(curves))
     asked = []
-    real = search.zeros
+    real = offset_wrist_search.zeros
     monkeypatch.setattr(
-        search, "zeros", lambda some: asked.append(some.point.shape[2]) or real(some)
+        offset_wrist_search, "zeros", lambda some: asked.append(some.point.shape[2]) or real(some)
     )
-    found = _rows(polynomial.zeros(curves))
+    found = _rows(offset_wrist_polynomial.zeros(curves))
     assert found.shape == expected.shape and np.array_equal(
         found[:, [0, 1, 2, 5]], expected[:, [0, 1, 2, 5]]
     )
@@ -118,7 +123,10 @@ def test_zeros_that_meet_are_found(arm):
     for off in (0.0, 1e-5, 1e-3, 1e-2):
         q = np.array(met) + np.array([0, 0, 0, 0, off, 0])
         curves = _curves(arm, q)
-        zeros, expected = polynomial.zeros(curves), _rows(search.zeros(curves))
+        zeros, expected = (
+            offset_wrist_polynomial.zeros(curves),
+            _rows(offset_wrist_search.zeros(curves)),
+        )
         found = _rows(zeros)
         same = (found[:, None, :3] == expected[:, :3]).all(axis=2)
         away = np.where(
@@ -127,7 +135,9 @@ def test_zeros_that_meet_are_found(arm):
         assert away.min(axis=0).max() < 1e-6
         # what the search has not is a solution too, and rare
         assert (
-            np.abs(search.values(curves, zeros.pose, zeros.angle, zeros.side, zeros.elbow)).max()
+            np.abs(
+                offset_wrist_search.values(curves, zeros.pose, zeros.angle, zeros.side, zeros.elbow)
+            ).max()
             < 1e-7
         )
         extra = away.min(axis=1)
@@ -144,7 +154,7 @@ def test_the_polynomial_is_the_condition_on_axis_5_of_both_elbows(arm):
     rng = np.random.default_rng(13)
     curves = _curves(arm, rng.uniform(-np.pi, np.pi, (300, 6)))
     length = 1.0 / (curves.upper + curves.fore)
-    of = polynomial._Lengths(
+    of = offset_wrist_polynomial._Lengths(
         curves.upper * length,
         curves.fore * length,
         curves.ahead * length,
@@ -155,15 +165,17 @@ def test_the_polynomial_is_the_condition_on_axis_5_of_both_elbows(arm):
     each, one = np.arange(300), np.ones(300)
     angles = 2.0 * np.pi / 64 * np.arange(64)
     terms = {
-        side: [polynomial._terms(of, parts, angle * one, side * one) for angle in angles]
+        side: [
+            offset_wrist_polynomial._terms(of, parts, angle * one, side * one) for angle in angles
+        ]
         for side in (1.0, -1.0)
     }
     front, back = (np.stack([at.value for at in terms[side]]) for side in (1.0, -1.0))
     radius = np.stack([at.radius for at in terms[1.0]])
     for value, degree in ((front + back, 4), ((front - back) / radius, 3), (front * back, 8)):
         assert np.abs(np.fft.rfft(value, axis=0)[degree + 1 :]).max() < 1e-11 * np.abs(front).max()
-    even = polynomial.is_even(curves)
-    product = polynomial._coefficients(of, parts, even)
+    even = offset_wrist_polynomial.is_even(curves)
+    product = offset_wrist_polynomial._coefficients(of, parts, even)
     rows = trigonometric.harmonics(len(product) // 2, angles).T
     np.testing.assert_allclose(rows @ product, front if even else front * back, atol=1e-13)
     seen = 0
@@ -173,7 +185,7 @@ def test_the_polynomial_is_the_condition_on_axis_5_of_both_elbows(arm):
             inside = at.squared - at.common**2 > 1e-3
             both = np.prod(
                 [
-                    search.values(curves, each, angle * one, side * one, elbow * one)
+                    offset_wrist_search.values(curves, each, angle * one, side * one, elbow * one)
                     for elbow in (1.0, -1.0)
                 ],
                 axis=0,
@@ -184,7 +196,7 @@ def test_the_polynomial_is_the_condition_on_axis_5_of_both_elbows(arm):
             assert (at.value[at.squared < at.common**2] > 0.0).all()
             step = 1e-5
             ahead, behind = (
-                polynomial._terms(of, parts, (angle + way) * one, side * one).value
+                offset_wrist_polynomial._terms(of, parts, (angle + way) * one, side * one).value
                 for way in (step, -step)
             )
             smooth = np.abs(at.radius) > 0.05

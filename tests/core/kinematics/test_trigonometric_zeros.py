@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics.inverse.offset_wrist import trigonometric_zeros as trigonometric
+from freecad_am.core.kinematics.inverse import trigonometric_zeros as trigonometric
 
 
 def _with_zeros(zeros, positive):

@@ -6,10 +6,10 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from freecad_am.core.geometry.curves.guide import fit_guide
+from freecad_am.core.geometry.developable import Plane
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.geometry.on_hub import Base
-from freecad_am.core.geometry.plane import Plane
-from freecad_am.core.layers.slabs import group_of, outline, slabs, volumes_below
+from freecad_am.core.layers.plane_field import group_of, outline, slabs, volumes_below
 from freecad_am.core.layers.stacking import find_leaning, prepare_stack
 from freecad_am.core.parameters.filled import SolidParameters
 from tests.core.strategies.test_solids_in_planes import CONE, box, hull, tube

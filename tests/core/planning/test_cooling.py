@@ -21,7 +21,7 @@ from freecad_am.core.parameters.process import (
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.program.build import returning
+from freecad_am.core.planning.program import returning
 from freecad_am.core.program import Moves, WaitBelow
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
 from freecad_am.posts import catalogue

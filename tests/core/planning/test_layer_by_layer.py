@@ -8,13 +8,13 @@ import pytest
 
 from freecad_am import kdl
 from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.kinematics.limits import RESERVE
 from freecad_am.core.parameters.joints import OBJECTIVES, JointParameters
 from freecad_am.core.planning import criteria
 from freecad_am.core.planning import plan as planner
 from freecad_am.core.planning.methods import constant
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
-from freecad_am.core.planning.reserve import RESERVE
 from freecad_am.core.planning.rotation import refine_state, search
 from freecad_am.core.planning.task import Task
 

@@ -20,7 +20,7 @@ from freecad_am.core.parameters.process import ProcessParameters, WireParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.process.model import wire
+from freecad_am.core.process import wire
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
 from freecad_am.core.toolpath import Bead, Layer, SpeedLaw, Toolpath
 from freecad_am.posts import catalogue

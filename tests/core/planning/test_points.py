@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.angles import TURN
+from freecad_am.core.geometry.frames import TURN
 from freecad_am.core.planning.points import UNPOSED, Points, unwrapped, unwrapped_by_turns
 
 

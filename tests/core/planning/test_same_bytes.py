@@ -12,7 +12,7 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.slicing.directions import wall as wall_direction
+from freecad_am.core.slicing import wall_directions as wall_direction
 from freecad_am.core.strategies.clearance.tilt_search import least_cost_states
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 

@@ -8,8 +8,8 @@ import pytest
 from scipy.optimize import least_squares
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.process.model import notes, wire
-from freecad_am.core.process.model.bead_model import fit
+from freecad_am.core.process import model_notes, wire
+from freecad_am.core.process.bead_model import fit
 
 TABLE = [  # Dai 2020, table 1: radius mm, travel speed mm/min, width mm, height mm
     (30, 300, 12.52, 3.40),
@@ -225,9 +225,9 @@ def test_radius_of_circles(radius):
     angle = np.linspace(0.0, 2.0 * math.pi, 200)
     circle = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     circle[-1] = circle[0]
-    np.testing.assert_allclose(notes.radii(circle, True, 0.5 * radius), radius, rtol=0.02)
+    np.testing.assert_allclose(model_notes.radii(circle, True, 0.5 * radius), radius, rtol=0.02)
     np.testing.assert_allclose(
-        notes.radii(circle[:100], False, 0.5 * radius)[10:-10], radius, rtol=0.02
+        model_notes.radii(circle[:100], False, 0.5 * radius)[10:-10], radius, rtol=0.02
     )
 
 
@@ -235,7 +235,7 @@ def test_radius_of_a_straight_way_with_a_corner():
     way = np.array(
         [[x, 0.0] for x in np.linspace(-50, 0, 51)] + [[0.0, y] for y in np.linspace(1, 50, 50)]
     )
-    radius = notes.radii(way, False, 8.0)
+    radius = model_notes.radii(way, False, 8.0)
     assert np.isinf(radius[:40]).all() and np.isinf(radius[62:]).all()
     assert radius[50] == pytest.approx(8.0 / (math.pi / 2.0), rel=0.02)
 
@@ -247,7 +247,7 @@ def test_speeds_a_machine_can_follow():
     asked = rng.uniform(5.0, 15.0, 301)
     asked[-1] = asked[0]
     for closed in (True, False):
-        got = notes.limit_acceleration(points, asked, closed, 20.0)
+        got = model_notes.limit_acceleration(points, asked, closed, 20.0)
         step = np.linalg.norm(np.diff(points, axis=0), axis=1)
         assert (got <= asked).all()
         assert (np.abs(np.diff(got**2)) <= 2.0 * 20.0 * step + 1e-9).all()

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from freecad_am.core.parameters.process import ProcessParameters, WireParameters
-from freecad_am.core.process.model import notes
-from freecad_am.core.process.model.wire import load, process_model
+from freecad_am.core.process import model_notes
+from freecad_am.core.process.wire import load, process_model
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 M, P, T = 85.550, 52.742, -1.7542  # Dai 2020, table 1 refitted (errata)
@@ -36,13 +36,13 @@ def test_a_ring_on_a_cone_bends_to_its_side_as_the_cone_laid_flat_does(lean):
     points, build = ring(40.0, lean)
     # within a window of 8 mm the heading goes up in steps of 0.35 mm: (0.35 / 8)^2 / 12
     np.testing.assert_allclose(
-        notes.side_radii(points, build, True, 8.0), 40.0 / math.cos(lean), rtol=2e-4
+        model_notes.side_radii(points, build, True, 8.0), 40.0 / math.cos(lean), rtol=2e-4
     )
 
 
 def test_a_ring_on_a_plane_disc_laid_edgewise_does_not_bend_to_its_side():
     points, build = ring(40.0, math.pi / 2.0)
-    assert notes.side_radii(points, build, True, 8.0).min() > 1e6
+    assert model_notes.side_radii(points, build, True, 8.0).min() > 1e6
 
 
 def test_in_the_plane_it_is_the_radius_of_the_bead_laid_flat():
@@ -53,8 +53,10 @@ def test_in_the_plane_it_is_the_radius_of_the_bead_laid_flat():
     for closed in (True, False):
         line = np.vstack([flat, flat[:1]]) if closed else flat
         points = np.c_[line, np.full(len(line), 7.0)]
-        found = notes.side_radii(points, np.tile([0.0, 0.0, 1.0], (len(line), 1)), closed, 9.0)
-        np.testing.assert_allclose(found, notes.radii(line, closed, 9.0), rtol=1e-9)
+        found = model_notes.side_radii(
+            points, np.tile([0.0, 0.0, 1.0], (len(line), 1)), closed, 9.0
+        )
+        np.testing.assert_allclose(found, model_notes.radii(line, closed, 9.0), rtol=1e-9)
 
 
 def toolpath(beads):
@@ -64,7 +66,7 @@ def toolpath(beads):
 def test_rings_are_as_wide_as_asked_for_at_the_speed_of_the_model():
     process = ProcessParameters(bead_model="csw", bead_width=9.5)
     path = toolpath([made(*ring(radius, 0.3), True) for radius in (31.0, 45.0, 80.0)])
-    found = notes.hold_widths(path, process, process_model(process))
+    found = model_notes.hold_widths(path, process, process_model(process))
     for (_, _, bead), radius in zip(found, (31.0, 45.0, 80.0), strict=True):
         speed = (M / (9.5 - P * math.cos(0.3) / radius - T)) ** 3 / 60.0
         np.testing.assert_allclose(bead.speed, speed, rtol=5e-4)
@@ -82,7 +84,7 @@ def test_where_a_bead_bends_its_speed_changes_no_faster_than_asked_for():
     points = np.c_[flat, np.zeros(len(flat))]
     process = ProcessParameters(bead_model="csw", bead_width=9.5, acceleration=5.0)
     path = toolpath([made(points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), False)])
-    ((_, _, bead),) = notes.hold_widths(path, process, process_model(process))
+    ((_, _, bead),) = model_notes.hold_widths(path, process, process_model(process))
     assert bead.speed.max() > 1.4 * bead.speed.min()
     time = np.linalg.norm(np.diff(points, axis=0), axis=1) / bead.speed[1:]
     change = np.abs(np.diff(bead.speed[1:])) / (0.5 * (time[1:] + time[:-1]))
@@ -93,7 +95,7 @@ def test_wire_in_proportion_keeps_the_section_of_every_ring():
     wire = WireParameters(feed_mode="proportional")
     process = ProcessParameters(bead_model="csw", bead_width=9.5, wire=wire)
     path = toolpath([made(*ring(radius, 0.0), True) for radius in (31.0, 80.0)])
-    beads = [bead for _, _, bead in notes.hold_widths(path, process, process_model(process))]
+    beads = [bead for _, _, bead in model_notes.hold_widths(path, process, process_model(process))]
     sections = np.concatenate([bead.width * bead.height for bead in beads])
     np.testing.assert_allclose(sections, sections[0], rtol=1e-9)
     straight = (M / (9.5 - T)) ** 3 / 60.0

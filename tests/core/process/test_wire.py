@@ -11,9 +11,9 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.bead_classes import BeadEnd, BeadStart
 from freecad_am.core.parameters.process import MaterialParameters, ProcessParameters, WireParameters
 from freecad_am.core.preflight import checks
-from freecad_am.core.process.model import wire
-from freecad_am.core.process.model.bead_model import check_speeds
-from freecad_am.core.process.model.wire import set_wire_feed
+from freecad_am.core.process import wire
+from freecad_am.core.process.bead_model import check_speeds
+from freecad_am.core.process.wire import set_wire_feed
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 ENDS = np.array([[0.0, 0.0, 0.0], [100.0, 0.0, 0.0]])

@@ -9,8 +9,7 @@ import pytest
 
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.simulation.table_links import rates
-from freecad_am.core.simulation.timeline import timeline, volumes
-from freecad_am.core.simulation.totals import totals
+from freecad_am.core.simulation.timeline import timeline, totals, volumes
 
 PATH = SimpleNamespace(layer_height=2.0, bead_width=None, wire_feed=None, features=(), fitted=None)
 

@@ -9,8 +9,7 @@ import pytest
 
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
 from freecad_am.core.program import DEPOSIT, DepositOff, DepositOn, LayerStart, Moves, Wait
-from freecad_am.core.simulation.timeline import timeline
-from freecad_am.core.simulation.totals import totals
+from freecad_am.core.simulation.timeline import timeline, totals
 
 PROCESS = ProcessParameters(
     lead_on=0.4,

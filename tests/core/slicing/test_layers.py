@@ -6,30 +6,30 @@ import pytest
 
 from freecad_am.core.geometry.curves.profile import Meridian, arc, line
 from freecad_am.core.issues import InputError
-from freecad_am.core.slicing import arc_length, iso_height
+from freecad_am.core.slicing import meridian_levels
 
 SPHERE = Meridian.chained([arc((0.0, 0.0), 45.0, 0.0, np.pi / 2)])
 CYLINDER = Meridian.chained([line((10.0, 0.0), (10.0, 30.0))])
 
 
 def test_arc_length_layers_start_at_the_base_and_leave_the_rest_at_the_top():
-    layers, left = arc_length.layers(SPHERE, 1.0)
+    layers, left = meridian_levels.arc_length_levels(SPHERE, 1.0)
     assert np.concatenate(layers) == pytest.approx(np.arange(71.0))
     assert left == pytest.approx(22.5 * np.pi - 70.0)
-    assert len(arc_length.layers(SPHERE, 5.0)[0]) == 15
+    assert len(meridian_levels.arc_length_levels(SPHERE, 5.0)[0]) == 15
 
 
 @pytest.mark.parametrize("height", [0.1, 0.3, 1.0, 7.5, 30.0])
 def test_a_whole_number_of_layers_ends_on_the_top(height):
-    for rule in (arc_length, iso_height):
-        layers, left = rule.layers(CYLINDER, height)
+    for rule in (meridian_levels.arc_length_levels, meridian_levels.iso_height_levels):
+        layers, left = rule(CYLINDER, height)
         assert len(layers) == round(30.0 / height) + 1
         assert layers[-1] == pytest.approx([30.0], abs=1e-9)
         assert left == pytest.approx(0.0, abs=1e-9)
 
 
 def test_iso_height_layers_lie_on_planes():
-    layers, left = iso_height.layers(SPHERE, 2.0)
+    layers, left = meridian_levels.iso_height_levels(SPHERE, 2.0)
     heights = SPHERE.at(np.concatenate(layers))[1]
     assert heights == pytest.approx(np.arange(0.0, 45.0, 2.0), abs=1e-8)
     assert left == pytest.approx(1.0)
@@ -37,14 +37,16 @@ def test_iso_height_layers_lie_on_planes():
 
 def test_iso_height_cuts_a_vault_twice():
     vault = Meridian.chained([arc((50.0, 0.0), 10.0, 0.0, np.pi)])
-    layers, _ = iso_height.layers(vault, 3.0)
+    layers, _ = meridian_levels.iso_height_levels(vault, 3.0)
     assert [len(layer) for layer in layers] == [2, 2, 2, 2]
-    apart = iso_height.spacing(vault, layers[0], layers[1])
+    apart = meridian_levels.spacing(vault, layers[0], layers[1])
     assert apart == pytest.approx(np.full(2, np.hypot(3.0, 10.0 - np.sqrt(91.0))), abs=1e-7)
 
 
-@pytest.mark.parametrize("rule", [arc_length, iso_height])
+@pytest.mark.parametrize(
+    "rule", [meridian_levels.arc_length_levels, meridian_levels.iso_height_levels]
+)
 def test_layers_higher_than_the_wall_are_refused(rule):
     with pytest.raises(InputError, match=r"strategy\.layer_height.*30\.1 mm.*30 mm") as refused:
-        rule.layers(CYLINDER, 30.1)
+        rule(CYLINDER, 30.1)
     assert refused.value.code == "LAYER_HEIGHT"

@@ -8,7 +8,7 @@ from freecad_am.core.geometry.columns import HalfSpace, Round
 from freecad_am.core.geometry.curves.space_curve import SpaceCurve
 from freecad_am.core.geometry.mesh.triangle_mesh import Mesh
 from freecad_am.core.geometry.walls.surface import Torus
-from freecad_am.core.process.deposit import layer_curve
+from freecad_am.core.process.deposit import spacing
 from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.fronts import layers as fronts
 from freecad_am.core.slicing.fronts.rims import nearest_feet
@@ -91,21 +91,21 @@ def test_fronts_on_half_the_height_are_four_times_the_work(evaluated, monkeypatc
 
 def test_of_segments_below_only_the_near_ones_are_tried(monkeypatch):
     tried = [0]
-    share = layer_curve._share
+    share = spacing._share
 
     def counted(offset, along):
         tried[0] += offset.shape[1]
         return share(offset, along)
 
-    monkeypatch.setattr(layer_curve, "_share", counted)
+    monkeypatch.setattr(spacing, "_share", counted)
     work = []
     for points in (1000, 2000, 4000):
         angle = np.linspace(0.0, 2.0 * np.pi, points + 1)
         ring = np.c_[50.0 * np.cos(angle), 50.0 * np.sin(angle), 0.0 * angle]
         ring[-1] = ring[0]
-        below = layer_curve.Curve(*layer_curve.columns_of(ring, True))
+        below = spacing.Curve(*spacing.columns_of(ring, True))
         tried[0] = 0
-        found = layer_curve.distance(ring + [0.0, 0.0, 0.02], below)
+        found = spacing.distance(ring + [0.0, 0.0, 0.02], below)
         assert found == pytest.approx(0.02, abs=1e-6)
         work.append(tried[0])
     assert all(after < 2.2 * before for before, after in zip(work, work[1:]))
@@ -118,12 +118,12 @@ def test_near_segments_from_a_tree_are_those_that_all_of_them_tell(monkeypatch, 
     wave = 50.0 + 3.0 * np.sin(7.0 * angle)
     ring = np.c_[wave * np.cos(angle), wave * np.sin(angle), 0.0 * angle]
     ring[-1] = ring[0]
-    below = layer_curve.Curve(*layer_curve.columns_of(ring, True))
+    below = spacing.Curve(*spacing.columns_of(ring, True))
     places = ring + random.uniform(-1.0, 1.0, ring.shape) + [0.0, 0.0, 1.5]
     found = []
     for most in (0, 10**9):
-        monkeypatch.setattr(layer_curve, "_ALL", most)
-        found.append(layer_curve.distance(places, below))
+        monkeypatch.setattr(spacing, "_ALL", most)
+        found.append(spacing.distance(places, below))
     assert (found[0] == found[1]).all()
     # no finer way of looking finds a nearer place of the chords
     fine = np.linspace(0.0, 1.0, 40)[:, None, None]

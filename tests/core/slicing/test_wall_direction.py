@@ -7,7 +7,7 @@ import pytest
 from freecad_am.core.geometry.columns import Round
 from freecad_am.core.geometry.walls.surface import Cone, Torus, normals
 from freecad_am.core.issues import InputError
-from freecad_am.core.slicing.directions import wall as wall_direction
+from freecad_am.core.slicing import wall_directions as wall_direction
 from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.tubes import constant_distance
 from freecad_am.core.slicing.tubes.smooth_spacing import even_grid

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.curves.space_curve import SpaceCurve
-from freecad_am.core.slicing.directions.wall import turns_in_wall
+from freecad_am.core.slicing.wall_directions import turns_in_wall
 
 SKEW = 1e-3  # rad, of the tangents where two nodes nearly coincide
 

@@ -15,7 +15,7 @@ from freecad_am.core.issues import InfeasibleError, InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import DevelopableParameters
 from freecad_am.core.parameters.process import ProcessParameters, WireParameters
-from freecad_am.core.process.model import wire
+from freecad_am.core.process import wire
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
 
 CYLINDER, CONE = Developable(45.0), Developable(60.0, 200.0)

@@ -7,9 +7,8 @@ from scipy.spatial import cKDTree
 
 from freecad_am.core.filling.centre import PlaneCurve
 from freecad_am.core.geometry.curves.plane_curve import divide_edges
-from freecad_am.core.geometry.developable import Developable
+from freecad_am.core.geometry.developable import Developable, Plane
 from freecad_am.core.geometry.on_hub import Base
-from freecad_am.core.geometry.plane import Plane
 from freecad_am.core.layers.plane_field import PlaneLayer
 from freecad_am.core.layers.rotary_field import RoundLayer
 from freecad_am.core.layers.surface import Slice

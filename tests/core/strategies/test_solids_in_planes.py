@@ -19,7 +19,7 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters, SeamParameters, WireParameters
 from freecad_am.core.process.deposit import spacing
-from freecad_am.core.process.model.wire import load, set_wire_feed
+from freecad_am.core.process.wire import load, set_wire_feed
 from freecad_am.core.strategies.solids.plan import plan
 
 ERROR = 0.05

@@ -11,7 +11,7 @@ from freecad_am.core.geometry.walls.surface_wall import Placed
 from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.tubes import constant_distance
 from freecad_am.core.slicing.tubes.smooth_spacing import even_grid
-from freecad_am.core.strategies.walls.end import trimmed
+from freecad_am.core.strategies.walls.plan import trimmed
 
 TORUS, END, HEIGHT = Torus(60.0, 15.0), 0.5 * np.pi, 5.0
 PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])

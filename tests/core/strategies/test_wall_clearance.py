@@ -17,12 +17,10 @@ from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
 from freecad_am.core.strategies.clearance import (
-    knots as clearance_knots,
-)
-from freecad_am.core.strategies.clearance import (
     look,
     tilt_search,
 )
+from freecad_am.core.strategies.clearance import tilt_back as clearance_knots
 from freecad_am.core.strategies.clearance import (
     tilt_back as wall_clearance,
 )

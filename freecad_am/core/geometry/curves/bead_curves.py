@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves to deposit as beads without slicing, with the tool direction of each."""
+"""Curves to deposit as beads without slicing, with the tool direction of each, and their tables."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from ...issues import Issue
+from ...issues import InputError, Issue, Text, Word
 from ...types import Array
 from ..obstacles import Body
 
@@ -67,3 +69,124 @@ class ReadCurves(NamedTuple):
 
     curves: tuple[BeadCurve, ...]
     issues: tuple[Issue, ...] = ()
+
+
+# ---- Curves from a text table of points: x, y, z in mm, optionally with the direction i, j, k
+# and the bead number
+
+COLUMNS = ("x", "y", "z", "i", "j", "k", "bead")
+BY_COUNT = {3: COLUMNS[:3], 4: (*COLUMNS[:3], "bead"), 6: COLUMNS[:6], 7: COLUMNS}
+CODE = "BAD_TABLE"
+MIN_STEP_MM = 1e-6  # mm; points no farther apart are one
+MAX_MM = 1e7  # mm; farther away is a slip of the pen
+FORM = "give a table with the columns x,y,z, then i,j,k for directions, then bead for several beads"
+
+
+def curves_of(text: str, where: str) -> tuple[BeadCurve, ...]:
+    """Read the curves of a table, one for each bead number, in the order of the lines.
+
+    Cells are separated by commas or semicolons; the first line holds column names or numbers.
+    Raises InputError BAD_TABLE with the line.
+    """
+    lines = text.lstrip("\ufeff").splitlines()
+    while lines and not lines[-1].strip():
+        lines.pop()
+    if not lines:
+        raise InputError(CODE, where, "it has no points; {}", FORM)
+    separator = ";" if ";" in lines[0] else ","
+    columns, header_lines = _columns(_cells(lines[0], separator), where)
+    numbers = [
+        _numbers(_cells(line, separator), columns, f"{where} line {k}")
+        for k, line in enumerate(lines[header_lines:], header_lines + 1)
+    ]
+    if not numbers:
+        raise InputError(CODE, where, "it has no points; {}", FORM)
+    rows = np.array(numbers)
+    bead = rows[:, columns.index("bead")] if "bead" in columns else np.zeros(len(rows))
+    starts = np.flatnonzero(np.r_[True, np.diff(bead) != 0.0])
+    curves, beads_read = [], set()
+    for start, end in zip(starts, [*starts[1:], len(rows)]):
+        location = f"{where} line {header_lines + 1 + int(start)}"
+        if bead[start] in beads_read:
+            raise InputError(
+                CODE,
+                location,
+                "bead {:g} starts a second time; keep the lines of a bead together",
+                bead[start],
+            )
+        beads_read.add(float(bead[start]))
+        curves.append(
+            _curve(rows[start:end], columns, location, header_lines + 1 + int(start), where)
+        )
+    return tuple(curves)
+
+
+def _cells(line: str, separator: str) -> list[str]:
+    return [cell.strip() for cell in line.split(separator)]
+
+
+def _columns(cells: Sequence[str], where: str) -> tuple[tuple[str, ...], int]:
+    """Return the columns, and the number of lines before the points."""
+    names = tuple(cell.lower().removesuffix("_mm") for cell in cells)
+    if any(name in COLUMNS for name in names):
+        expected = BY_COUNT.get(len(names))
+        if set(names) != set(expected or ()):
+            raise InputError(
+                CODE, f"{where} line 1", "its columns are {}; {}", ", ".join(cells), FORM
+            )
+        return names, 1
+    if len(cells) not in BY_COUNT:
+        raise InputError(CODE, f"{where} line 1", "it has {} columns; {}", len(cells), FORM)
+    return BY_COUNT[len(cells)], 0
+
+
+def _numbers(cells: Sequence[str], columns: Sequence[str], where: str) -> list[float]:
+    if len(cells) != len(columns) or not all(cells):
+        lacking = (
+            "it is empty"
+            if not any(cells)
+            else Text("it has {} numbers in place of {}", sum(map(bool, cells)), len(columns))
+        )
+        raise InputError(CODE, where, "{}; fill the gap, or remove the line", Word(lacking))
+    values = []
+    for cell, name in zip(cells, columns):
+        try:
+            if "_" in cell:
+                raise ValueError
+            number = float(cell)
+        except ValueError:
+            raise InputError(
+                CODE,
+                where,
+                "{!r} is not a number; give {} as a number with a decimal point",
+                cell[:40],
+                name,
+            ) from None
+        if not math.isfinite(number) or abs(number) > MAX_MM:
+            raise InputError(
+                CODE, where, "{} is {:g}; give a number of at most {:g}", name, number, MAX_MM
+            )
+        values.append(number)
+    return values
+
+
+def _curve(rows: Array, columns: Sequence[str], location: str, line: int, where: str) -> BeadCurve:
+    points = rows[:, [columns.index(name) for name in COLUMNS[:3]]]
+    if len(points) < 2:
+        raise InputError(CODE, location, "the bead has only one point; give at least two")
+    repeated = np.flatnonzero(np.linalg.norm(np.diff(points, axis=0), axis=1) < MIN_STEP_MM)
+    if len(repeated):
+        location = f"{where} line {line + int(repeated[0]) + 1}"
+        raise InputError(CODE, location, "the point repeats the previous line; remove it")
+    if "i" not in columns:
+        return BeadCurve(points)
+    directions = rows[:, [columns.index(name) for name in COLUMNS[3:6]]]
+    size = np.linalg.norm(directions, axis=1)
+    none = np.flatnonzero(size < 1e-9)
+    if len(none):
+        raise InputError(
+            CODE,
+            f"{where} line {line + int(none[0])}",
+            "i, j, k are 0; give a direction, such as 0, 0, 1",
+        )
+    return BeadCurve(points, directions / size[:, None])

@@ -14,8 +14,8 @@ from typing import Protocol
 import numpy as np
 
 from ...types import Array
-from ..angles import TURN
 from ..columns import columns
+from ..frames import TURN
 
 
 class Surface(Protocol):

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.angles import TURN
 from ...geometry.columns import columns
+from ...geometry.frames import TURN
 from ...types import Array, ArrayLike, Index
 
 CHUNK = 2048

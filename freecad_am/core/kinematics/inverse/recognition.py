@@ -9,14 +9,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.angles import shortest
 from ...geometry.formatting import format_differing
+from ...geometry.frames import shortest
 from ...issues import InputError, Text
 from ...types import Array, ArrayLike, Index
 from ..chain import Chain
 from ..jacobian import jacobian
 from . import opw_recognition
-from .offset_wrist.arm import OffsetWristArm
+from .offset_wrist import OffsetWristArm
 from .opw_recognition import NEAR_MM, PARALLEL_TOLERANCE, POSITION, ROTATION, clean
 from .parallel_axes import ParallelAxesArm
 from .serial_arm import SerialArm

@@ -17,8 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.file_content import read_content
-from ...geometry.located import is_there
+from ...geometry.job_files import is_there, read_content
 from ...issues import InputError
 from ...types import Array
 from ..chain import Chain

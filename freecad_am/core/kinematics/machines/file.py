@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.file_content import read_content
+from ...geometry.job_files import read_content
 from ...issues import InputError, Text, Word
 from ...types import Array
 from ..chain import Chain

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...geometry.located import is_there, locate
+from ...geometry.job_files import is_there, locate
 from ...issues import InputError, Text
 from ...types import Array, ArrayLike, Mask
 from ..arrangement import OF_FIVE_AXES, OF_ROBOTS, Arrangement

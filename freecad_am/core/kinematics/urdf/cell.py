@@ -16,7 +16,7 @@ from typing import NoReturn
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.located import is_there
+from ...geometry.job_files import is_there
 from ...issues import InputError, Text
 from ...parameters.cell_records import EXTERNAL_KEY, PART, ROBOT, ExternalMechanism
 from ...parameters.records import Pose

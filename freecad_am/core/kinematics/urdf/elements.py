@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.file_content import read_content
+from ...geometry.job_files import read_content
 from ...issues import InputError, Text, Word
 from ...types import Array
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...geometry.located import is_there
+from ...geometry.job_files import is_there
 from ...issues import InputError, Text, Word
 from ...parameters.cell_records import EXTERNAL_KEY
 from ...types import Array

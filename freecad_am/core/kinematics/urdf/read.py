@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.located import is_there, locate
+from ...geometry.job_files import is_there, locate
 from ...issues import InputError, Text
 from ...types import Array
 from ..chain import Chain

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...geometry.angles import TURN, shortest
+from ...geometry.frames import TURN, shortest
 from ...issues import NOTE, Issue
 from ...kinematics import jacobian as jac
 from ...types import Array, Index, Mask

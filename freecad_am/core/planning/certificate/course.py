@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...geometry.angles import TURN, shortest
+from ...geometry.frames import TURN, shortest
 from ...types import Array, Mask
 from ..points import Points
 from ..task import MIN_MARGIN, Task

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...geometry.angles import TURN, shortest
+from ...geometry.frames import TURN, shortest
 from ...kinematics import jacobian as jac
 from ...types import Array, Index, Mask
 from ..points import Points

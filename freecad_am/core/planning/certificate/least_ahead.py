@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...geometry.angles import TURN
+from ...geometry.frames import TURN
 from ...types import Array, Index, Mask
 from .lattice import COARSE, NO_FIVE, Lattice
 

@@ -15,15 +15,15 @@ from functools import cached_property
 
 import numpy as np
 
-from ...geometry.angles import TURN
 from ...geometry.columns import lengths
+from ...geometry.frames import TURN
 from ...kinematics.cell import Cell
 from ...kinematics.external import ExternalAxes, tilt_from
 from ...kinematics.inverse import rotary_pair
+from ...kinematics.limits import RESERVE
 from ...toolpath import Bead
 from ...types import Array, Index, Mask
-from ..reserve import RESERVE
-from ..turns import rotary_courses
+from ..turns import directed
 
 STEPS = 200  # of the search for the middle of directions
 
@@ -62,14 +62,14 @@ def upright(external: ExternalAxes, directions: Array) -> list[Array]:
         ]
     first_axis, second_axis = external.turning
     solutions = rotary_pair.solve_turns(
-        first_axis, second_axis, rotary_courses.onto_pole(source, second_axis), external.up
+        first_axis, second_axis, directed.onto_pole(source, second_axis), external.up
     )
     if not np.isfinite(
         solutions.first_turn + solutions.second_turn
     ).all():  # axes that are not at right angles reach no farther
         angle = rotary_pair.nearest(second_axis, source, external.up).angle
         return [np.unwrap(np.stack([np.zeros(len(angle)), angle], axis=-1), axis=0)]
-    return rotary_courses.courses(solutions)
+    return directed.rotary_courses(solutions)
 
 
 def chosen(cell: Cell, courses: Sequence[Array], previous: Array) -> Array:
@@ -82,7 +82,7 @@ def chosen(cell: Cell, courses: Sequence[Array], previous: Array) -> Array:
         cell.machine.max_speed[cell.robot.chain.axes + rows],
         np.ones(len(rows), dtype=bool),
     )
-    best = rotary_courses.chosen(
+    best = directed.chosen_course(
         courses, previous[rows], lower, upper, speed, all_axes, least_motion=True
     )
     values = np.tile(previous, (len(best), 1))

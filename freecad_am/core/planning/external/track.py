@@ -17,9 +17,9 @@ import numpy as np
 
 from ...geometry import frames
 from ...kinematics.cell import Cell
+from ...kinematics.limits import RESERVE
 from ...toolpath import Bead
 from ...types import Array
-from ..reserve import RESERVE
 
 # shares of the arm's reach: the window, and the offset of the robot from the deposit along the
 # track

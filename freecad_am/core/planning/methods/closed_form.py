@@ -21,17 +21,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.angles import TURN, shortest
+from ...geometry.frames import TURN, shortest
 from ...issues import ERROR, Issue, Text
+from ...kinematics.limits import RESERVE
 from ...toolpath import Bead
 from ...types import Array
 from ..beads.chord_error import ROUNDING, deviation, leaning
 from ..beads.retreat import gone_back
 from ..joint_path import BeadPath
-from ..reserve import RESERVE
 from ..task import Task
 from ..turns import directed
-from ..turns.rotary_courses import AT_POLE
+from ..turns.directed import AT_POLE
 from ..turns.unwrap import is_otherwise, seam_notes
 
 Progress = Callable[[float, str], None]

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ...geometry.angles import TURN, shortest
+from ...geometry.frames import TURN, shortest
 from ...geometry.ties import first_most
 from ...issues import NOTE, Issue, Text
 from ...toolpath import Bead

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ...geometry.angles import TURN
+from ...geometry.frames import TURN
 from ...geometry.ties import first_most, index_of_minimum
 from ...issues import Issue
 from ...toolpath import Bead

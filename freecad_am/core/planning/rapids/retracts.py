@@ -17,15 +17,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.angles import TURN
+from ...geometry.frames import TURN
 from ...kinematics import jacobian as jac
 from ...kinematics.cell import Cell
 from ...kinematics.inverse import opw
 from ...kinematics.inverse.five_axis import FiveAxis
+from ...kinematics.limits import RESERVE
 from ...parameters.joints import JointParameters
 from ...types import Array, Index, Mask
 from ..joint_path import BeadPath
-from ..reserve import RESERVE
 from ..task import CONDITION_FLOOR
 from ..turns import configurations as following
 

@@ -18,10 +18,10 @@ import numpy as np
 from ...geometry.obstacles import Body
 from ...geometry.spread import spread_points
 from ...kinematics.cell import Cell
+from ...kinematics.limits import RESERVE
 from ...program import SHORTEST_RAPID
 from ...toolpath import Bead
 from ...types import Array, Index, Mask
-from ..reserve import RESERVE
 from .clearance import Moves
 from .retracts import DIRECTIONS, STRAY_MM, Leg, Retracts
 

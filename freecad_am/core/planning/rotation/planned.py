@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ...geometry.angles import TURN
+from ...geometry.frames import TURN
 from ...toolpath import Bead
 from ...types import Array
 from ..joint_path import BeadPath

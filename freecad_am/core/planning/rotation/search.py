@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...geometry.angles import TURN, shortest
+from ...geometry.frames import TURN, shortest
 from ...geometry.ties import first_most, index_of_minimum, is_tied
 from ...kinematics import jacobian as jac
 from ...toolpath import Bead

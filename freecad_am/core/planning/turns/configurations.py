@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...geometry.angles import shortest
+from ...geometry.frames import shortest
 from ...kinematics.inverse.serial_arm import SerialArm
 from ...types import Array
 from ..points import Points

@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Actual layer spacing: the distance from each deposit point to the nearest point of the layer before."""
+"""Layer spacing: the distance from each deposit point to the nearest point of the layer before, a
+curve."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, fields
 from itertools import chain
+from typing import Any
 
 import numpy as np
 
+from ...geometry.columns import columns, crosses, lengths, unit_rows
+from ...geometry.curves.outline import derivatives
 from ...toolpath import Bead, Layer, Toolpath
-from ...types import Array, Index, Mask
-from .layer_curve import Curve, columns_of, distance, distances
+from ...types import Array, Index, Mask, NDArray
 
 PLANE_TOLERANCE_MM = 1e-6  # mm; a layer whose points differ no more in height is a plane
 
@@ -162,3 +166,298 @@ def curve_of(layer: Layer) -> Curve:
     """The smooth curve through the points of a layer's beads."""
     segments = [columns_of(bead.points, bead.closed, bead.tangents) for bead in layer.beads]
     return Curve(*(np.concatenate(columns) for columns in zip(*segments, strict=True)))
+
+
+# ---- The smooth curve through points, and the distance of other points from it
+#
+# The points of a bead are on its curve, the chords between them are not: on a circle they run
+# inside by up to the chord error, which would show as spacing. So the curve is a smooth one
+# through the points - in each segment a cubic that is a circular arc to sixth order in the angle
+# it turns - and keeps corners as they are. Its tangents are the bead's own where it has them,
+# else the tangents of parabolas.
+
+CORNER = np.radians(
+    50.0
+)  # a bead that turns by more at a point has a corner there; the sparsest circle turns by less
+SLIGHT = np.radians(
+    10.0
+)  # a smaller turn is a corner too if it exceeds SUDDEN times the adjacent turns
+SUDDEN = 3.0
+SMOOTH = 1e-3  # rad; where the tangents of a bead are known, a corner is a point at which they differ by more
+_ALL = 15_000  # pairs of points and segments up to which all are tried; beyond, a tree is faster
+_CHUNK = 400_000  # point-segment pairs handled at once; bounds the memory
+_TIE = 1e-9  # mm; where two chords meet both are the nearest: rounding does not choose between them
+_BATCH_POINTS = 4096  # points evaluated in one batch, about
+_FIRST_TRIED = 5  # segments that are tried first
+_OVERRUN_SHARE = 0.25  # how far the cubic of a segment serves past its ends, where the next one's would be nearer by a hair
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Segments start, end (m, 3) with the derivatives (m, 3) of their cubics there; `low` and `high` (m,) bound the
+    cubics' variable, which is 0 at the start and 1 at the end."""
+
+    start: Array
+    end: Array
+    start_slope: Array
+    end_slope: Array
+    low: Array
+    high: Array
+
+
+def distance(points: Array, curve: Curve) -> Array:
+    """(n,) distance from points (n, 3) to the curve, in their unit.
+
+    The nearest vertex bounds the distance from above, so only segments whose middle is nearer than this bound plus half
+    the longest segment can hold the nearest point of the chords; all such segments are tried. For every segment whose cubic may
+    be the nearest, as far as it bows from its chord, the foot is moved along the cubic: near a corner that is not always the
+    one with the nearest chord.
+    """
+    return _batch_distances([(points, curve)])[0]
+
+
+def distances(queries: Iterable[tuple[Array, Curve]]) -> Iterator[Array]:
+    """Yield the `distance` of points to a curve for each query, in batches: for a few points the calls take longer than the work."""
+    batch: list[tuple[Array, Curve]] = []
+    for query in queries:
+        batch.append(query)
+        if sum(len(points) for points, _ in batch) >= _BATCH_POINTS:
+            yield from _batch_distances(batch)
+            batch = []
+    if batch:
+        yield from _batch_distances(batch)
+
+
+def _batch_distances(queries: Sequence[tuple[Array, Curve]]) -> list[Array]:
+    points = np.concatenate([points for points, _ in queries])
+    curve = Curve(
+        *(
+            np.concatenate([getattr(curve, field.name) for _, curve in queries])
+            for field in fields(Curve)
+        )
+    )
+    point_offsets = np.cumsum([0, *(len(points) for points, _ in queries)])
+    segment_offsets = np.cumsum([0, *(len(curve.start) for _, curve in queries)])
+    pairs = [
+        (point + point_offsets[k], segment + segment_offsets[k], nearest_chord)
+        for k, query in enumerate(queries)
+        for point, segment, nearest_chord in _near(*query)
+    ]
+    point, segment, nearest_chord = (np.concatenate(column) for column in zip(*pairs, strict=True))
+    return np.split(_to_cubic(points, point, segment, nearest_chord, curve), point_offsets[1:-1])
+
+
+def _near(points: Array, curve: Curve) -> Iterator[tuple[Index, Index, Mask]]:
+    """Pairs (k,) of a point and a segment that may be nearest to it, grouped by point, and whether its chord is the nearest."""
+    bow = _bow(curve)
+    if len(points) * len(curve.start) <= _ALL:
+        yield _nearest_of_all(points, curve, bow)
+        return
+    from scipy.spatial import cKDTree  # slow to import, and the beads of most jobs are short
+
+    reach = 0.5 * float(lengths(curve.end - curve.start).max()) + 2.0 * float(bow.max())
+    middles = cKDTree(0.5 * (curve.start + curve.end))
+    distance, segment_rows = middles.query(points, _FIRST_TRIED)
+    radius: Array = (distance[:, 0] + reach) * (1.0 + 1e-9)
+    # nearly everywhere the first few segments hold all candidates, and no search within the radius is needed
+    is_complete = distance[:, -1] > radius
+    point, column = np.nonzero((distance <= radius[:, None]) & is_complete[:, None])
+    if is_complete.any():
+        yield _nearest_chords(points, point, segment_rows[point, column], curve, bow)
+    remaining = np.flatnonzero(~is_complete)
+    for chunk in (
+        np.array_split(remaining, _parts(middles, points[remaining], radius[remaining]))
+        if len(remaining)
+        else ()
+    ):
+        point, segment = _segments_in_radius(middles, points[chunk], radius[chunk])
+        yield _nearest_chords(points, chunk[point], segment, curve, bow)
+
+
+def _bow(curve: Curve) -> Array:
+    """(m,) how far the cubic of each segment may be from its chord, at most."""
+    chord = curve.end - curve.start
+    ends = lengths(curve.start_slope - chord) + lengths(curve.end_slope - chord)
+    bow: Array = 4.0 / 27.0 * ends
+    return bow
+
+
+def _nearest_of_all(points: Array, curve: Curve, bow: Array) -> tuple[Index, Index, Mask]:
+    """Pairs (k,) of a point and a segment that may be nearest to it, in rising order, and whether its chord is; all are tried."""
+    centre = curve.start.mean(axis=0)
+    start, along, offset = curve.start - centre, curve.end - curve.start, points - centre
+    length = (along * along).sum(axis=1)
+    forward = offset @ along.T - (start * along).sum(axis=1)
+    share = _between(forward / np.maximum(length, 1e-300), 0.0, 1.0)
+    squared = (
+        (offset * offset).sum(axis=1)[:, None]
+        - 2.0 * offset @ start.T
+        + (start * start).sum(axis=1)
+    )
+    squared += share * (share * length - 2.0 * forward)
+    nearest, row = squared.argmin(axis=1), np.arange(len(points))
+    distance = np.sqrt(np.maximum(squared, 0.0))
+    shortest = distance[row, nearest]
+    nearest_chord = distance <= (shortest + _TIE)[:, None]
+    point, segment = np.nonzero(
+        nearest_chord | (distance - bow <= (shortest + bow[nearest])[:, None])
+    )
+    return point, segment, nearest_chord[point, segment]
+
+
+def _parts(middles: Any, points: Array, radius: Array) -> int:
+    sample = slice(None, None, max(1, len(points) // 16))
+    per_point = float(
+        np.mean(middles.query_ball_point(points[sample], radius[sample], return_length=True))
+    )
+    return min(len(points), 1 + int(per_point * len(points) / _CHUNK))
+
+
+def _segments_in_radius(middles: Any, points: Array, radius: Array) -> tuple[Index, Index]:
+    """Pairs (k,) of a point, rising, and a segment whose middle is within the radius (n,) about it."""
+    neighbours = middles.query_ball_point(points, radius, return_sorted=False)
+    count = np.fromiter(map(len, neighbours), dtype=np.intp, count=len(neighbours))
+    segment = np.fromiter(chain.from_iterable(neighbours), dtype=np.intp, count=int(count.sum()))
+    return np.repeat(np.arange(len(points)), count), segment
+
+
+def _nearest_chords(
+    points: Array, point: Index, segment: Index, curve: Curve, bow: Array
+) -> tuple[Index, Index, Mask]:
+    """The same as `_nearest_of_all`, of pairs (k,) of a point, rising, and a segment."""
+    start = columns(curve.start)[:, segment]
+    along = columns(curve.end)[:, segment] - start
+    offset = columns(points)[:, point] - start
+    offset -= _share(offset, along) * along
+    distance = _size(offset)
+    begins = np.flatnonzero(np.diff(point, prepend=-1))
+    group = np.repeat(np.arange(len(begins)), np.diff(np.append(begins, len(point))))
+    shortest = np.minimum.reduceat(distance, begins)
+    hits = np.flatnonzero(distance == shortest[group])
+    first_hit = hits[np.unique(group[hits], return_index=True)[1]]
+    nearest_chord = distance <= (shortest + _TIE)[group]
+    maybe = nearest_chord | (distance - bow[segment] <= (shortest + bow[segment[first_hit]])[group])
+    return point[maybe], segment[maybe], nearest_chord[maybe]
+
+
+def _share(offset: Array, along: Array) -> Array:
+    """(k,) foot of points `offset` (3, k) from the start of segments `along` (3, k), as a share of the segment."""
+    squared = _dot(along, along)
+    return _between(_dot(offset, along) / np.where(squared > 0.0, squared, 1.0), 0.0, 1.0)
+
+
+def _dot(a: Array, b: Array) -> Array:
+    """(k,) scalar products of vectors (3, k), added up in the order in which einsum does it of rows."""
+    product = a * b
+    result: Array = product[0] + product[2]
+    result += product[1]
+    return result
+
+
+def _size(vectors: Array) -> Array:
+    """(k,) lengths of vectors (3, k)."""
+    return lengths(vectors.T)
+
+
+def _between(values: Array, low: Array | float, high: Array | float) -> Array:
+    """As np.clip, which takes many times as long for a few."""
+    clipped: Array = np.minimum(np.maximum(values, low), high)
+    return clipped
+
+
+def _to_cubic(
+    points: Array, point: Index, segment: Index, nearest_chord: Mask, curve: Curve
+) -> Array:
+    """(n,) the least distance of points to the cubics of the segments (k,) paired with those numbered `point`, by Newton's
+    steps from the foot on the chord. Only a point's own segment, its chord the nearest, serves past its ends."""
+    # axis by axis: rows of three take several times longer
+    target = columns(points)[:, point]
+    p, q, a, b = (
+        columns(column)[:, segment]
+        for column in (curve.start, curve.end, curve.start_slope, curve.end_slope)
+    )
+    low, high = (
+        np.where(nearest_chord, curve.low[segment], 0.0),
+        np.where(nearest_chord, curve.high[segment], 1.0),
+    )
+    d = q - p
+    square, cube = 3.0 * d - 2.0 * a - b, a + b - 2.0 * d
+    u = _share(target - p, d)
+    for _ in range(3):
+        residual = p + u * (a + u * (square + u * cube)) - target
+        slope = a + u * (2.0 * square + 3.0 * u * cube)
+        bend = 2.0 * square + 6.0 * u * cube
+        rate = _dot(slope, slope) + _dot(residual, bend)
+        u = _between(u - _dot(residual, slope) / np.where(rate > 0.0, rate, np.inf), low, high)
+    distance = _size(p + u * (a + u * (square + u * cube)) - target)
+    shortest, begins = np.empty(len(points)), np.flatnonzero(np.diff(point, prepend=-1))
+    shortest[point[begins]] = np.minimum.reduceat(distance, begins)
+    return shortest
+
+
+def columns_of(points: Array, closed: bool, tangents: Array | None = None) -> tuple[Array, ...]:
+    """The columns of `Curve` for points (n, 3) of a bead or a section, with its unit tangents (n, 2, 3) where known."""
+    step = np.diff(points, axis=0)
+    length = lengths(step)
+    if tangents is not None:
+        turn = np.arccos(np.clip(np.einsum("ij,ij->i", tangents[:, 0], tangents[:, 1]), -1.0, 1.0))
+        smooth = turn < SMOOTH
+        smooth[[0, -1]] &= closed
+        return _arcs(points, tangents[:-1, 1], tangents[1:, 0], smooth[:-1], smooth[1:])
+    chord = step / np.where(length > 0.0, length, 1.0)[:, None]
+    incoming, outgoing = _before(chord), chord
+    smooth = ~_corners(incoming, outgoing, closed)  # at the start of each segment
+    smooth[0] &= closed
+    # the tangent of the parabola through three points: the nearer neighbour counts more
+    tangent = unit_rows(incoming * length[:, None] + outgoing * _before(length)[:, None])
+    at_start, at_end = tangent, _after(tangent)
+    smooth_end = _after(smooth)
+    # where the curve ends or has a corner, the arc through both points that has the tangent of the other end
+    start = np.where(
+        smooth[:, None], at_start, np.where(smooth_end[:, None], _mirrored(at_end, chord), chord)
+    )
+    end = np.where(
+        smooth_end[:, None], at_end, np.where(smooth[:, None], _mirrored(at_start, chord), chord)
+    )
+    return _arcs(points, start, end, smooth, smooth_end)
+
+
+def _arcs(
+    points: Array, start: Array, end: Array, smooth: Mask, smooth_end: Mask
+) -> tuple[Array, ...]:
+    """The columns for segments with the unit tangents (n - 1, 3) at their ends, which go on smoothly or do not."""
+    return (
+        points[:-1],
+        points[1:],
+        *derivatives(points, start, end),
+        np.where(smooth, -_OVERRUN_SHARE, 0.0),
+        np.where(smooth_end, 1.0 + _OVERRUN_SHARE, 1.0),
+    )
+
+
+def _corners(incoming: Array, outgoing: Array, closed: bool) -> Mask:
+    """(n,) whether the path of segments with unit directions (n, 3) has a corner at the start of each segment."""
+    turn = np.arctan2(
+        lengths(crosses(incoming, outgoing)), np.einsum("ij,ij->i", incoming, outgoing)
+    )
+    if not closed:
+        turn[0] = 0.0
+    adjacent = np.maximum(_before(turn), _after(turn))
+    corners: Mask = (turn >= CORNER) | ((turn > SLIGHT) & (turn > SUDDEN * adjacent))
+    return corners
+
+
+def _before(rows: NDArray[Any]) -> NDArray[Any]:
+    """The row before each, round again; np.roll takes many times as long for a few."""
+    return np.concatenate((rows[-1:], rows[:-1]))
+
+
+def _after(rows: NDArray[Any]) -> NDArray[Any]:
+    """The row after each, round again."""
+    return np.concatenate((rows[1:], rows[:1]))
+
+
+def _mirrored(tangent: Array, chord: Array) -> Array:
+    """The tangent at the other end of the arc with this chord."""
+    mirrored: Array = 2.0 * np.einsum("ij,ij->i", tangent, chord)[:, None] * chord - tangent
+    return mirrored

@@ -21,10 +21,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.angles import TURN
 from ...geometry.columns import columns
 from ...geometry.curves.plane_curve import doubled_area, winding
 from ...geometry.developable import Developable
+from ...geometry.frames import TURN
 from ...geometry.mesh.triangle_mesh import chains
 from ...geometry.step_count import step_count
 from ...issues import InputError

@@ -21,8 +21,8 @@ from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.walls.surface import Surface, dot, normals
 from ...issues import InputError
 from ...types import Array
+from .. import wall_directions
 from ..banded import AIM, HEAVY, MARGIN, WEIGHTS, lightest, smooth_between
-from ..directions import wall
 from .offset import Offset
 
 
@@ -107,7 +107,7 @@ class Smoothed(NamedTuple):
 
 def turns_in_wall(surface: Surface, layer: WallLayer) -> Array:
     """Turn of the bead within the wall per length, (m - 1,) rad/mm, see `wall_turn`."""
-    return wall.turns_in_wall(layer.curve, normals(surface, layer.u, layer.v))
+    return wall_directions.turns_in_wall(layer.curve, normals(surface, layer.u, layer.v))
 
 
 def next_layer(

@@ -22,11 +22,10 @@ from ...geometry.walls.surface import dot
 from ...issues import InputError, Issue, Text
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.cell import NozzleParameters
-from ...slicing.directions.wall import limit_turns, turn_rates
+from ...slicing.wall_directions import limit_turns, turn_rates
 from ...toolpath import Bead, Toolpath
 from ...types import Array, Index, Mask
 from ..progress import Watch
-from . import knots as clearance_knots
 from .look import (
     CLEARANCE,
     Space,
@@ -270,11 +269,11 @@ def _cleared(
     spread: float = SPREAD,
 ) -> tuple[Array, Array, Index]:
     """Axes (n, 3) of the toolpath's points, with the beads of `rows` tilted clear; tilts (n,) rad; the points that touch even so."""
-    knots = [clearance_knots.bead_knots(row) for row in rows]
+    knots = [knots_along(row) for row in rows]
     for row, bead_knots in zip(rows, knots, strict=True):
         if len(bead_knots) < len(row):
             free = free.copy()
-            free[bead_knots] = clearance_knots.free_about(row, bead_knots, free)
+            free[bead_knots] = free_about(row, bead_knots, free)
     search = TiltSearch(space, knots, closed, tool_before, plane, free, spread)
     offset, stuck = search.search(watch)
     tool, tilt = tool_before.copy(), np.zeros(len(tool_before))
@@ -283,7 +282,7 @@ def _cleared(
     touching = [flat[stuck]]
     for row, bead_knots in zip(rows, knots, strict=True):
         if len(bead_knots) < len(row):
-            tool[row], touching_rows = clearance_knots.spread_out(
+            tool[row], touching_rows = spread_out(
                 space, row, bead_knots, tool_before, tool[bead_knots]
             )
             tilt[row] = np.arctan2(
@@ -362,3 +361,51 @@ def _slowed(
         remaining = _fastest(space, row, tool)
         worst = max(worst, remaining if remaining > max_rate else 0.0)
     return worst
+
+
+# ---- Long beads are tilted clear at some of their points, the knots; between these their tilts
+# are interpolated and checked
+#
+# Tilts build up over millimetres, points may be hundredths apart: a search at every point costs
+# time, and the steps between its candidates, several degrees, would turn the tool too fast from
+# one point to the next.
+
+MAX_POINTS = 2500  # points of a bead at which tilts are searched
+
+
+def knots_along(row: Index) -> Index:
+    """The points of a bead, of its points `row` in order, at which tilts are searched: evenly many, both ends among them."""
+    if len(row) <= MAX_POINTS:
+        return row
+    knots: Index = row[
+        np.unique(np.round(np.linspace(0, len(row) - 1, MAX_POINTS)).astype(np.intp))
+    ]
+    return knots
+
+
+def free_about(row: Index, knots: Index, free: Mask) -> Mask:
+    """(k,) whether the points nearest to each knot are all free; free: (n,) over the points of the toolpath."""
+    position = np.searchsorted(row, knots)
+    middles = np.r_[0, (position[:-1] + position[1:] + 1) // 2]
+    about: Mask = np.logical_and.reduceat(free[row], middles)
+    return about
+
+
+def spread_out(
+    space: Space, row: Index, knots: Index, tool: Array, axes: Array
+) -> tuple[Array, Index]:
+    """Axes (m, 3) at all points of a bead, those (k, 3) at its knots and even between; and the points that touch there."""
+    points = space.points[row]
+    along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    knot_lengths = along[np.searchsorted(row, knots)]
+    lean = axes - tool[knots]
+    tilted = tool[row] + np.stack(
+        [np.interp(along, knot_lengths, column) for column in lean.T], axis=1
+    )
+    tilted /= np.linalg.norm(tilted, axis=1, keepdims=True)
+    between = dataclasses.replace(space, nozzle=space.nozzle.halfway())
+    between_rows = np.setdiff1d(row, knots, assume_unique=True)
+    touching: Index = between_rows[
+        ~between.clear(between_rows, tilted[np.searchsorted(row, between_rows)])
+    ]
+    return tilted, touching

@@ -12,7 +12,6 @@ import numpy as np
 
 from ...filling.centre import PlaneCurve, divide_by_share
 from ...filling.cover import Cover, total
-from ...geometry.angles import TURN
 from ...geometry.curves.plane_curve import (
     arcs,
     divide_edges,
@@ -21,16 +20,17 @@ from ...geometry.curves.plane_curve import (
     sines,
     steps,
 )
+from ...geometry.frames import TURN
 from ...geometry.on_hub import SolidsOnHub
 from ...geometry.regions.region import select_significant, simplified
-from ...layers.slabs import group_of, slabs
+from ...layers.plane_field import group_of, slabs
 from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process import classes
-from ...process.model.bead_model import BeadModel
-from ...process.model.notes import at_speed, limit_acceleration, radii, segment_speeds
+from ...process.bead_model import BeadModel
+from ...process.model_notes import at_speed, limit_acceleration, radii, segment_speeds
 from ...toolpath import Bead
 from ...types import Array, Mask
 from .course import Course

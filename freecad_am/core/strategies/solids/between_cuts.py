@@ -15,12 +15,11 @@ from scipy.spatial import cKDTree
 from ...collision.inside import inside_of
 from ...geometry.curves.guide import Guide
 from ...geometry.curves.plane_curve import divide_edges
-from ...geometry.developable import Developable
+from ...geometry.developable import Developable, Plane
 from ...geometry.formatting import place
 from ...geometry.mesh.solid import SolidMesh, connected_pieces
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Group, SolidsOnHub
-from ...geometry.plane import Plane
 from ...geometry.step_count import step_counts
 from ...issues import WARNING, Issue, Text
 from ...layers.plane_field import CLEARANCE_SHARE, EXACT

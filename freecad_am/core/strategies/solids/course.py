@@ -17,7 +17,7 @@ from ...geometry.frames import unit
 from ...issues import InputError
 from ...layers.surface import LayerSurface
 from ...parameters.build_direction import TURN_ON_HUBS, BuildDirectionParameters
-from ...slicing.directions.wall import limit_turns, turn_rates
+from ...slicing.wall_directions import limit_turns, turn_rates
 from ...types import Array
 
 OF_NORMAL = 1.5  # a leaning torch may always turn this much faster than the normals

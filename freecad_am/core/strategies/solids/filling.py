@@ -23,11 +23,10 @@ from ...geometry.regions.strip import Period, Strip
 from ...issues import NOTE, WARNING, InfeasibleError, InputError, Issue, Text, Word
 from ...layers.margins import ARCS
 from ...layers.surface import Slice
-from ...parameters.filled import FilledParameters
-from ...parameters.fills import FILLS
+from ...parameters.filled import FILLS, FilledParameters
 from ...parameters.process import ProcessParameters
-from ...process.model.bead_model import BeadModel
-from ...process.model.wire import model_wire_feed
+from ...process.bead_model import BeadModel
+from ...process.wire import model_wire_feed
 from ...types import Array
 
 Same = TypeVar("Same", bound=FilledParameters)

@@ -15,13 +15,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.angles import TURN
 from ...geometry.columns import columns
+from ...geometry.frames import TURN
 from ...geometry.regions.region import simplified
 from ...geometry.step_count import round_down
 from ...layers.surface import LayerSurface
 from ...parameters.build_direction import BuildDirectionParameters
-from ...slicing.directions.wall import turn_rates
+from ...slicing.wall_directions import turn_rates
 from ...types import Array, Index, Mask
 from .course import LEAST_DEPARTURE, OF_NORMAL, RATE_MARGIN, Course, evened, limit
 

@@ -14,8 +14,8 @@ from ...issues import NOTE, WARNING, Issue, Text, Word
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
-from ...process.model.bead_model import BeadModel
-from ...process.model.notes import model_issues
+from ...process.bead_model import BeadModel
+from ...process.model_notes import model_issues
 from ...toolpath import Layer
 from ...types import Array
 from .beads import MadeBead

@@ -24,7 +24,7 @@ from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
-from ...process.model.bead_model import BeadModel
+from ...process.bead_model import BeadModel
 from ...process.order import Course, IslandOrder, RankedBead, add_waits, order_beads
 from ...toolpath import Bead, Toolpath
 from ...types import Array, Mask

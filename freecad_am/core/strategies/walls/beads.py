@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.angles import TURN
 from ...geometry.curves.space_curve import SpaceCurve
-from ...geometry.frames import unit
+from ...geometry.frames import TURN, unit
 from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface_wall import SurfaceWall
 from ...issues import NOTE, WARNING, InputError, Issue, Text, Word
@@ -17,7 +16,7 @@ from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import SurfaceParameters
 from ...process import classes
-from ...slicing.directions.wall import (
+from ...slicing.wall_directions import (
     MIN_IN_PLANE,
     cap_lean,
     lean_tool,

@@ -8,13 +8,16 @@ comes next.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.walls.patch_wall import PatchWall
+from ...geometry.walls.surface import dot
 from ...issues import NOTE, InputError, Issue, Text
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.process import ProcessParameters
@@ -39,8 +42,197 @@ from .beads import (
     traced,
     turn_notes,
 )
-from .front_seams import Middle, seam
-from .front_tree import Piece, drop_short_pieces, events, tree, uncut_pieces
+
+ANGLES_PER_ARC = 4  # places per arc of a front at which its angle is taken
+HALVINGS = 40
+ACROSS = 0.1  # of unit length; an axis whose X is shorter is seen from Y
+
+
+class Middle(NamedTuple):
+    """The middle of a closed front: its centre (3,), unit axis (3,) about which it turns counter-clockwise, the direction
+    (3,) from which angles are taken, and where the front begins (3,)."""
+
+    centre: Array
+    axis: Array
+    reference: Array
+    start: Array
+
+
+def seam(piece: Piece, angle: float, middles: dict[int, Middle]) -> float:
+    """The parameter at which a closed front begins, at `angle` (rad) about its middle.
+
+    The angle's zero is X of the part, or Y where X is along the axis, at the first front; from there on it is carried with
+    the smallest rotation that takes one axis to the next. Of several positions at that angle the one nearest to the seam
+    below is taken. middles: of the fronts below by id; the new one is added.
+    """
+    curve = piece.curve
+    w = curve.refined(ANGLES_PER_ARC)[:-1]
+    points = curve.at(w)[0]
+    ahead = np.roll(points, -1, axis=0)
+    length = np.linalg.norm(ahead - points, axis=1)
+    centre = (length[:, None] * 0.5 * (points + ahead)).sum(axis=0) / length.sum()
+    axis = np.cross(points - centre, ahead - centre).sum(axis=0)
+    axis /= np.linalg.norm(axis)
+    below = next((middles[id(parent)] for parent in piece.parents if id(parent) in middles), None)
+    reference = _carry_reference(below, axis) if below is not None else _reference(axis)
+    # the front relative to a frame that is turned by the angle: the seam crosses its X from below
+    x = np.cos(angle) * reference + np.sin(angle) * np.cross(axis, reference)
+    y = np.cross(axis, x)
+    sideways = (points - centre) @ y
+    next_sideways = np.roll(sideways, -1)
+    out = (points - centre) @ x
+    crossing = np.flatnonzero((sideways <= 0.0) & (next_sideways > 0.0) & (out > 0.0))
+    if not len(crossing):
+        crossing = np.array(
+            [int(np.argmax(out / np.maximum(np.linalg.norm(points - centre, axis=1), 1e-300)))]
+        )
+    if below is not None:
+        crossing = crossing[
+            [int(np.argmin(np.linalg.norm(points[crossing] - below.start, axis=1)))]
+        ]
+    k = int(crossing[0])
+    low, high = w[k], w[k + 1] if k + 1 < len(w) else curve.w[-1]
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        side = float((curve.at(np.array([middle]))[0][0] - centre) @ y)
+        low, high = (middle, high) if side <= 0.0 else (low, middle)
+    start = 0.5 * (low + high)
+    middles[id(piece)] = Middle(centre, axis, reference, curve.at(np.array([start]))[0][0])
+    return float(start)
+
+
+def _reference(axis: Array) -> Array:
+    for direction in np.eye(3)[:2]:
+        flat = direction - (direction @ axis) * axis
+        length = np.linalg.norm(flat)
+        if length > ACROSS:
+            return np.asarray(flat / length)
+    raise AssertionError("an axis is along X or along Y, not both")
+
+
+def _carry_reference(below: Middle, axis: Array) -> Array:
+    """The reference of the front below, turned with the axis."""
+    cosine = float(below.axis @ axis)
+    if cosine < -1.0 + ACROSS:
+        return _reference(axis)
+    turn = np.cross(below.axis, axis)
+    carried = (
+        cosine * below.reference
+        + np.cross(turn, below.reference)
+        + turn * (turn @ below.reference) / (1.0 + cosine)
+    )
+    flat = carried - (carried @ axis) * axis
+    return np.asarray(flat / np.sqrt(dot(flat, flat)))
+
+
+# ---- The tree of a wall's fronts: splits, merges, and cuts by an end of the wall
+
+SAMPLES = 100  # sample points along a front for its parents
+LEAST_COMMON = 2  # of the samples; fewer are a touch at an end
+
+
+@dataclass(eq=False)
+class Piece:
+    """A front. parents: the fronts of the layer below that support it, the largest share first. cut: ends at an upper edge of the
+    wall. closing: not a front but a bead that closes a gap between fronts.
+    """
+
+    curve: SpaceCurve
+    parents: list[Piece]
+    cut: bool
+    children: list[Piece] = field(default_factory=list)
+    closing: bool = False
+
+
+def tree(fronts: list[list[SpaceCurve]], rims: Rims) -> list[list[Piece]]:
+    """The pieces of each layer."""
+    layers: list[list[Piece]] = []
+    for layer in fronts:
+        below = layers[-1] if layers else []
+        pieces = [Piece(front, _parents(front, below), rims.ends_of(front)) for front in layer]
+        for piece in pieces:
+            for parent in piece.parents:
+                parent.children.append(piece)
+        layers.append(pieces)
+    return layers
+
+
+def _parents(front: SpaceCurve, below: list[Piece]) -> list[Piece]:
+    if len(below) < 2:
+        return list(below)
+    points = front.at(
+        np.linspace(front.w[0], front.w[-1], SAMPLES + 1)[:-1] + 0.5 * front.period / SAMPLES
+    )[0]
+    count = np.bincount(
+        nearest_feet([piece.curve for piece in below], points).front, minlength=len(below)
+    )
+    order = np.argsort(-count, kind="stable")
+    return [below[k] for k in order if count[k] >= LEAST_COMMON]
+
+
+def events(layers: list[list[Piece]]) -> list[Issue]:
+    """Where fronts split and merge, a note for each layer in which they do."""
+    issues = []
+    for index, layer in enumerate(layers[1:], 1):
+        splits = Counter(
+            len(piece.children) for piece in layers[index - 1] if len(piece.children) > 1
+        )
+        merges = Counter(len(piece.parents) for piece in layer if len(piece.parents) > 1)
+        for code, counts, singular, plural in (
+            (
+                "SPLIT",
+                splits,
+                "a front splits in {} at layer {}",
+                "{2} fronts split in {0} each at layer {1}",
+            ),
+            (
+                "MERGE",
+                merges,
+                "{} fronts merge at layer {}",
+                "{0} fronts merge, in {2} places, at layer {1}",
+            ),
+        ):
+            issues += [
+                Issue(
+                    NOTE, code, Text(singular if count == 1 else plural, size, index, count), index
+                )
+                for size, count in sorted(counts.items())
+            ]
+    return issues
+
+
+def uncut_pieces(layers: list[list[Piece]]) -> list[list[Piece]]:
+    """The pieces that no end cuts off, on others of their kind."""
+    kept_layers: list[list[Piece]] = []
+    for layer in layers:
+        below = set(kept_layers[-1]) if kept_layers else set()
+        uncut = [piece for piece in layer if not piece.cut and below.issuperset(piece.parents)]
+        if not uncut:
+            break
+        kept_layers.append(uncut)
+    return _pruned(kept_layers)
+
+
+def drop_short_pieces(layers: list[list[Piece]], shortest: float) -> tuple[list[list[Piece]], int]:
+    """Remove the pieces shorter than `shortest` mm without a piece above, and count them."""
+    dropped: set[Piece] = set()
+    for layer in reversed(layers):
+        dropped.update(
+            piece
+            for piece in layer
+            if piece.curve.length < shortest and dropped.issuperset(piece.children)
+        )
+    kept_layers = [[piece for piece in layer if piece not in dropped] for layer in layers]
+    return _pruned([layer for layer in kept_layers if layer]), len(dropped)
+
+
+def _pruned(layers: list[list[Piece]]) -> list[list[Piece]]:
+    """The same pieces, with links only among themselves."""
+    remaining = {piece for layer in layers for piece in layer}
+    for piece in remaining:
+        piece.children = [child for child in piece.children if child in remaining]
+    return layers
+
 
 FINER = 4  # places per arc of a front at which its distance from the layer below is measured
 FINDING = 0.7  # of the time goes into finding the layers

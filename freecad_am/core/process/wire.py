@@ -10,14 +10,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.file_content import read_content
-from ...geometry.ramps import ramp
-from ...issues import WARNING, InputError, Issue, Text, Word
-from ...motion import AT_END, AT_START, MIDDLE
-from ...parameters.bead_classes import CLASSES
-from ...parameters.process import ProcessParameters
-from ...toolpath import Bead, Toolpath
-from ...types import Array
+from ..geometry.job_files import read_content
+from ..geometry.ramps import ramp
+from ..issues import WARNING, InputError, Issue, Text, Word
+from ..motion import AT_END, AT_START, MIDDLE
+from ..parameters.bead_classes import CLASSES
+from ..parameters.process import ProcessParameters
+from ..toolpath import Bead, Toolpath
+from ..types import Array
 from .bead_model import MINUTE, BeadModel, fit, row_name
 
 _KEYS = {MIDDLE: "", AT_START: ".start", AT_END: ".end"}

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers equally spaced along the axis (Chalvin 2020, section 2.1, Z-level planes)."""
+"""Levels of layers along a meridian, equally spaced along the wall or along the axis (Chalvin
+2020, section 2.1)."""
 
 from __future__ import annotations
 
@@ -10,7 +11,33 @@ from ..issues import InputError
 from ..types import Array
 
 
-def layers(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]:
+def arc_length_levels(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]:
+    """Return the arc lengths of the beads of each layer, the first at the base, and the length
+    left over at the top, mm.
+
+    A wall that is a whole number of layer heights long has its last layer on its end. The
+    closing of a top on the axis adds none. Raises InputError 'LAYER_HEIGHT' if the layer
+    height is larger than the wall is long.
+    """
+    if layer_height > meridian.length:
+        raise InputError(
+            "LAYER_HEIGHT",
+            "strategy.layer_height",
+            "{:g} mm exceeds the length of the wall ({:.4g} mm); use a smaller layer height",
+            layer_height,
+            meridian.length,
+        )
+    steps = int(np.floor(meridian.length / layer_height + 1e-6))
+    s = np.minimum(np.arange(steps + 1) * layer_height, meridian.length)
+    return [s[i : i + 1] for i in range(steps + 1)], max(
+        0.0, meridian.length - steps * layer_height
+    )
+
+
+# ---- Layers equally spaced along the axis (Chalvin 2020, section 2.1, Z-level planes)
+
+
+def iso_height_levels(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]:
     """Arc lengths of the beads of each layer, from the lowest plane up, and the height left at the top. mm.
 
     A plane that cuts the wall more than once gives as many beads, in the order of the wall from the platform up.

@@ -35,16 +35,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ....geometry.angles import TURN
-from ....types import Array, Index, Mask
-from . import flat as without_digits
-from . import search
+from ...geometry.frames import TURN
+from ...types import Array, Index, Mask
+from . import offset_wrist_search
 from . import trigonometric_zeros as trigonometric
-from .search import Zeros
-from .shoulder_loops import TINY, Curves
+from .offset_wrist_search import SAME_RAD, Zeros
+from .shoulder_loops import EDGE, TINY, Curves, whole_turns
 
 NEWTON, NEWTON_RAD = 12, 5e-10  # turns of the flange that follow are off by as much
-SAME_RAD = 1e-6  # nearer zeros that the search finds are those found here
+SAME_AS_SEARCHED_RAD = 1e-6  # nearer zeros that the search finds are those found here
 TWICE_RAD = 4e-6  # as near to others are zeros at which the polynomial only touches zero
 MEETS = 2e-10  # of the cosine between axes 4 and 5, which is wrong where a touch belongs to another side or elbow
 NEAR_AXIS = 3e-4  # of the length of the stretched arm: nearer to axis 1 the search has more digits
@@ -118,7 +117,7 @@ def zeros(curves: Curves) -> Zeros:
     doubtful = np.flatnonzero(close)
     if not len(doubtful):
         return solutions
-    searched = search.zeros(
+    searched = offset_wrist_search.zeros(
         Curves(
             curves.point[:, :, doubtful],
             curves.five[:, :, doubtful],
@@ -132,7 +131,7 @@ def zeros(curves: Curves) -> Zeros:
     solutions = _merge_zeros(solutions, searched._replace(pose=doubtful[searched.pose]), close)
     solutions = _add_zeros(solutions, _touching(arm, curves, harmonics, *touching))
     return (
-        _add_zeros(solutions, without_digits.zeros(curves, *drowned))
+        _add_zeros(solutions, zeros_without_digits(curves, *drowned))
         if len(drowned[0])
         else solutions
     )
@@ -152,7 +151,9 @@ def _touching(
     if even:
         solutions = _both_sides(solutions)
     off = np.abs(
-        search.values(curves, solutions.pose, solutions.angle, solutions.side, solutions.elbow)
+        offset_wrist_search.values(
+            curves, solutions.pose, solutions.angle, solutions.side, solutions.elbow
+        )
     )
     valid, columns = np.flatnonzero(off < MEETS), tuple[Any, ...](solutions)
     return Zeros(*(column[..., valid] for column in columns))
@@ -189,7 +190,7 @@ def _merge_zeros(zeros: Zeros, searched: Zeros, close: Mask) -> Zeros:
     ):
         same &= zero_column[unsure, None] == searched_column
     angle_gap = zeros.angle[unsure, None] - searched.angle
-    same &= np.abs(angle_gap - TURN * np.rint(angle_gap * (1.0 / TURN))) < SAME_RAD
+    same &= np.abs(angle_gap - TURN * np.rint(angle_gap * (1.0 / TURN))) < SAME_AS_SEARCHED_RAD
     unmatched = np.concatenate([sure, unsure[~same.any(axis=1)]])
     return Zeros(
         *(
@@ -377,3 +378,43 @@ def _both_sides(front: Zeros) -> Zeros:
     elbow[count:] *= -1.0
     bent[0, count:] *= -1.0
     return Zeros(pose, angle, side, elbow, bent, slope)
+
+
+# ---- Zeros in spans of axis 6 where the polynomial of an offset wrist is as small as rounding
+#
+# There the point of axes 4 and 5 passes close to axis 1, or several solutions nearly meet. The
+# polynomial is a product of the conditions of both sides and both elbows, and loses its digits
+# where more than one of them is small. The condition of a single side and elbow keeps them, and
+# is sampled: `search` covers a whole turn and misses features narrow at that scale.
+
+SAMPLES = 24  # of a span, finer where the condition is nearly zero
+SEARCH_LEVEL = 1  # level of the search from which steps are divided: samples of a span are as close as those of its first pieces
+
+
+def zeros_without_digits(curves: Curves, pose: Index, low: Array, high: Array) -> Zeros:
+    """Return all zeros that samples of spans (k,) show, on either side of axis 1 and with either
+    elbow, unordered.
+    """
+    pose, low, high = _merge_spans(pose, low, high)
+    span = np.repeat(np.arange(len(pose)), 4)
+    side, elbow = (
+        np.tile(signs, len(pose)) for signs in ([1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0])
+    )
+    loops, begin = whole_turns(curves, pose[span], side, elbow)
+    # one more sample at both ends, for adjacent extremes
+    share = np.arange(-1, SAMPLES + 2) / SAMPLES
+    t = (low[span] - begin)[:, None] + share * (high - low)[span, None]
+    samples = offset_wrist_search.find_zeros_along(curves, loops, t, SEARCH_LEVEL)
+    reached = np.abs(samples.bent[1]) <= 1.0 + EDGE
+    columns: tuple[Any, ...] = samples
+    return Zeros(*(column[..., reached] for column in columns))
+
+
+def _merge_spans(pose: Index, low: Array, high: Array) -> tuple[Index, Array, Array]:
+    """Spans of a pose that meet as one."""
+    order = np.lexsort((low, pose))
+    pose, low, high = pose[order], low[order], high[order]
+    is_first = np.ones(len(pose), dtype=bool)
+    is_first[1:] = (pose[1:] != pose[:-1]) | (low[1:] > high[:-1] + SAME_RAD)
+    begins = np.flatnonzero(is_first)
+    return pose[begins], low[begins], np.maximum.reduceat(high, begins)

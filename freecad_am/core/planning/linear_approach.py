@@ -12,15 +12,15 @@ import dataclasses
 
 import numpy as np
 
-from ... import motion as motions
-from ...controller import Controller
-from ...issues import InputError, Text
-from ...kinematics.cell import Cell
-from ...motion import Motion
-from ...parameters.program import ProgramParameters
-from ...program import OFF_WAY_MM, OFF_WAY_RAD
-from ...types import Array, Index
-from .beads import ARC
+from .. import motion as motions
+from ..controller import Controller
+from ..issues import InputError, Text
+from ..kinematics.cell import Cell
+from ..motion import Motion
+from ..parameters.program import ProgramParameters
+from ..program import OFF_WAY_MM, OFF_WAY_RAD
+from ..types import Array, Index
+from .program_beads import ARC
 
 SHARE = (
     0.75  # share of the allowed deviation from the checked path to which a linear move is shortened

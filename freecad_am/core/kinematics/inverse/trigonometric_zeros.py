@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ....geometry.angles import TURN
-from ....types import Array, Index, Mask
+from ...geometry.frames import TURN
+from ...types import Array, Index, Mask
 
 STEPS = {4: 32, 8: 48}  # of a turn, by degree
 PIECES, LEVELS = (

@@ -9,12 +9,12 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from ...geometry.columns import columns, dots, lengths
-from ...geometry.ramps import limit_growth
-from ...issues import NOTE, WARNING, Issue, Text, Word
-from ...parameters.process import ProcessParameters
-from ...toolpath import Bead, Toolpath
-from ...types import Array, Index, Mask
+from ..geometry.columns import columns, dots, lengths
+from ..geometry.ramps import limit_growth
+from ..issues import NOTE, WARNING, Issue, Text, Word
+from ..parameters.process import ProcessParameters
+from ..toolpath import Bead, Toolpath
+from ..types import Array, Index, Mask
 from .bead_model import MINUTE, BeadModel
 from .wire import model_wire_feed
 

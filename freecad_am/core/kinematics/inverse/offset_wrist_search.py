@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ....types import Array, Index
+from ...types import Array, Index
 from . import shoulder_loops
 from .shoulder_loops import (
     TINY,

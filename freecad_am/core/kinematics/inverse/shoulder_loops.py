@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ....geometry.angles import TURN
-from ....types import Array, Index, Mask
+from ...geometry.frames import TURN
+from ...types import Array, Index, Mask
 
 TINY = 1e-150
 

@@ -13,8 +13,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...geometry.columns import columns
-from ...types import Array, Index, Mask
+from ..geometry.columns import columns
+from ..types import Array, Index, Mask
 
 SCAN = 48  # tilts tried before the first good one is refined
 BLOCK_SIZE, PARTS = (

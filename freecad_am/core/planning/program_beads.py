@@ -8,12 +8,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...issues import InputError, Word
-from ...motion import AT_END, AT_START, MIDDLE
-from ...parameters.process import ProcessParameters
-from ...parameters.program import ProgramParameters
-from ...program import Block, Call, DepositOff, DepositOn, Moves, Schedule, Weave
-from ...types import Array, Integers
+from ..issues import InputError, Word
+from ..motion import AT_END, AT_START, MIDDLE
+from ..parameters.process import ProcessParameters
+from ..parameters.program import ProgramParameters
+from ..program import Block, Call, DepositOff, DepositOn, Moves, Schedule, Weave
+from ..types import Array, Integers
 
 OUTPUT, ARC, CALL = "output", "arc", "call"
 # rad, or mm of prismatic axes: a move that takes every axis at most this far takes no time for a

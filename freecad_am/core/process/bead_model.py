@@ -15,10 +15,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...issues import WARNING, InputError, Issue, Text, Word
-from ...parameters.process import ProcessParameters
-from ...toolpath import SpeedLaw, Toolpath
-from ...types import Array, Mask
+from ..issues import WARNING, InputError, Issue, Text, Word
+from ..parameters.process import ProcessParameters
+from ..toolpath import SpeedLaw, Toolpath
+from ..types import Array, Mask
 
 MINUTE = 60.0
 MIN_ROWS = 4  # rows; three coefficients and one that says how well they fit

@@ -12,12 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.columns import columns
-from ...geometry.curves.space_curve import SpaceCurve
-from ...geometry.frames import unit
-from ...geometry.walls.surface import dot
-from ...issues import InputError
-from ...types import Array, Mask
+from ..geometry.columns import columns
+from ..geometry.curves.space_curve import SpaceCurve
+from ..geometry.frames import unit
+from ..geometry.walls.surface import dot
+from ..issues import InputError
+from ..types import Array, Mask
 
 # ---- How sharply a bead turns within its wall
 

@@ -8,18 +8,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ... import motion as motions
-from ...controller import Controller
-from ...geometry import frames
-from ...issues import InputError
-from ...kinematics.cell import Cell
-from ...kinematics.inverse import opw
-from ...kinematics.machines.machine import Machine
-from ...motion import Motion
-from ...parameters.bead_classes import CLASSES
-from ...parameters.process import BetweenLayersParameters, ProcessParameters
-from ...parameters.program import ProgramParameters, StartParameters
-from ...program import (
+from .. import motion as motions
+from ..controller import Controller
+from ..geometry import frames
+from ..issues import InputError
+from ..kinematics.cell import Cell
+from ..kinematics.inverse import opw
+from ..kinematics.machines.machine import Machine
+from ..motion import Motion
+from ..parameters.bead_classes import CLASSES
+from ..parameters.process import BetweenLayersParameters, ProcessParameters
+from ..parameters.program import ProgramParameters, StartParameters
+from ..program import (
     APPROACH,
     DEPOSIT,
     FIRST_TIME,
@@ -41,11 +41,11 @@ from ...program import (
     WaitBelow,
     WaitInput,
 )
-from ...toolpath import Toolpath
-from ...types import Array, Integers, Mask
-from ..joint_path import BeadPath
+from ..toolpath import Toolpath
+from ..types import Array, Integers, Mask
 from . import linear_approach
-from .beads import ARC, deposited, split_by_schedule, standing
+from .joint_path import BeadPath
+from .program_beads import ARC, deposited, split_by_schedule, standing
 
 
 def frames_of(cell: Cell, parameters: ProgramParameters) -> tuple[Array, Array]:

@@ -5,7 +5,7 @@ GoFa.
 Axes 4 and 5 meet in a point that axis 6 moves. For each angle of axis 6 the triangle of
 shoulder, elbow and that point gives axis 4, for either side of axis 1 and either elbow.
 The remaining condition is the angle between axes 4 and 5, one function of axis 6 whose
-zeros are all solutions, at most 16. `polynomial` finds them; `search` finds zeros too
+zeros are all solutions, at most 16. `offset_wrist_polynomial` finds them; `offset_wrist_search` finds zeros too
 near to each other for it, `on_axis` those next to axis 1.
 """
 
@@ -17,12 +17,12 @@ from typing import Any
 
 import numpy as np
 
-from ....geometry import frames
-from ....geometry.angles import TURN
-from ....types import Array, ArrayLike, Index, Mask
-from ...chain import Chain
-from . import polynomial, search
-from .search import Zeros
+from ...geometry import frames
+from ...geometry.frames import TURN
+from ...types import Array, ArrayLike, Index, Mask
+from ..chain import Chain
+from . import offset_wrist_polynomial, offset_wrist_search
+from .offset_wrist_search import Zeros
 from .shoulder_loops import TINY, Curves, geometry
 
 # ---- Solutions of arms with an offset wrist whose point of axes 4 and 5 is on axis 1, or next to
@@ -287,7 +287,7 @@ class OffsetWristArm:
         rows = np.arange(len(flat))
         side, elbow = np.where(back, -1.0, 1.0), np.where(elbow_left, 1.0, -1.0)
         ahead, behind = (
-            search.values(curves, rows, flat[:, 5] + step, side, elbow)
+            offset_wrist_search.values(curves, rows, flat[:, 5] + step, side, elbow)
             for step in (STEP_RAD, -STEP_RAD)
         )
         configurations = self._words(back, elbow_left, ahead > behind)
@@ -353,7 +353,7 @@ class OffsetWristArm:
     def _solve_piece(self, poses: Array, out: Array, named: Index) -> None:
         """Write the solutions `out` (16, m, 6) of poses (m, 4, 4), and their words (16, m)."""
         curves = self._curves(poses)
-        zeros, plane = exact(curves, polynomial.zeros(curves))
+        zeros, plane = exact(curves, offset_wrist_polynomial.zeros(curves))
         if not len(zeros.pose):
             return
         q = self._angles(poses, curves, zeros, plane)
