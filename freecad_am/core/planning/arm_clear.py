@@ -40,10 +40,29 @@ STOPPED = "the path to a better solution comes too near"
 def refined_clear(
     task: Task, arm_clearance: ArmKept, points: Points, bead_ids: Sequence[Place], start: Array
 ) -> Refined:
-    """Return polynomials of the beads with a lower objective that keep the links clear as well.
+    """Return polynomials of the beads with a lower objective that also keep the links clear.
 
-    start: (B, degree + 1) coefficients at the start; a bead without a better polynomial keeps them.
-    points: all points of the beads.
+    The clearance is linearised about the current polynomial and the bead optimised again, with
+    half the reach after each step that does not help.
+
+    Parameters
+    ----------
+    task : Task
+        The plan that the beads belong to.
+    arm_clearance : ArmKept
+        The link clearance check.
+    points : Points
+        All T points of the B beads.
+    bead_ids : sequence of Place
+        Layer and index of each bead.
+    start : (B, degree + 1) array
+        Coefficients of the rotation at the start, the constant first.
+
+    Returns
+    -------
+    Refined
+        Coefficients, objective, reason and iterations of each bead. A bead without a better
+        polynomial keeps its start and has an infinite objective.
     """
     thresholds, directions = (
         task.thresholds(points),
@@ -143,9 +162,27 @@ def exclude_touching(
 ) -> Found:
     """Return the candidates, without a margin where a link comes too near.
 
-    The best candidates of each bead are checked directly, until one is clear; if the first few are
-    not, all are checked by a map of the rotations at which links come too near. Where none is clear
-    the best one keeps next to no margin.
+    The best candidates of each bead are checked directly, until one is clear; if the first few
+    are not, all are checked by a map of the rotations at which links come too near.
+
+    Parameters
+    ----------
+    task : Task
+        The plan that the beads belong to.
+    arm_clearance : ArmKept
+        The link clearance check.
+    points : Points
+        Points of the B beads, perhaps thinned.
+    bead_ids : sequence of Place
+        Layer and index of each bead.
+    candidates : Found
+        C candidates per bead, from the search.
+
+    Returns
+    -------
+    Found
+        The same candidates; margin -inf where a link comes too near. If no candidate of a
+        bead is clear, the best one keeps a margin just below 0.
     """
     margin, bead_rows = candidates.margin.copy(), np.arange(points.beads)
     pending = np.ones(points.beads, dtype=bool)
@@ -234,8 +271,27 @@ def brought_clear(
 ) -> tuple[Refined, Mask]:
     """Replace the polynomials in `reached` that do not keep the links clear, if clear ones exist.
 
-    Returns the result and the mask (B,) of the replaced beads. start: (B, degree + 1) coefficients
-    at the start of the local search.
+    Parameters
+    ----------
+    task : Task
+        The plan that the beads belong to.
+    arm_clearance : ArmKept
+        The link clearance check.
+    beads : sequence of Bead
+        The B beads.
+    bead_ids : sequence of Place
+        Layer and index of each bead.
+    start : (B, degree + 1) array
+        Coefficients at the start of the local search.
+    reached : Refined
+        The result of the local search.
+
+    Returns
+    -------
+    refined : Refined
+        The polynomials, with clear ones where they exist.
+    replaced : (B,) bool array
+        Beads that touched and got a clear polynomial.
     """
     points = gather(beads, task.cell, POINTS_PER_BEAD)
     touching = _find_touching(

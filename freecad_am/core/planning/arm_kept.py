@@ -37,14 +37,44 @@ class ArmKept:
     before: Mapping[Place, int]
 
     def touches(self, joints: Array, points: Points, bead_ids: Sequence[Place]) -> Touches:
-        """Return the contacts of links with joints (T, axes) at the points of these beads."""
+        """Return the contacts of links at the points of some beads.
+
+        Parameters
+        ----------
+        joints : (T, axes) array
+            Joint values at the points, rad or mm.
+        points : Points
+            The T points.
+        bead_ids : sequence of Place
+            Layer and index of each bead in `points`.
+
+        Returns
+        -------
+        Touches
+            The contacts, checked against the deposit present when each bead begins.
+        """
         return self.contact.touches(
             joints,
             np.array([self.moment(bead_id) for bead_id in bead_ids], dtype=np.int64)[points.bead],
         )
 
     def rotations_near(self, joints: Array, bead: Index, bead_ids: Sequence[Place]) -> Mask:
-        """(R, T) with which joints (R, T, axes), of R rotations at points of the beads (T,), a link comes too near."""
+        """Return at which rotations a link comes too near.
+
+        Parameters
+        ----------
+        joints : (R, T, axes) array
+            Joint values for R rotations at T points, rad or mm.
+        bead : (T,) int array
+            Number of the bead that each point belongs to.
+        bead_ids : sequence of Place
+            Layer and index of each bead.
+
+        Returns
+        -------
+        (R, T) bool array
+            True where a link comes too near.
+        """
         when = np.array([self.moment(bead_id) for bead_id in bead_ids], dtype=np.int64)[bead]
         met = self.contact.touches(joints.reshape(-1, joints.shape[2]), np.tile(when, len(joints)))
         return met.any.reshape(joints.shape[:2])
@@ -55,9 +85,21 @@ class ArmKept:
 
 
 def build_arm_clearance(toolpath: Toolpath, cell: Cell, cylinders: Cylinders) -> ArmKept | None:
-    """Return the link clearance check of a job, with `cylinders` for each link.
+    """Return the link clearance check of a job.
 
-    None if the job does not ask for a clearance or the link geometry is unknown.
+    Parameters
+    ----------
+    toolpath : Toolpath
+        Toolpath in part coordinates; its bead sizes and surroundings count as obstacles.
+    cell : Cell
+        The cell, with the requested `arm_clearance` in mm.
+    cylinders : Cylinders
+        Cylinders about each link of the robot.
+
+    Returns
+    -------
+    ArmKept or None
+        None if the job does not ask for a clearance or the link geometry is unknown.
     """
     beads = [bead for _, _, bead in toolpath]
     contact = contact_of(
@@ -86,7 +128,26 @@ def contact_of(
     width: float,
     height: float,
 ) -> ArmContact | None:
-    """Return the links against bodies and beads; width, height: mm, for beads without their own."""
+    """Return the contact check of the robot's links against bodies and beads.
+
+    Parameters
+    ----------
+    beads : sequence of Bead
+        Beads in print order, part coordinates.
+    cell : Cell
+        The cell, with the requested `arm_clearance` in mm.
+    cylinders : Cylinders
+        Cylinders about each link of the robot.
+    bodies : sequence of Body
+        Obstacles in part coordinates.
+    width, height : float
+        Size of beads without their own, mm.
+
+    Returns
+    -------
+    ArmContact or None
+        None without a requested clearance or without link geometry.
+    """
     if cell.arm_clearance is None or not cylinders:
         return None
     deposited = Beads.of(beads, width, height).solid(LINK_GRAIN)
@@ -96,10 +157,23 @@ def contact_of(
 def check_moves(
     contact: ArmContact, start: Array, end: Array, deposited: Index
 ) -> tuple[Index, Touches]:
-    """Find links that come too near on moves that are straight in the joints (k, axes).
+    """Find links that come too near on moves that are straight in the joints.
 
-    deposited: (k,) number of printed points at each move. Returns the move (l,) of each check and
-    its contacts. Moves with NaN joints have no contacts.
+    Parameters
+    ----------
+    contact : ArmContact
+        The contact check.
+    start, end : (k, axes) array
+        Joints at the ends of the moves, rad or mm.
+    deposited : (k,) int array
+        Number of printed points at each move.
+
+    Returns
+    -------
+    move : (n,) int array
+        The move of each check.
+    touches : Touches
+        The contacts of each check. Moves with NaN joints have none.
     """
     steps = np.where(contact.cell.machine.chain.sliding, SLIDE, STEP)
     step_count = np.nan_to_num(np.abs(end - start) / steps).max(axis=1, initial=0.0)
@@ -111,9 +185,25 @@ def check_moves(
 def clearance_issue(
     cell: Cell, link: str, what: str, layer: int, bead: int, on_way: bool = False
 ) -> Issue:
-    """Build the issue for a link that comes too near to something at a bead or on the rapid to it.
+    """Build the issue for a link that comes too near to an obstacle.
 
-    `link` is a name of `ArmContact.links`.
+    Parameters
+    ----------
+    cell : Cell
+        The cell; its links of external axes decide the proposed remedy.
+    link : str
+        A name of `ArmContact.links`, NOZZLE, PART, TORCH or BASE.
+    what : str
+        Name of the obstacle.
+    layer, bead : int
+        The bead concerned.
+    on_way : bool, optional
+        Whether the contact is on the rapid to the bead.
+
+    Returns
+    -------
+    Issue
+        An error with the remedy.
     """
     where = " on the rapid way to the bead" if on_way else ""
     stands = what in [external_link.name for external_link in cell.external_links]

@@ -25,13 +25,49 @@ Values = Callable[[Task, Points, Array], Array]
 
 
 def displacement(task: Task, points: Points, joints: Array) -> Array:
-    """Eq. 17: sum over points and axes of alpha (q_i - q_i-1)^2; (..., B), rad."""
+    """Return the displacement criterion of each bead.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with the weights of the axes.
+    points : Points
+        T points of B beads.
+    joints : (..., T, axes) array
+        Joints, rad or mm.
+
+    Returns
+    -------
+    (..., B) array
+        Sum over points and axes of alpha (q_i - q_i-1)^2.
+
+    References
+    ----------
+    Chalvin 2020, eq. 17.
+    """
     step = steps(joints, points)
     return points.total((step * step) @ task.weights)
 
 
 def displacement_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array:
-    """(T,) derivative of eq. 17 by the phi of each point; rates (T, axes) are d q / d phi."""
+    """Return the derivative of the displacement by the rotation at each point.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with the weights of the axes.
+    points : Points
+        T points of B beads.
+    joints : (T, axes) array
+        Joints, rad or mm.
+    rates : (T, axes) array
+        Derivatives d q / d phi.
+
+    Returns
+    -------
+    (T,) array
+        Derivative of eq. 17 by the phi of each point.
+    """
     step = steps(joints, points) * task.weights
     ahead = np.zeros_like(step)
     ahead[:-1] = step[1:]
@@ -40,17 +76,74 @@ def displacement_rate(task: Task, points: Points, joints: Array, rates: Array) -
 
 
 def limits_liegeois(task: Task, points: Points, joints: Array) -> Array:
-    """Eq. 1: mean over points of the sum of ((q - mean) / (mean - max))^2; (..., B)."""
+    """Return the mean squared distance of the joints from the middle of their ranges.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with limits.
+    points : Points
+        T points of B beads.
+    joints : (..., T, axes) array
+        Joints, rad or mm.
+
+    Returns
+    -------
+    (..., B) array
+        Mean over points of the sum of ((q - mean) / (mean - max))^2.
+
+    References
+    ----------
+    Chalvin 2020, eq. 1.
+    """
     return _mean(points, (task.given_rows.offset(joints) ** 2).sum(axis=-1))
 
 
 def limits_fournier(task: Task, points: Points, joints: Array) -> Array:
-    """Eq. 2: mean over points of the sum of ((q - mean) / stroke)^2; (..., B)."""
+    """Return the mean squared distance from the middle, relative to the full range.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with limits.
+    points : Points
+        T points of B beads.
+    joints : (..., T, axes) array
+        Joints, rad or mm.
+
+    Returns
+    -------
+    (..., B) array
+        Mean over points of the sum of ((q - mean) / stroke)^2.
+
+    References
+    ----------
+    Chalvin 2020, eq. 2.
+    """
     return 0.25 * limits_liegeois(task, points, joints)
 
 
 def limits_klein(task: Task, points: Points, joints: Array) -> Array:
-    """Eq. 3: the largest |q - mean| / stroke of any axis at any point; (..., B)."""
+    """Return the largest distance of any joint from the middle of its range.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with limits.
+    points : Points
+        T points of B beads.
+    joints : (..., T, axes) array
+        Joints, rad or mm.
+
+    Returns
+    -------
+    (..., B) array
+        Largest abs(q - mean) / stroke over axes and points.
+
+    References
+    ----------
+    Chalvin 2020, eq. 3.
+    """
     return -points.worst(-0.5 * np.abs(task.given_rows.offset(joints)).max(axis=-1))
 
 
@@ -75,22 +168,94 @@ def _klein_rate(task: Task, points: Points, joints: Array, rates: Array) -> Arra
 
 
 def manipulability(task: Task, points: Points, joints: Array, matrix: Array) -> Array:
-    """Eq. 5: mean over points of 1 / sqrt(det(J J^T)), translation rows divided by the length; (B,)."""
+    """Return the mean inverse manipulability of each bead.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with the characteristic length that divides the rows of translation.
+    points : Points
+        T points of B beads.
+    joints : (T, axes) array
+        Not used; criteria share one signature.
+    matrix : (T, 6, axes) array
+        Jacobians at the deposition point.
+
+    Returns
+    -------
+    (B,) array
+        Mean over points of 1 / sqrt(det(J J^T)).
+
+    References
+    ----------
+    Chalvin 2020, eq. 5 as corrected in ERRATA.
+    """
     return mean_inverse(points, jac.manipulability(matrix, task.parameters.characteristic_length))
 
 
 def condition(task: Task, points: Points, joints: Array, matrix: Array) -> Array:
-    """Eq. 6 turned round: mean over points of sigma_max / sigma_min; (B,)."""
+    """Return the mean condition number of each bead.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with the characteristic length that divides the rows of translation.
+    points : Points
+        T points of B beads.
+    joints : (T, axes) array
+        Not used; criteria share one signature.
+    matrix : (T, 6, axes) array
+        Jacobians at the deposition point.
+
+    Returns
+    -------
+    (B,) array
+        Mean over points of sigma_max / sigma_min.
+
+    References
+    ----------
+    Chalvin 2020, eq. 6, inverted.
+    """
     return mean_inverse(points, jac.condition(matrix, task.parameters.characteristic_length))
 
 
 def mean_inverse(points: Points, measure: Array) -> Array:
-    """(B,) mean over the points of a bead of one over how far from singular each is, (T,)."""
+    """Return the mean of the inverse of a measure over the points of each bead.
+
+    Parameters
+    ----------
+    points : Points
+        T points of B beads.
+    measure : (T,) array
+        Distance from singularity; values of 0 count as 1e-300.
+
+    Returns
+    -------
+    (B,) array
+        Mean of 1 / measure.
+    """
     return _mean(points, 1.0 / np.maximum(measure, 1e-300))
 
 
 def value(task: Task, points: Points, joints: Array, matrix: Array | None) -> Array:
-    """(B,) the objective chosen in the job; the Jacobian (T, 6, axes) only where the objective asks for it."""
+    """Return the objective chosen in the job.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with the objective.
+    points : Points
+        T points of B beads.
+    joints : (T, axes) array
+        Joints, rad or mm.
+    matrix : (T, 6, axes) array or None
+        Jacobians; None if the objective needs only joints.
+
+    Returns
+    -------
+    (B,) array
+        The objective of each bead.
+    """
     name = task.parameters.objective
     if name in JOINT_ONLY:
         return JOINT_ONLY[name](task, points, joints)
@@ -99,7 +264,26 @@ def value(task: Task, points: Points, joints: Array, matrix: Array | None) -> Ar
 
 
 def rate(task: Task, points: Points, joints: Array, rates: Array, matrix: Array) -> Array:
-    """(T,) derivative of the objective by the phi of each point."""
+    """Return the derivative of the objective by the rotation at each point.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with the objective.
+    points : Points
+        T points of B beads.
+    joints : (T, axes) array
+        Joints, rad or mm.
+    rates : (T, axes) array
+        Derivatives d q / d phi.
+    matrix : (T, 6, axes) array
+        Jacobians at the deposition point.
+
+    Returns
+    -------
+    (T,) array
+        Derivative by the phi of each point.
+    """
     name = task.parameters.objective
     if name in JOINT_ONLY:
         return joint_rate(task, points, joints, rates)
@@ -116,7 +300,24 @@ def rate(task: Task, points: Points, joints: Array, rates: Array, matrix: Array)
 
 
 def joint_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array:
-    """The same of an objective that asks for no Jacobian."""
+    """Return the derivative of an objective that needs no Jacobian.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with an objective of `JOINT_ONLY`.
+    points : Points
+        T points of B beads.
+    joints : (T, axes) array
+        Joints, rad or mm.
+    rates : (T, axes) array
+        Derivatives d q / d phi.
+
+    Returns
+    -------
+    (T,) array
+        Derivative by the phi of each point.
+    """
     name = task.parameters.objective
     if name == "displacement":
         return displacement_rate(task, points, joints, rates)
@@ -128,7 +329,24 @@ def joint_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array
 
 
 def condition_rate(task: Task, joints: Array, rates: Array, matrix: Array) -> Array:
-    """(T,) derivative of sigma_min / sigma_max by the phi of each point."""
+    """Return the derivative of the condition by the rotation at each point.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with the characteristic length.
+    joints : (T, axes) array
+        Not used.
+    rates : (T, axes) array
+        Derivatives d q / d phi.
+    matrix : (T, 6, axes) array
+        Jacobians at the deposition point.
+
+    Returns
+    -------
+    (T,) array
+        Derivative of sigma_min / sigma_max.
+    """
     result: Array = jac.condition_rate(
         matrix, rates[:, : matrix.shape[2]], task.parameters.characteristic_length
     )
@@ -160,8 +378,22 @@ def _is_worst(points: Points, values: Array) -> Mask:
 
 
 def path_figures(path: JointPath, cell: Cell, parameters: JointParameters) -> dict[str, object]:
-    """Return the figures of a planned joint path; for a machine with rotary axes only the axis
-    figures.
+    """Return the figures of a planned joint path for the report.
+
+    Parameters
+    ----------
+    path : JointPath
+        The joint path.
+    cell : Cell
+        Its cell.
+    parameters : JointParameters
+        The parameters of its plan.
+
+    Returns
+    -------
+    dict[str, object]
+        Angles in degrees, lists in axis order; for a machine with rotary axes only the axis
+        figures.
     """
     if not path.branch:
         return _figures(

@@ -80,12 +80,27 @@ class JointPath:
 
     @property
     def joints(self) -> Array:
-        """(T, axes) joints of all deposit points, rad."""
+        """Return the joints of all deposit points.
+
+        Returns
+        -------
+        (T, axes) array
+            Joints, rad or mm.
+        """
         return np.concatenate([bead.joints for bead in self.beads])
 
     def conditions(self, motion: Motion) -> tuple[Array, Array]:
-        """Return condition and threshold at the deposit rows of its motion; NaN where a bead overlaps its own
-        start.
+        """Return condition and threshold at the deposit rows of a motion.
+
+        Parameters
+        ----------
+        motion : Motion
+            The motion of this joint path, with T deposit rows.
+
+        Returns
+        -------
+        condition, threshold : (T,) array
+            NaN where a bead overlaps its own start.
         """
         starts = np.flatnonzero(motion.point[motion.deposit] == 0)
         condition = np.full(int(motion.deposit.sum()), np.nan)

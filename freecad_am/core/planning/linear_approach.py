@@ -68,8 +68,23 @@ def shorten_approaches(motion: Motion, cell: Cell) -> Motion:
 
 
 def linear_deviations(motion: Motion, cell: Cell, ends: Index) -> tuple[Array, Array]:
-    """Return mm and rad (k,) by which a linear move to each of the rows `ends` (k,) deviates from the
-    straight path in the joints.
+    """Return by how much linear moves deviate from straight joint motion.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion.
+    cell : Cell
+        The cell.
+    ends : (k,) int array
+        Rows in which the moves end.
+
+    Returns
+    -------
+    distance : (k,) array
+        Largest deviation of the tip, mm.
+    angle : (k,) array
+        Norm of the largest difference of the tool axes, rad for small angles.
     """
     joints, position, tool = (
         (
@@ -91,10 +106,25 @@ def linear_deviations(motion: Motion, cell: Cell, ends: Index) -> tuple[Array, A
 
 
 def check(motion: Motion, cell: Cell, rows: Index, arriving: bool, arc: bool = True) -> None:
-    """Reject a linear move to the last of rapid `rows`, at a bead, that deviates from the checked path.
+    """Reject a linear move onto a bead that deviates from the checked path.
 
-    Raises InputError SCHEDULE, or TRIGGER for a program without the `arc` instruction. arriving: the
-    start of the first row is not known.
+    Parameters
+    ----------
+    motion : Motion
+        The motion.
+    cell : Cell
+        The cell.
+    rows : (k,) int array
+        Rows of the rapid; the last one is at the bead.
+    arriving : bool
+        Whether the start of the first row is unknown.
+    arc : bool, optional
+        Whether the arc instruction needs the move, not a switch ahead of a position.
+
+    Raises
+    ------
+    InputError
+        SCHEDULE, or TRIGGER for a program without the `arc` instruction.
     """
     last_row = rows[-1:]
     bead_name = Text(

@@ -57,18 +57,38 @@ def assemble(
     layer_height: float = 0.0,
     cylinders: Cylinders = (),
 ) -> tuple[Motion, tuple[Issue, ...]]:
-    """Return the motion of a joint path with its rapids, and the issues of the rapids.
+    """Return the motion of a joint path with its rapids.
 
-    Between two beads the tool retracts along its axis by `between_layers.lift`, moves to the same
-    height above the next start and approaches along the axis. A continuous axis that turns far on
-    the way does so in several moves. If limits, reach or condition prevent this path, another one
-    is taken (`retracts`). If the nozzle would hit the deposit, the platform or one of the bodies
-    (in part coordinates) on its way, it retracts further, up to beyond the sphere about all
-    obstacles, then in other directions. If nothing helps, an issue says so.
+    Between two beads the tool retracts along its axis by `between_layers.lift`, moves to the
+    same height above the next start and approaches along the axis. A continuous axis that turns
+    far on the way does so in several moves. If limits, reach or condition prevent this path,
+    another one is taken (`retracts`). If the nozzle would hit an obstacle on its way, it
+    retracts further, up to beyond the sphere about all obstacles, then in other directions.
 
-    parameters: those of the joint plan, for the least condition; the defaults if omitted.
-    layer_height: mm, for beads without a height of their own. cylinders: of each link of the robot,
-    kept clear like the nozzle if `cell.arm_clearance` asks for it.
+    Parameters
+    ----------
+    joint_path : JointPath
+        The joint path.
+    cell : Cell
+        The cell.
+    process : ProcessParameters
+        Process with lift and bead sizes.
+    bodies : sequence of Body, optional
+        Obstacles in part coordinates.
+    parameters : JointParameters or None, optional
+        Parameters of the joint plan, for the least condition; None for the defaults.
+    layer_height : float, optional
+        Height of beads without their own, mm.
+    cylinders : Cylinders, optional
+        Cylinders about each link of the robot, kept clear like the nozzle if
+        `cell.arm_clearance` asks for it.
+
+    Returns
+    -------
+    motion : Motion
+        Rapids and beads in order.
+    issues : tuple of Issue
+        Rapids that cannot be moved or that meet an obstacle.
     """
     rapids = RapidWays(
         joint_path,

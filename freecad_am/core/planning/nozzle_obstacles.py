@@ -26,8 +26,17 @@ PIECE = 4096  # moves, or looks, that are done together
 
 
 def in_the_way(cell: Cell) -> tuple[str, ...]:
-    """Return the names of the checked bodies as messages show them: obstacles, then links of
-    external axes.
+    """Return the names of the bodies that are checked for contact with a nozzle.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+
+    Returns
+    -------
+    tuple of str
+        Names as messages show them: obstacles, then links of external axes.
     """
     return (*(body.name for body in cell.obstacles), *(link.name for link in cell.external_links))
 
@@ -62,9 +71,19 @@ def findings(motion: Motion, cell: Cell) -> list[Issue]:
 
 
 def find_contacts(cell: Cell, start: Array, end: Array) -> Mask:
-    """Return the mask (k, n) of the `in_the_way` bodies that a nozzle touches on n moves.
+    """Return which bodies a nozzle touches on moves that are straight in the joints.
 
-    The moves are straight in the joints (n, axes); moves with NaN joints have no contact.
+    Parameters
+    ----------
+    cell : Cell
+        The cell; a fixed torch has no contacts.
+    start, end : (n, axes) array
+        Joints at the ends of the moves, rad or mm; NaN: no contact.
+
+    Returns
+    -------
+    (k, n) bool array
+        One row for each body of `in_the_way`.
     """
     hits = np.zeros((len(in_the_way(cell)), len(start)), dtype=bool)
     if cell.torch_stands or not len(hits):

@@ -83,7 +83,23 @@ class Tried:
         )
 
     def issues(self, toolpath: Toolpath, whole: bool, progress: Progress) -> tuple[Issue, ...]:
-        """Return the issues of the job; rapids are checked only for a whole toolpath."""
+        """Plan the job and return its issues.
+
+        Parameters
+        ----------
+        toolpath : Toolpath
+            The toolpath to plan, perhaps with only some layers.
+        whole : bool
+            Whether the toolpath is complete; only then are rapids checked.
+        progress : callable
+            Receives share and text; may raise to cancel.
+
+        Returns
+        -------
+        tuple of Issue
+            Issues of toolpath and joint path, and without errors in these of rapids and
+            collisions.
+        """
         cell = self.cell(toolpath)
         joints = dataclasses.replace(self.joints, compare=())
         path = plan_joints(toolpath, cell, joints, progress, self.cylinders)

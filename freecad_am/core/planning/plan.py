@@ -79,10 +79,33 @@ def plan_joints(
 ) -> JointPath:
     """Plan the joint path of a toolpath.
 
-    Problems (unreachable, over a limit, singular, too fast) are issues of the result with layer,
-    bead and point; the path exists even so, for display. progress(fraction, text) may raise to
-    cancel. cylinders: of each link, kept clear if `cell.arm_clearance` asks for it. Raises
-    InputError NOT_FOR_SETUP for settings that need a five-axis machine.
+    Problems (unreachable, over a limit, singular, too fast) are issues of the result with
+    layer, bead and point; the path exists even so, for display.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath in part coordinates.
+    cell : Cell
+        The cell.
+    parameters : JointParameters
+        Method, objective, branch and thresholds.
+    progress : callable, optional
+        Receives share and text; may raise to cancel.
+    cylinders : Cylinders, optional
+        Cylinders about each link of the robot, kept clear if `cell.arm_clearance` asks for
+        it.
+
+    Returns
+    -------
+    JointPath
+        The first feasible path in the order of branches and external axes; else the first
+        one, with its issues.
+
+    Raises
+    ------
+    InputError
+        NOT_FOR_SETUP for settings that need another kind of machine.
     """
     lock, (parameters, not_used) = lock_of(cell, parameters, toolpath), _used(cell, parameters)
     features = toolpath.parts
@@ -274,8 +297,28 @@ def best_branches(
 ) -> list[int]:
     """Return the branches worth planning, the best first.
 
-    These serve the largest number of beads; the order is by objective, then by margin. The ranking
-    samples a few beads from the first to the last, so the plan may still fail.
+    These serve the largest number of beads; the order is by objective, then by margin. The
+    ranking samples a few beads from the first to the last, so the plan may still fail.
+
+    Parameters
+    ----------
+    beads : sequence of Bead
+        The beads in print order.
+    cell : Cell
+        The cell.
+    parameters : JointParameters
+        Objective and thresholds.
+    joined : bool, optional
+        Whether polynomials of closed beads must return to their start value.
+    arm_clearance : ArmKept or None, optional
+        The link clearance check; None without one.
+    bead_ids : sequence of Place, optional
+        Layer and index of each bead; needed with `arm_clearance`.
+
+    Returns
+    -------
+    list of int
+        At most MAX_BRANCHES_PLANNED indices.
     """
     ranks = _ranked(
         beads, bead_ids, Task(cell, 0, parameters, joined, arm_clearance), range(BRANCHES)

@@ -47,7 +47,13 @@ class Points:
 
     @property
     def ends(self) -> tuple[Array, Array]:
-        """The parameter (B,) at the first point of each bead, and at its last."""
+        """Return the parameter at both ends of each bead.
+
+        Returns
+        -------
+        first, last : (B,) array
+            Parameter at the first and at the last point.
+        """
         return self.parameter[self.first], self.parameter[np.append(self.first[1:], len(self)) - 1]
 
     @cached_property
@@ -73,7 +79,20 @@ class Points:
         )
 
     def only(self, bead: int) -> tuple[Points, slice]:
-        """Return the points of one bead and their rows among all points."""
+        """Return the points of one bead.
+
+        Parameters
+        ----------
+        bead : int
+            Number of the bead.
+
+        Returns
+        -------
+        points : Points
+            Its points.
+        rows : slice
+            Their rows among all points.
+        """
         ends = np.append(self.first, len(self))
         rows = slice(int(ends[bead]), int(ends[bead + 1]))
         none = np.zeros(rows.stop - rows.start, dtype=np.int64)
@@ -91,27 +110,82 @@ class Points:
         return points, rows
 
     def powers(self, degree: int) -> Array:
-        """(T, degree + 1) powers of the parameter, the constant first."""
+        """Return the powers of the parameter.
+
+        Parameters
+        ----------
+        degree : int
+            Highest power.
+
+        Returns
+        -------
+        (T, degree + 1) array
+            The constant first.
+        """
         return np.vander(self.parameter, degree + 1, increasing=True)
 
     def polynomial(self, coefficients: Array) -> Array:
-        """(T,) the polynomial of each bead at its points; coefficients (B, degree + 1), the constant first."""
+        """Evaluate the polynomial of each bead at its points.
+
+        Parameters
+        ----------
+        coefficients : (B, degree + 1) array
+            The constant first.
+
+        Returns
+        -------
+        (T,) array
+            The values.
+        """
         value = np.zeros(len(self.position))
         for column in coefficients.T[::-1]:
             value = value * self.parameter + column[self.bead]
         return value
 
     def worst(self, values: Array) -> Array:
-        """(..., B) the smallest of the values (..., T) within each bead."""
+        """Return the smallest value within each bead.
+
+        Parameters
+        ----------
+        values : (..., T) array
+            Values at the points.
+
+        Returns
+        -------
+        (..., B) array
+            Their minima.
+        """
         smallest: Array = np.minimum.reduceat(values, self.first, axis=-1)
         return smallest
 
     def spread_to_points(self, values: Array) -> Array:
-        """(..., T, axes) what there is of each bead (..., B, axes) at its points, axis by axis in memory."""
+        """Repeat the values of each bead at its points.
+
+        Parameters
+        ----------
+        values : (..., B, axes) array
+            Values of the beads.
+
+        Returns
+        -------
+        (..., T, axes) array
+            Values at the points, stored axis by axis.
+        """
         return np.swapaxes(np.swapaxes(values, -1, -2)[..., self.bead], -1, -2)
 
     def total(self, values: Array) -> Array:
-        """(..., B) the sum of the values (..., T) within each bead."""
+        """Return the sum of values within each bead.
+
+        Parameters
+        ----------
+        values : (..., T) array
+            Values at the points.
+
+        Returns
+        -------
+        (..., B) array
+            Their sums.
+        """
         total: Array = np.add.reduceat(values, self.first, axis=-1)
         return total
 
@@ -119,9 +193,24 @@ class Points:
 def gather(
     beads: Sequence[Bead], cell: Cell, max_points: int | None = None, posed: bool = True
 ) -> Points:
-    """Return the points of the beads, thinned to `max_points` per bead and turn about the axis.
+    """Return the points of beads as one set of columns.
 
-    Both ends of a bead stay. Not `posed`: the frames are left empty.
+    Parameters
+    ----------
+    beads : sequence of Bead
+        The B beads.
+    cell : Cell
+        The cell, for pose frames and external axes.
+    max_points : int or None, optional
+        Number of points per bead and turn about the axis; both ends stay. None for all
+        points.
+    posed : bool, optional
+        Whether to compute the pose frames; otherwise they are empty.
+
+    Returns
+    -------
+    Points
+        T points in the part frame.
     """
     rows = [thinned(bead, max_points) for bead in beads]
     counts = np.array([len(index) for index in rows])
@@ -196,8 +285,20 @@ def _evenly(count: int, max_points: int) -> Integers:
 
 
 def steps(joints: Array, points: Points) -> Array:
-    """(..., T, axes) motion from the point before, each axis that turns the short way round; 0 at the first point of a
-    bead."""
+    """Return the joint motion from the point before.
+
+    Parameters
+    ----------
+    joints : (..., T, axes) array
+        Joints, rad or mm.
+    points : Points
+        The T points.
+
+    Returns
+    -------
+    (..., T, axes) array
+        Steps, the short way round for turning axes; 0 at the first point of a bead.
+    """
     step = np.zeros_like(joints)
     np.subtract(joints[..., 1:, :], joints[..., :-1, :], out=step[..., 1:, :])
     step[..., points.first, :] = 0.0
@@ -212,8 +313,19 @@ def steps(joints: Array, points: Points) -> Array:
 
 
 def unwrapped(joints: Array, points: Points) -> Array:
-    """Return the joints (..., T, axes) unwrapped from the first point of each bead, NaN after a NaN
-    point.
+    """Unwrap joints from the first point of each bead.
+
+    Parameters
+    ----------
+    joints : (..., T, axes) array
+        Joints, rad or mm.
+    points : Points
+        The T points.
+
+    Returns
+    -------
+    (..., T, axes) array
+        Unwrapped joints; NaN after a NaN point of the same bead.
     """
     rising = steps(joints, points)
     unreachable = np.isnan(rising)
@@ -230,9 +342,21 @@ def unwrapped(joints: Array, points: Points) -> Array:
 
 
 def unwrapped_by_turns(joints: Array, points: Points) -> Array:
-    """Return `unwrapped` joints, equal up to rounding, for joints that are all within reach.
+    """Unwrap joints that are all within reach, in a third of the time.
 
-    It only handles whole turns of the axes that take any, which needs a third of the time.
+    The result equals `unwrapped` up to rounding. Only axes that take whole turns are changed.
+
+    Parameters
+    ----------
+    joints : (..., T, axes) array
+        Joints without NaN, rad or mm.
+    points : Points
+        The T points.
+
+    Returns
+    -------
+    (..., T, axes) array
+        Unwrapped joints.
     """
     step = np.diff(joints, axis=-2)
     leading_axes = tuple(range(step.ndim - 1))
@@ -251,8 +375,21 @@ def unwrapped_by_turns(joints: Array, points: Points) -> Array:
 
 
 def whole_turns(step: Array, points: Points) -> Array:
-    """(..., T) rad, the whole turns by which an angle that changes by `step` (..., T - 1) is off the one that goes the short
-    way from point to point, from the first point of each bead on."""
+    """Return the whole turns in an angle along each bead.
+
+    Parameters
+    ----------
+    step : (..., T - 1) array
+        Change of the angle from point to point, rad.
+    points : Points
+        The T points.
+
+    Returns
+    -------
+    (..., T) array
+        Angle to subtract so that it goes the short way from point to point, rad; 0 at the
+        first point of a bead.
+    """
     turns = np.zeros((*step.shape[:-1], len(points)), dtype=np.int32)
     turns[..., 1:] = np.rint(step / TURN)
     turns[..., points.first] = 0

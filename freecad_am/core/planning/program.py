@@ -49,8 +49,23 @@ from .program_beads import ARC, deposited, split_by_schedule, standing
 
 
 def frames_of(cell: Cell, parameters: ProgramParameters) -> tuple[Array, Array]:
-    """Return the fixed frame in base_link and the load of the flange (4, 4); the one that is the part is
-    taken at the program's origin.
+    """Return the fixed frame and the load of the flange for a program.
+
+    The frame that belongs to the part is taken at the program's origin.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+    parameters : ProgramParameters
+        Program settings with the origin.
+
+    Returns
+    -------
+    station : (4, 4) array
+        The fixed frame in base_link.
+    carried : (4, 4) array
+        The load in the flange frame.
     """
     if isinstance(parameters.origin, str):
         return cell.station, cell.carried
@@ -69,6 +84,22 @@ def six_of(pose: Array) -> Six:
 def remarks_of(
     cell: Cell, parameters: ProgramParameters, moves: Sequence[Moves]
 ) -> tuple[str, ...]:
+    """Return the remarks at the head of a program.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+    parameters : ProgramParameters
+        Program settings.
+    moves : sequence of Moves
+        The moves, for the ranges of speed and wire feed.
+
+    Returns
+    -------
+    tuple of str
+        Machine, limits, frames and ranges, one remark a line.
+    """
     moved = not isinstance(parameters.origin, str)
     station, carried = frames_of(cell, parameters)
     if not cell.machine.free:
@@ -140,11 +171,37 @@ def build(
 ) -> Program:
     """Build the program of a motion for a controller.
 
-    returns: beads (layer, index) that return to an earlier place, see `returning`; the torch waits
-    above them until the deposit has cooled. waits: pauses before each layer (`Layer.wait`), s, none
-    if omitted; `between_layers.wait` counts towards them. The first executed layer has no pause.
+    Parameters
+    ----------
+    motion : Motion
+        The motion.
+    cell : Cell
+        The cell.
+    process : ProcessParameters
+        The process.
+    parameters : ProgramParameters
+        Program settings.
+    controller : Controller
+        The controller.
+    name : str
+        Name of the program.
+    waits : sequence of float, optional
+        Pauses before each layer (`Layer.wait`), s; `between_layers.wait` counts towards
+        them. None if omitted; the first executed layer has none.
+    returns : Collection[tuple[int, int]], optional
+        Beads (layer, index) that return to an earlier place, see `returning`; the torch
+        waits above them until the deposit has cooled.
 
-    Raises InputError: START_AT for a start past the last bead, NO_SCHEDULE, SCHEDULE.
+    Returns
+    -------
+    Program
+        The program, ready for a post.
+
+    Raises
+    ------
+    InputError
+        START_AT for a start past the last bead; NO_SCHEDULE or SCHEDULE for unsuitable
+        schedules.
     """
     blocks = _Blocks(motion, cell, process, parameters, controller).build_all(waits, returns)
     remarks = remarks_of(cell, parameters, [block for block in blocks if isinstance(block, Moves)])
@@ -154,7 +211,24 @@ def build(
 def build_header(
     cell: Cell, parameters: ProgramParameters, controller: Controller, name: str
 ) -> Program:
-    """Return the program of a cell up to the first move."""
+    """Return the program of a cell up to the first move.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+    parameters : ProgramParameters
+        Program settings.
+    controller : Controller
+        The controller.
+    name : str
+        Name of the program.
+
+    Returns
+    -------
+    Program
+        The program without blocks and remarks.
+    """
     return Program(
         name=name,
         machine=cell.machine.title,
@@ -210,7 +284,18 @@ def _owners(cell: Cell) -> list[Machine]:
 
 
 def external_kinds(cell: Cell) -> tuple[str, ...]:
-    """'linear' or 'rotary' of each external axis."""
+    """Return the kind of each external axis.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+
+    Returns
+    -------
+    tuple of str
+        'linear' or 'rotary' of each axis.
+    """
     return tuple(
         LINEAR if slides else ROTARY
         for slides in cell.machine.chain.sliding[cell.robot.chain.axes :]

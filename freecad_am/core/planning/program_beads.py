@@ -27,12 +27,30 @@ def deposited(
     process: ProcessParameters,
     parameters: ProgramParameters,
 ) -> list[Block]:
-    """Return the blocks of a bead of the class `name`, for runs of its moves with the schedule of
-    each.
+    """Return the blocks of a bead for runs of its moves.
 
-    Raises InputError NO_SCHEDULE if a schedule is missing that other beads have or the arc
-    instruction needs. Raises SCHEDULE if the schedule changes within the bead by other means than
-    an output.
+    Parameters
+    ----------
+    runs : Sequence[tuple[Moves, int or None]]
+        Moves and schedule number of each run; None without a schedule.
+    name : str
+        Name of the bead's class.
+    process : ProcessParameters
+        The process of the job.
+    parameters : ProgramParameters
+        Program settings.
+
+    Returns
+    -------
+    list of Block
+        Schedule, deposit on, moves and deposit off, in order.
+
+    Raises
+    ------
+    InputError
+        NO_SCHEDULE if a schedule is missing that other beads have or the arc instruction
+        needs. SCHEDULE if the schedule changes within the bead by other means than an
+        output.
     """
     bead_process, by = process.for_class(name), parameters.schedule.by
     moves, numbers = zip(*runs, strict=True)
@@ -85,8 +103,20 @@ def deposited(
 def split_by_schedule(
     phase: Integers, bead_process: ProcessParameters
 ) -> list[tuple[slice, int | None]]:
-    """Stretches of the moves of a bead, by the phase (n,) of each, that have one schedule, and this. bead_process: the process of the
-    bead's class."""
+    """Divide the moves of a bead into stretches with one schedule.
+
+    Parameters
+    ----------
+    phase : (n,) int array
+        Phase of each move.
+    bead_process : ProcessParameters
+        The process of the bead's class.
+
+    Returns
+    -------
+    list of (slice, int or None)
+        Moves and schedule number of each stretch.
+    """
     of_phase = {
         MIDDLE: bead_process.schedule,
         AT_START: bead_process.start.schedule,
@@ -112,8 +142,20 @@ def _ahead(schedule: int | None, parameters: ProgramParameters) -> list[Block]:
 
 
 def standing(blocks: Sequence[Block]) -> tuple[Block, ...]:
-    """Return the blocks, with the deposit switched on at standstill for beads onto which no move leads,
-    and for one at which the program begins: the length of its first move is not known.
+    """Switch the deposit on at standstill for beads onto which no move leads.
+
+    The same applies to a bead at which the program begins: the length of its first move is
+    unknown.
+
+    Parameters
+    ----------
+    blocks : sequence of Block
+        The blocks of a program.
+
+    Returns
+    -------
+    tuple of Block
+        The blocks, some without a switch ahead of the position.
     """
     result: list[Block] = []
     positions: list[Array] = []  # the last two, and no more

@@ -66,10 +66,19 @@ class Sums:
 
 
 def durations(beads: Sequence[Bead], point_indices: Sequence[Integers] | None = None) -> Array:
-    """Return the time (T,) from each point to the next at travel speed, s.
+    """Return the time of each segment at travel speed.
 
-    The value at a point is the time of the segment that ends there; 0 at the start of a bead.
-    point_indices: the sampled points of each bead, by default all.
+    Parameters
+    ----------
+    beads : sequence of Bead
+        The beads.
+    point_indices : Sequence[Integers] or None, optional
+        The sampled points of each bead; None for all.
+
+    Returns
+    -------
+    (T,) array
+        Time of the segment that ends at each point, s; 0 at the start of a bead.
     """
     segment_times = []
     for k, bead in enumerate(beads):
@@ -82,7 +91,26 @@ def durations(beads: Sequence[Bead], point_indices: Sequence[Integers] | None = 
 
 
 def follow(task: Task, points: Points, thresholds: Array, lasts: Array, phi: Array) -> Followed:
-    """Return the machine state for the rotations phi (T,), rad; lasts (T,) s from `durations`."""
+    """Return the machine state along a curve of rotations.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with limits and range.
+    points : Points
+        T points.
+    thresholds : (T,) array
+        Smallest condition allowed.
+    lasts : (T,) array
+        Times from `durations`, s.
+    phi : (T,) array
+        Rotations, rad.
+
+    Returns
+    -------
+    Followed
+        Joints, margins, condition and speeds at the points.
+    """
     joints = task.joints(points, phi)
     condition, margin = task.condition(points, phi, joints), task.given_rows.margin(joints)
     speed = np.abs(steps(joints, points)) / np.where(lasts > 0.0, lasts, np.inf)[:, None]
@@ -123,7 +151,22 @@ def sums(curve: Followed) -> Sums:
 
 
 def fitted(points: Points, values: Array, degree: int) -> Array:
-    """(B, degree + 1) the polynomials of the beads' parameters that come nearest to values (T,), the constant first."""
+    """Fit polynomials of the beads' parameters to values.
+
+    Parameters
+    ----------
+    points : Points
+        T points of B beads.
+    values : (T,) array
+        Values at the points.
+    degree : int
+        Degree of the polynomials; less for beads with few points.
+
+    Returns
+    -------
+    (B, degree + 1) array
+        Least-squares coefficients, the constant first.
+    """
     result = np.zeros((points.beads, degree + 1))
     low, high = points.ends
     for bead in range(points.beads):
@@ -146,7 +189,24 @@ def fitted(points: Points, values: Array, degree: int) -> Array:
 
 
 def handles(task: Task, points: Points, bead: int, degree: int) -> Array:
-    """(n,) parameters of a bead at which its polynomial is taken hold of: as many as it has freedoms."""
+    """Return the parameters at which the polynomial of a bead has handles.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    points : Points
+        The points.
+    bead : int
+        Number of the bead.
+    degree : int
+        Degree of the polynomial.
+
+    Returns
+    -------
+    (n,) array
+        One parameter for each freedom of the polynomial.
+    """
     bead_points, _ = points.only(bead)
     low, high = (float(end[0]) for end in bead_points.ends)
     count = int(np.abs(refine_state.changes(task, bead_points, degree)[0]).any(axis=0).sum())
@@ -158,8 +218,28 @@ def handles(task: Task, points: Points, bead: int, degree: int) -> Array:
 
 
 def pull(task: Task, points: Points, bead: int, degree: int, handle: int) -> Array:
-    """(degree + 1,) the change of a bead's coefficients that moves one of its handles by 1 rad and leaves all others where
-    they are; a closed bead that has to join up still does."""
+    """Return the change of coefficients that moves one handle by 1 rad.
+
+    All other handles stay, and a closed bead stays joined.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    points : Points
+        The points.
+    bead : int
+        Number of the bead.
+    degree : int
+        Degree of the polynomial.
+    handle : int
+        Number of the handle among `handles`.
+
+    Returns
+    -------
+    (degree + 1,) array
+        The change, the constant first.
+    """
     bead_points, _ = points.only(bead)
     parameters = handles(task, points, bead, degree)
     free = refine_state.changes(task, bead_points, degree)[0]
@@ -196,7 +276,26 @@ class Compared:
 def compared(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int, int]], progress: Progress
 ) -> tuple[Compared, ...]:
-    """All methods of the planner on the branch of the task, none with polynomials that are given; progress may raise."""
+    """Plan the beads with every method, in the branch of the task.
+
+    Given polynomials are ignored.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    beads : sequence of Bead
+        The beads in print order.
+    bead_ids : Sequence[tuple[int, int]]
+        Layer and index of each bead.
+    progress : callable
+        Receives share and text; may raise to cancel.
+
+    Returns
+    -------
+    tuple of Compared
+        The result of each method.
+    """
     results = []
     for number, (method, plan) in enumerate(METHODS.items()):
         started = time.perf_counter()

@@ -109,11 +109,24 @@ class Picture:
 
 
 def columns(beads: Sequence[Bead], cell: Cell, max_columns: int = MAX_COLUMNS) -> Columns:
-    """Return points of the beads, evenly spread, at most `max_columns`; the ends of beads are
-    included.
+    """Return points of the beads, evenly spread, ends included.
 
-    If not all beads have room for MIN_POINTS_PER_BEAD points each, an even selection of beads is
-    taken.
+    If not all beads have room for MIN_POINTS_PER_BEAD points each, an even selection of beads
+    is taken.
+
+    Parameters
+    ----------
+    beads : sequence of Bead
+        The beads.
+    cell : Cell
+        The cell.
+    max_columns : int, optional
+        Number of points to aim at.
+
+    Returns
+    -------
+    Columns
+        The points, each as a bead of one point.
     """
     counts = np.array([len(bead) for bead in beads])
     bead_numbers = list(range(len(beads)))
@@ -154,7 +167,22 @@ def columns(beads: Sequence[Bead], cell: Cell, max_columns: int = MAX_COLUMNS) -
 
 
 def external_of(cell: Cell, beads: Sequence[Bead], point_indices: Sequence[Index]) -> Array | None:
-    """Return the values (T, k) of the external axes at selected points of beads, None for a cell without."""
+    """Return the values of the external axes at selected points.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+    beads : sequence of Bead
+        The beads.
+    point_indices : sequence of Index
+        The selected points of each bead.
+
+    Returns
+    -------
+    (T, k) array or None
+        Values, rad or mm; None for a cell without external axes.
+    """
     if cell.external is None:
         return None
     external_values: Array = np.concatenate(
@@ -164,7 +192,18 @@ def external_of(cell: Cell, beads: Sequence[Bead], point_indices: Sequence[Index
 
 
 def planned_external(bead: Bead) -> Array:
-    """(n, k) values of the external axes at the points of a bead of a plan that has some."""
+    """Return the planned values of the external axes along a bead.
+
+    Parameters
+    ----------
+    bead : Bead
+        A bead from a plan with external axes.
+
+    Returns
+    -------
+    (n, k) array
+        Values, rad or mm.
+    """
     assert bead.external is not None  # beads of a plan with external axes have their values
     return bead.external
 
@@ -172,7 +211,26 @@ def planned_external(bead: Bead) -> Array:
 def single_points(
     cell: Cell, position: Array, tool: Array, parameter: Array, external: Array | None
 ) -> Points:
-    """Return the points, each as a bead of one point."""
+    """Return points that each form a bead of one point.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+    position : (T, 3) array
+        Points in the part frame, mm.
+    tool : (T, 3) array
+        Tool axes in the part frame.
+    parameter : (T,) array
+        Bead parameter.
+    external : (T, k) array or None
+        Values of the external axes.
+
+    Returns
+    -------
+    Points
+        The points with their pose frames.
+    """
     number, slides = np.arange(len(position)), cell.machine.chain.sliding
     return Points(
         position,
@@ -194,10 +252,25 @@ def redundancy_map(
     bodies: Sequence[Body] = (),
     values: Array | None = None,
 ) -> RedundancyMap:
-    """Return the map of all branches for the columns.
+    """Return the map of all branches for some columns.
 
-    It uses the job's cell, limits and rotation range. bodies: in part coordinates. values: (R,) rad
-    of the rows, by default a whole turn.
+    Parameters
+    ----------
+    task : Task
+        The plan, with cell, limits and rotation range.
+    map_columns : Columns
+        C points.
+    axis : str, optional
+        Kind of the rows, RZ or ROTATION.
+    bodies : sequence of Body, optional
+        Obstacles in part coordinates.
+    values : (R,) array or None, optional
+        Values of the rows, rad; None for a whole turn.
+
+    Returns
+    -------
+    RedundancyMap
+        The map of R rows by C columns.
     """
     values = np.linspace(-np.pi, np.pi, ROWS) if values is None else values
     phi = rotation_of(task.cell, map_columns.points.tool, values[:, None], axis)
@@ -219,7 +292,22 @@ def redundancy_map(
 
 
 def picture(task: Task, redundancy: RedundancyMap, branch: int) -> Picture:
-    """One branch of a map, with its condition."""
+    """Return one branch of a map, with its condition.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    redundancy : RedundancyMap
+        The map.
+    branch : int
+        Index of the branch.
+
+    Returns
+    -------
+    Picture
+        Margin, condition and forbidden cells of the branch.
+    """
     branch_task = dataclasses.replace(task, branch=branch)
     points = redundancy.columns.points
     flange = points.frames.flange_poses(redundancy.phi).reshape(-1, 4, 4)
@@ -244,11 +332,30 @@ def arm_touched(
     moment: Index,
     row_stride: int = 1,
 ) -> Mask:
-    """Return the cells (R, C) of a branch in which a link of the robot touches something.
+    """Return the cells of a branch in which a link of the robot touches an obstacle.
 
-    Checked are nozzle, platform, bodies and the deposit printed so far at each column. moment: (C,)
-    number of printed points at a column. row_stride: one of `row_stride` rows is checked and
-    represents its neighbours. Cells past a limit, or forbidden for another reason, are not checked.
+    Obstacles are nozzle, platform, bodies and the deposit printed before each column. Cells
+    past a limit, or forbidden for another reason, are not checked.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    redundancy : RedundancyMap
+        The map of R rows by C columns.
+    branch : int
+        Index of the branch.
+    arm : ArmContact
+        The contact check.
+    moment : (C,) int array
+        Number of printed points at each column.
+    row_stride : int, optional
+        One of this many rows is checked and represents its neighbours.
+
+    Returns
+    -------
+    (R, C) bool array
+        Cells with contact.
     """
     count = len(redundancy.values)
     rows = np.arange(min(row_stride // 2, count - 1), count, row_stride)
@@ -270,7 +377,28 @@ def arm_touched(
 
 
 def rotation_of(cell: Cell, tool: Array, value: Array, axis: str) -> Array:
-    """The rotation phi about the tool axes (C, 3) of values (..., C) on an axis of the map, rad."""
+    """Return the rotations phi for values on the axis of a map.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+    tool : (C, 3) array
+        Tool axes in the part frame.
+    value : (..., C) array
+        Values on the axis, rad.
+    axis : str
+        RZ or ROTATION.
+
+    Returns
+    -------
+    (..., C) array
+        Rotations about the tool axes, rad.
+
+    Notes
+    -----
+    Inverts `Cell.rz_of_phi` (Chalvin 2020, eqs. 9 and 10).
+    """
     if axis == ROTATION:
         return np.array(np.broadcast_to(value, np.broadcast_shapes(value.shape, (len(tool),))))
     # eq. 9 and 10 solved for phi, as Cell.rz_of_phi has them for RZ
@@ -285,12 +413,42 @@ def rotation_of(cell: Cell, tool: Array, value: Array, axis: str) -> Array:
 
 
 def value_of(cell: Cell, tool: Array, phi: Array, axis: str) -> Array:
-    """The value (C,) on an axis of the map of rotations phi (C,) about the tool axes (C, 3), rad; RZ is in -pi..pi."""
+    """Return the values on the axis of a map for rotations phi.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+    tool : (C, 3) array
+        Tool axes in the part frame.
+    phi : (C,) array
+        Rotations about the tool axes, rad.
+    axis : str
+        RZ or ROTATION.
+
+    Returns
+    -------
+    (C,) array
+        Values, rad; RZ is in -pi to pi.
+    """
     return phi if axis == ROTATION else cell.rz_of_phi(tool, phi)
 
 
 def in_turns(values: Array, starts: Mask) -> Array:
-    """Return the values (C,) rad unwrapped along each bead, from a start within half a turn of 0."""
+    """Unwrap values along each bead.
+
+    Parameters
+    ----------
+    values : (C,) array
+        Angles, rad.
+    starts : (C,) bool array
+        True at the first column of a bead.
+
+    Returns
+    -------
+    (C,) array
+        Unwrapped angles; each bead starts within half a turn of 0.
+    """
     step = np.diff(values, prepend=values[:1])
     step = shortest(step)
     step[starts] = 0.0
@@ -302,8 +460,23 @@ def in_turns(values: Array, starts: Mask) -> Array:
 
 
 def joints_at(task: Task, map_columns: Columns, column: int, phi: float) -> Array:
-    """Return the joints (8, axes) of all branches at one cell, in the turn used by the map; NaN out
-    of reach.
+    """Return the joints of all branches in one cell of a map.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    map_columns : Columns
+        The columns.
+    column : int
+        Number of the column.
+    phi : float
+        Rotation about the tool axis, rad.
+
+    Returns
+    -------
+    (8, axes) array
+        Joints in the turns that the map uses; NaN out of reach.
     """
     joints = _joints_of_branches(
         task, map_columns.points.select_points(np.array([column])), np.array([[phi]])
@@ -358,8 +531,26 @@ def _touching(cell: Cell, points: Points, bodies: Sequence[Body]) -> Mask:
 def across(
     beads: Sequence[Bead], cell: Cell, bead_point: tuple[int, int], axis: int, values: Array
 ) -> Columns:
-    """One point of the beads, at (bead, point), with values (C,) rad or mm of one of the external axes, the others as they
-    are planned there: a column of each."""
+    """Return one point of the beads with varied values of an external axis.
+
+    Parameters
+    ----------
+    beads : sequence of Bead
+        The beads of a plan with external axes.
+    cell : Cell
+        The cell.
+    bead_point : tuple[int, int]
+        Number of the bead and of the point in it.
+    axis : int
+        Index of the external axis.
+    values : (C,) array
+        Its values, rad or mm; the other axes keep their planned values.
+
+    Returns
+    -------
+    Columns
+        One column for each value.
+    """
     return _columns_with_external(beads, cell, bead_point, (axis,), (values,))
 
 
@@ -370,8 +561,26 @@ def across_two_axes(
     axes: tuple[int, int],
     values: tuple[Array, Array],
 ) -> Columns:
-    """One point of the beads, at (bead, point), with all pairs of values (C,) and (R,), rad or mm, of two external axes, the
-    others as they are planned there: R rows of C columns, one row after the other."""
+    """Return one point of the beads with all pairs of values of two external axes.
+
+    Parameters
+    ----------
+    beads : sequence of Bead
+        The beads of a plan with external axes.
+    cell : Cell
+        The cell.
+    bead_point : tuple[int, int]
+        Number of the bead and of the point in it.
+    axes : tuple[int, int]
+        Indices of the two external axes.
+    values : (C,) array and (R,) array
+        Their values, rad or mm; the other axes keep their planned values.
+
+    Returns
+    -------
+    Columns
+        R C columns, row after row.
+    """
     across, up = np.meshgrid(*values)
     return _columns_with_external(beads, cell, bead_point, axes, (across.ravel(), up.ravel()))
 
@@ -414,8 +623,27 @@ def _columns_with_external(
 
 
 def span(task: Task, bead: Bead, point: int, axis: int, count: int) -> Array:
-    """(count,) values of an external axis over its range, or over a turn about where it is planned at a point, if that is
-    less."""
+    """Return values of an external axis over its range.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    bead : Bead
+        A bead with planned external axes.
+    point : int
+        Number of a point in the bead.
+    axis : int
+        Index of the external axis.
+    count : int
+        Number of values.
+
+    Returns
+    -------
+    (count,) array
+        Evenly spaced, rad or mm; a turning axis covers at most a turn about its planned
+        value.
+    """
     machine_axis = task.cell.robot.chain.axes + axis
     planned_value = float(planned_external(bead)[point, axis])
     low, high = (

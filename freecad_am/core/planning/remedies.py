@@ -61,11 +61,25 @@ def remedies(
     progress: Progress,
     longest: float = LONGEST_SEARCH,
 ) -> list[Issue]:
-    """Return a note with the first change that makes an infeasible job feasible, or with all failed
-    changes; empty for a feasible one.
+    """Search for the first change that makes an infeasible job feasible.
 
-    path: its joint path. progress may raise to cancel. longest: s of wall-clock time after which the
-    search stops and says so.
+    Parameters
+    ----------
+    job : Tried
+        The infeasible job.
+    path : JointPath
+        Its joint path.
+    issues : sequence of Issue
+        Its issues.
+    progress : callable
+        Receives share and text; may raise to cancel.
+    longest : float, optional
+        Wall-clock time after which the search stops, s.
+
+    Returns
+    -------
+    list of Issue
+        A note with the change, or with all failed changes; empty for a feasible job.
     """
     if not has_errors(list(issues)):
         return []
@@ -257,12 +271,29 @@ def _rotations(job: Tried) -> Iterator[Tried]:
 
 
 def suited(job: Tried, progress: Progress, failed_layers: Collection[int] = ()) -> CellParameters:
-    """Return the parameters of the first cell in which some layers of a job can be done, the current ones
-    first; the current ones without such a cell.
+    """Return the first cell in which some layers of a job can be done.
 
     The layers are the first, the middle and the last one, the one that leans most, and
-    `failed_layers`, which failed in the plan of the complete job. progress may raise to cancel.
-    Raises the errors of reading the toolpath and resolving the cell.
+    `failed_layers`.
+
+    Parameters
+    ----------
+    job : Tried
+        The job.
+    progress : callable
+        Receives share and text; may raise to cancel.
+    failed_layers : iterable of int, optional
+        Layers that failed in the plan of the complete job.
+
+    Returns
+    -------
+    CellParameters
+        The current cell if it serves or no other cell does.
+
+    Raises
+    ------
+    AmError
+        If reading the toolpath or resolving the cell fails.
     """
     toolpath = job.toolpath()
     sample = _layers(toolpath, failed_layers)

@@ -40,8 +40,17 @@ class Sampled:
         return self.beads == self.points == 1
 
     def select_given(self, polynomials: Sequence[GivenPolynomial]) -> tuple[GivenPolynomial, ...]:
-        """Return the polynomials of `joints.given` for the sampled beads, with the numbers of the
-        beads in the sample.
+        """Return the given polynomials of the sampled beads.
+
+        Parameters
+        ----------
+        polynomials : sequence of GivenPolynomial
+            Polynomials of `joints.given`, for the full toolpath.
+
+        Returns
+        -------
+        tuple of GivenPolynomial
+            The polynomials with the numbers that the beads have in the sample.
         """
         sample_ids = {
             bead_id: (layer, bead) for bead_id, (layer, bead, _) in zip(self.places, self.toolpath)
@@ -56,11 +65,25 @@ class Sampled:
 
 
 def sample_toolpath(toolpath: Toolpath, max_points: int, together: int = 1) -> Sampled:
-    """Sample about `max_points` points of a toolpath; a smaller toolpath is kept complete.
+    """Sample beads and points of a toolpath.
 
-    The first and last bead are kept, and the ends of each bead; layers keep their numbers, beads do
-    not. The chord error grows with the point spacing. A few beads with very many turns keep more
-    points. together: number of consecutive beads that are kept as a group.
+    The first and last bead are kept, and the ends of each bead; layers keep their numbers,
+    beads do not. The chord error grows with the point spacing. A few beads with very many turns
+    keep more points.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath.
+    max_points : int
+        Number of points to aim at; a smaller toolpath is kept complete.
+    together : int, optional
+        Number of consecutive beads that are kept as a group.
+
+    Returns
+    -------
+    Sampled
+        The sample.
     """
     all_beads = list(toolpath)
     total = toolpath.point_count

@@ -38,12 +38,24 @@ class LimitRows:
 
     @cached_property
     def mean(self) -> Array:
-        """(m,) middle of each range."""
+        """Return the middle of each range.
+
+        Returns
+        -------
+        (m,) array
+            rad or mm.
+        """
         return 0.5 * (self.lower + self.upper)
 
     @cached_property
     def half(self) -> Array:
-        """(m,) half of each range."""
+        """Return half of each range.
+
+        Returns
+        -------
+        (m,) array
+            rad or mm.
+        """
         return 0.5 * (self.upper - self.lower)
 
     @cached_property
@@ -52,13 +64,33 @@ class LimitRows:
         return bool((np.count_nonzero(self.matrix, axis=1) == 1).all())
 
     def offset(self, joints: Array) -> Array:
-        """(..., m) distance from the middle as a share of half the range; the limit is at +-1."""
+        """Return the distance from the middle as a share of half the range.
+
+        Parameters
+        ----------
+        joints : (..., axes) array
+            Joints, rad or mm.
+
+        Returns
+        -------
+        (..., m) array
+            -1 and 1 at the limits.
+        """
         share: Array = (joints @ self.matrix.T - self.mean) / self.half
         return share
 
     def margin(self, joints: Array) -> Array:
-        """Return (...) the smallest margin over the rows, 1 in the middle and 0 at a limit; -inf
-        for NaN joints.
+        """Return the smallest margin over the rows.
+
+        Parameters
+        ----------
+        joints : (..., axes) array
+            Joints, rad or mm.
+
+        Returns
+        -------
+        (...) array
+            1 in the middle, 0 at a limit, negative beyond; -inf for NaN joints.
         """
         worst: Array = reduce(
             np.maximum, map(np.abs, self._offsets(joints))
@@ -152,21 +184,50 @@ class Task:
         return np.asarray(self.continuous | self.cell.machine.chain.sliding, dtype=np.bool_)
 
     def rows_of_axis(self, axis: int) -> tuple[float, float]:
-        """Lower and upper limit of one axis with the reserve taken off, rad."""
+        """Return the limits of one axis with the reserve taken off.
+
+        Parameters
+        ----------
+        axis : int
+            Index of the axis.
+
+        Returns
+        -------
+        lower, upper : float
+            rad or mm.
+        """
         return float(self.cell.limits.lower[axis] + RESERVE), float(
             self.cell.limits.upper[axis] - RESERVE
         )
 
     @cached_property
     def middle(self) -> Array:
-        """(axes,) the middle of each axis's range, 0 for continuous axes; rad."""
+        """Return the middle of each axis's range.
+
+        Returns
+        -------
+        (axes,) array
+            rad or mm; 0 for continuous axes.
+        """
         limits = self.cell.limits
         with np.errstate(invalid="ignore"):
             return np.where(self.continuous, 0.0, 0.5 * (limits.lower + limits.upper))
 
     @cached_property
     def weights(self) -> Array:
-        """(axes,) weights of eq. 17, one over the stroke in rad; the characteristic length is one rad of axes that slide."""
+        """Return the weights of the axes in the displacement.
+
+        A characteristic length of sliding axes counts as one rad.
+
+        Returns
+        -------
+        (axes,) array
+            One over the stroke.
+
+        References
+        ----------
+        Chalvin 2020, eq. 17.
+        """
         stroke = np.where(
             self.continuous, CONTINUOUS_STROKE, self.cell.limits.upper - self.cell.limits.lower
         )
@@ -176,7 +237,22 @@ class Task:
         )
 
     def rotation(self, points: Points, value: Array) -> tuple[Array, Array]:
-        """phi (T,) and d phi / d value (T,) for the variable of the job: the rotation itself, or RZ of the paper."""
+        """Return the rotation for the variable of the job.
+
+        Parameters
+        ----------
+        points : Points
+            T points.
+        value : (T,) array
+            The rotation itself, or RZ of the paper, rad.
+
+        Returns
+        -------
+        phi : (T,) array
+            Rotation about the tool axis, rad.
+        rate : (T,) array
+            d phi / d value.
+        """
         if self.parameters.parameter == "rotation":
             ones: Array = np.ones(len(value))
             return value, ones
@@ -190,9 +266,24 @@ class Task:
         return arm
 
     def raw_joints(self, points: Points, phi: Array, previous: Array | None = None) -> Array:
-        """(..., T, axes) joint values of the branch as the inverse gives them; NaN where unreachable.
+        """Return the joints of the branch as the inverse gives them.
 
-        Arms whose solutions have to be followed go on from joints `previous` (T, axes), or else from point to point of beads.
+        Arms with several solutions per configuration follow the solution from point to
+        point.
+
+        Parameters
+        ----------
+        points : Points
+            T points.
+        phi : (..., T) array
+            Rotations about the tool axis, rad.
+        previous : (T, axes) array or None, optional
+            Joints from which such an arm continues; None to follow the beads.
+
+        Returns
+        -------
+        (..., T, axes) array
+            Joints, rad or mm, not unwrapped; NaN where unreachable.
         """
         if phi.ndim == 1 and not self.arm.followed:
             return self._raw_joints_of_all(points, phi)
@@ -229,10 +320,20 @@ class Task:
         return joints
 
     def inverse(self, flange: Array, nearby_joints: Array | None = None) -> Array:
-        """Return joint values (N, axes) of the branch at flange poses (N, 4, 4); NaN where unreachable.
+        """Return the joints of the branch at flange poses.
 
-        `nearby_joints`: joints (N, axes) near which arms with several solutions of the same configuration
-        search; external axes keep these values.
+        Parameters
+        ----------
+        flange : (N, 4, 4) array
+            Flange poses, base frame.
+        nearby_joints : (N, axes) array or None, optional
+            Joints near which arms with several solutions per configuration search;
+            external axes keep these values.
+
+        Returns
+        -------
+        (N, axes) array
+            Joints, rad or mm; NaN where unreachable.
         """
         if self.arm.followed and nearby_joints is not None:
             joints = following.from_before(
@@ -248,8 +349,19 @@ class Task:
         return joints[..., : self.cell.robot.chain.axes]
 
     def joints(self, points: Points, phi: Array) -> Array:
-        """Return the joints (..., T, axes) unwrapped within each bead, in the turn that suits the
-        limits best.
+        """Return the joints unwrapped within each bead, in the turn that suits the limits best.
+
+        Parameters
+        ----------
+        points : Points
+            T points.
+        phi : (..., T) array
+            Rotations about the tool axis, rad.
+
+        Returns
+        -------
+        (..., T, axes) array
+            Joints, rad or mm; NaN where unreachable.
         """
         raw = self.raw_joints(points, phi)
         if phi.ndim > 1 and not np.isnan(raw.max()):
@@ -259,7 +371,20 @@ class Task:
         return np.ascontiguousarray(joints_in_range) if phi.ndim == 1 else joints_in_range
 
     def in_range(self, joints: Array, points: Points) -> Array:
-        """The same joints, each limited axis of each bead moved by the whole turns that centre its range."""
+        """Move each limited axis by the whole turns that centre its range in each bead.
+
+        Parameters
+        ----------
+        joints : (..., T, axes) array
+            Unwrapped joints, rad or mm.
+        points : Points
+            The T points.
+
+        Returns
+        -------
+        (..., T, axes) array
+            The joints; the same array if nothing moves.
+        """
         leading_axes = tuple(range(joints.ndim - 1))
         distances = np.maximum(
             joints.max(axis=leading_axes) - self.middle, self.middle - joints.min(axis=leading_axes)
@@ -277,14 +402,46 @@ class Task:
         return shifted
 
     def jacobians(self, points: Points, phi: Array, joints: Array) -> Iterator[tuple[slice, Array]]:
-        """Yield the robot's Jacobians (k, 6, 6) at the deposition point for slices of the points, phi (T,) and
-        joints (T, axes), with the slice: together they would take much memory.
+        """Yield the robot's Jacobians for slices of the points.
+
+        The Jacobians of all points together would take much memory.
+
+        Parameters
+        ----------
+        points : Points
+            T points.
+        phi : (T,) array
+            Rotations about the tool axis, rad.
+        joints : (T, axes) array
+            Joints, rad or mm.
+
+        Yields
+        ------
+        rows : slice
+            The rows of the points.
+        jacobians : (k, 6, 6) array
+            Jacobians at the deposition point.
         """
         for rows in in_pieces(len(points)):
             yield rows, self.jacobian_at(points.frames.of(rows), phi[rows], joints[rows])
 
     def jacobian_at(self, poses: PoseFrames, phi: Array, joints: Array) -> Array:
-        """(N, 6, 6) Jacobian of the robot at the deposition point for poses at rotations phi (N,) and joints (N, axes)."""
+        """Return the robot's Jacobian at the deposition point.
+
+        Parameters
+        ----------
+        poses : PoseFrames
+            Pose frames of N points.
+        phi : (N,) array
+            Rotations about the tool axis, rad.
+        joints : (N, axes) array
+            Joints, rad or mm.
+
+        Returns
+        -------
+        (N, 6, 6) array
+            Rows of translation (mm) and rotation, base frame.
+        """
         return self._jacobian(self._tips_of(poses, phi), joints)
 
     def _jacobian(self, flange: Array, joints: Array) -> Array:
@@ -305,7 +462,22 @@ class Task:
         )
 
     def condition(self, points: Points, phi: Array, joints: Array) -> Array:
-        """(..., T) sigma_min / sigma_max of the scaled Jacobian at the deposition point, 0 where unreachable."""
+        """Return the condition of the scaled Jacobian at the deposition point.
+
+        Parameters
+        ----------
+        points : Points
+            T points.
+        phi : (..., T) array
+            Rotations about the tool axis, rad.
+        joints : (..., T, axes) array
+            Joints, rad or mm.
+
+        Returns
+        -------
+        (..., T) array
+            sigma_min / sigma_max; 0 where unreachable.
+        """
         if phi.ndim == 1:
             return np.concatenate(
                 [
@@ -321,7 +493,21 @@ class Task:
         )
 
     def condition_at(self, flange: Array, joints: Array) -> Array:
-        """(N,) the same for flange poses (N, 4, 4) and joints (N, axes); NaN where nothing is free."""
+        """Return the condition of the scaled Jacobian at flange poses.
+
+        Parameters
+        ----------
+        flange : (N, 4, 4) array
+            Flange poses, base frame.
+        joints : (N, axes) array
+            Joints, rad or mm.
+
+        Returns
+        -------
+        (N,) array
+            sigma_min / sigma_max, rounded to 12 digits; 0 where unreachable; NaN for a
+            machine without a free coordinate.
+        """
         if not self.cell.machine.free:
             return np.full(len(joints), np.nan)
         good = np.flatnonzero(np.isfinite(joints).all(axis=1))
@@ -336,7 +522,23 @@ class Task:
         return np.round(value, 12)
 
     def thresholds(self, points: Points) -> Array:
-        """(T,) the smallest condition allowed (eq. 19): given, or a quarter of its value at RZ = 0 with a floor."""
+        """Return the smallest condition allowed at each point.
+
+        Parameters
+        ----------
+        points : Points
+            T points.
+
+        Returns
+        -------
+        (T,) array
+            The given value, or CONDITION_SHARE of the condition at RZ = 0, at least
+            CONDITION_FLOOR.
+
+        References
+        ----------
+        Chalvin 2020, eq. 19.
+        """
         min_condition = self.parameters.min_condition
         if not isinstance(min_condition, str):
             return np.full(len(points), float(min_condition))
@@ -346,8 +548,24 @@ class Task:
         return np.maximum(CONDITION_SHARE * at_zero, CONDITION_FLOOR)
 
     def rotation_rates(self, poses: PoseFrames, phi: Array, joints: Array) -> tuple[Array, Array]:
-        """d q / d phi (N, axes), none of external axes, and the robot's Jacobian (N, 6, 6) for poses at rotations phi (N,)
-        that are reached."""
+        """Return the joint rates for the rotation about the tool axis.
+
+        Parameters
+        ----------
+        poses : PoseFrames
+            Pose frames of N points within reach.
+        phi : (N,) array
+            Rotations about the tool axis, rad.
+        joints : (N, axes) array
+            Joints, rad or mm.
+
+        Returns
+        -------
+        rates : (N, axes) array
+            d q / d phi; 0 for external axes.
+        matrix : (N, 6, 6) array
+            Jacobians of the robot at the deposition point.
+        """
         flange = self._tips_of(poses, phi)
         matrix = self._jacobian(flange, joints)
         twist = np.zeros((len(joints), 6, 1))
@@ -362,8 +580,19 @@ class Task:
 
 
 def append_external(joints: Array, external: Array) -> Array:
-    """Return joints (..., N, axes) of the robot followed by the values of external axes (N, k); NaN where
-    the robot does not reach, as then no axis is known.
+    """Append the values of external axes to joints of the robot.
+
+    Parameters
+    ----------
+    joints : (..., N, axes) array
+        Joints of the robot, rad or mm.
+    external : (N, k) array
+        Values of the external axes, rad or mm.
+
+    Returns
+    -------
+    (..., N, axes + k) array
+        Joints; all NaN in the external axes where the robot does not reach.
     """
     values = np.broadcast_to(external, (*joints.shape[:-1], external.shape[-1]))
     is_unreachable = np.isnan(joints).any(axis=-1, keepdims=True)
@@ -371,5 +600,18 @@ def append_external(joints: Array, external: Array) -> Array:
 
 
 def condition_margin(condition: Array, threshold: Array) -> Array:
-    """1 - threshold / condition: 0 where the condition is just kept, towards 1 far from singular."""
+    """Return the margin of the condition to its threshold.
+
+    Parameters
+    ----------
+    condition : (...) array
+        sigma_min / sigma_max.
+    threshold : (...) array
+        Smallest value allowed.
+
+    Returns
+    -------
+    (...) array
+        1 - threshold / condition: 0 where just kept, towards 1 far from singular.
+    """
     return np.asarray(1.0 - threshold / np.maximum(condition, 1e-12))

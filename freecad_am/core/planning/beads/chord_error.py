@@ -40,9 +40,26 @@ ROUNDING = 1e-6
 def refined_to_chord_error(
     task: Task, path: BeadPath, chord_error: float
 ) -> tuple[BeadPath, list[Issue]]:
-    """The path with as many points added as it takes to stay within the chord error (mm) of the bead between them.
+    """Add points to a path until straight joint motion keeps the chord error.
 
-    Points are added on the curve that the points of the bead outline, not on its chords; at corners on the segments.
+    Points are added on the curve that the points of the bead outline, not on its chords; at
+    corners on the segments.
+
+    Parameters
+    ----------
+    task : Task
+        The plan that the path belongs to.
+    path : BeadPath
+        The path; an unreachable one is returned unchanged.
+    chord_error : float
+        Largest deviation of the tip between two points, mm.
+
+    Returns
+    -------
+    path : BeadPath
+        The path with added points.
+    issues : list of Issue
+        Error NOT_STRAIGHT if the path still deviates after ROUNDS rounds.
     """
     for _ in range(ROUNDS):
         if not path.reachable:
@@ -68,8 +85,24 @@ def refined_to_chord_error(
 def all_refined(
     task: Task, paths: Sequence[BeadPath], chord_error: float
 ) -> list[tuple[BeadPath, list[Issue]]]:
-    """`refined_to_chord_error` of each path. Most need no more points, which is seen of several beads together: calls take
-    longer than the work on one."""
+    """Apply `refined_to_chord_error` to each path.
+
+    Most paths need no more points. Checking many paths in one call finds these soonest.
+
+    Parameters
+    ----------
+    task : Task
+        The plan that the paths belong to.
+    paths : sequence of BeadPath
+        The paths, reachable or not.
+    chord_error : float
+        Largest deviation of the tip between two points, mm.
+
+    Returns
+    -------
+    list of (BeadPath, list of Issue)
+        The paths with added points, each with its issues.
+    """
     reachable = [k for k, path in enumerate(paths) if path.reachable]
     ends = np.cumsum([len(paths[k].bead) for k in reachable])
     bent: set[int] = set()
@@ -94,7 +127,24 @@ def all_refined(
 
 
 def deviation(task: Task, bead: Bead, joints: Array, chord_error: float) -> Array:
-    """(n - 1,) how far the nozzle's tip leaves each segment of the bead when the joints run straight, mm."""
+    """Return how far the tip leaves each segment of a bead when the joints run straight.
+
+    Parameters
+    ----------
+    task : Task
+        The plan that the bead belongs to.
+    bead : Bead
+        The bead of n points.
+    joints : (n, axes) array
+        Joint values at its points, rad or mm.
+    chord_error : float
+        The allowed deviation, mm; segments that come near it are sampled more finely.
+
+    Returns
+    -------
+    (n - 1,) array
+        Deviation on each segment, mm.
+    """
     return _deviation(task, bead.points, joints, np.arange(len(joints) - 1), chord_error)
 
 
@@ -121,7 +171,22 @@ def _deviation(
 
 
 def leaning(cell: Cell, bead: Bead, joints: Array) -> Array:
-    """(n - 1,) rad, by what angle the tool strays from the directions at the ends of each segment as joints run straight."""
+    """Return the angle by which the tool strays on each segment as the joints run straight.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+    bead : Bead
+        The bead of n points.
+    joints : (n, axes) array
+        Joint values at its points, rad or mm.
+
+    Returns
+    -------
+    (n - 1,) array
+        Largest angle to the tool axis interpolated between the ends, rad.
+    """
     joint_step, count = np.diff(joints, axis=0)[:, None], len(INNER_SHARES)
     flange = cell.machine.chain.forward(
         (joints[:-1, None] + INNER_SHARES[:, None] * joint_step).reshape(-1, joints.shape[1])

@@ -43,10 +43,23 @@ class Stretch(NamedTuple):
 
 
 def phased(cell: Cell, path: BeadPath, condition_at: Condition) -> tuple[BeadPath, list[Issue]]:
-    """Return the path with points at the ends of its bead's phases and ramp steps, at their speeds.
+    """Return the path with points at the ends of its bead's phases, at the speeds of these phases.
 
-    Reports an error if the phases are longer than the bead, such as a piece of a divided bead.
-    condition_at: returns the condition (n,) for flange poses (n, 4, 4) and joints (n, axes).
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+    path : BeadPath
+        The path; unchanged if its bead has no phases or is unreachable.
+    condition_at : Condition
+        Returns the condition (n,) for flange poses (n, 4, 4) and joints (n, axes).
+
+    Returns
+    -------
+    path : BeadPath
+        The path, with points at the ends of phases and ramp steps.
+    issues : list of Issue
+        An error if the phases are longer than the bead, such as a piece of a divided bead.
     """
     if not path.bead.ends or not path.reachable:
         return path, []

@@ -79,7 +79,24 @@ def gone_back(bead: Bead, length: float) -> Bead:
 
 
 def go_back(task: Task, path: BeadPath, length: float) -> BeadPath:
-    """The path of an open bead gone back by `length` mm: by the joints that have led there."""
+    """Extend an open bead backwards over its end.
+
+    The way back uses the joints that led to the end.
+
+    Parameters
+    ----------
+    task : Task
+        The plan that the path belongs to.
+    path : BeadPath
+        The path; a closed or unreachable one is returned unchanged.
+    length : float
+        Length of the way back, mm.
+
+    Returns
+    -------
+    BeadPath
+        The longer path.
+    """
     if length <= 0.0 or path.bead.closed or not path.reachable:
         return path
     retreat, bead, n = _way(path.bead, length), gone_back(path.bead, length), len(path.bead)
@@ -90,7 +107,18 @@ def go_back(task: Task, path: BeadPath, length: float) -> BeadPath:
 
 
 def turns_back(bead: Bead) -> Array:
-    """Return 1 (n,) at the points where a bead reverses, at which a machine has to stop; else 0."""
+    """Mark the points where a bead reverses, at which a machine has to stop.
+
+    Parameters
+    ----------
+    bead : Bead
+        The bead of n points.
+
+    Returns
+    -------
+    (n,) array
+        1 where it reverses, else 0.
+    """
     if bead.tangents is None:
         return np.zeros(len(bead))
     return (dots(bead.tangents[:, 0], bead.tangents[:, 1]) < BACK).astype(float)
@@ -115,10 +143,23 @@ def _way(bead: Bead, length: float) -> _Way:
 
 
 def extend_past_seam(task: Task, path: BeadPath, overlap: float) -> BeadPath:
-    """Return the path of a closed bead extended over its beginning by `overlap` mm, at most one
-    round.
+    """Extend a closed bead over its beginning.
 
-    The result is open. The rotation continues from its end value, and the joints follow it.
+    The rotation continues from its end value, and the joints follow it.
+
+    Parameters
+    ----------
+    task : Task
+        The plan that the path belongs to.
+    path : BeadPath
+        The path; an open or unreachable one is returned unchanged.
+    overlap : float
+        Length of the overlap, mm; at most one round.
+
+    Returns
+    -------
+    BeadPath
+        The longer path, with an open bead.
     """
     if overlap <= 0.0 or not path.bead.closed or not path.reachable:
         return path
@@ -152,8 +193,30 @@ def longer(
     joints: Array,
     threshold: Array,
 ) -> BeadPath:
-    """The path of a bead that has got m more points at its end: where the flange is there (m, 4, 4), rotations (m,), joints
-    (m, axes), and how near to a singularity they may come (m,)."""
+    """Append m points to the path of a bead.
+
+    Parameters
+    ----------
+    task : Task
+        The plan that the path belongs to.
+    path : BeadPath
+        The path of n points.
+    bead : Bead
+        The bead with all n + m points.
+    flange : (m, 4, 4) array
+        Flange poses at the new points, base frame.
+    phi : (m,) array
+        Rotations about the tool axis at the new points, rad.
+    joints : (m, axes) array
+        Joint values at the new points, rad or mm.
+    threshold : (m,) array
+        Smallest condition allowed there.
+
+    Returns
+    -------
+    BeadPath
+        The path of n + m points.
+    """
     return dataclasses.replace(
         path,
         bead=bead,
@@ -165,7 +228,22 @@ def longer(
 
 
 def unwrapped_from(task: Task, start: Array, joints: Array) -> Array:
-    """Joints (n, axes) in the turns that go on from the joints before them (axes,)."""
+    """Return joints in the turns that continue from given ones.
+
+    Parameters
+    ----------
+    task : Task
+        The plan; its sliding axes stay unchanged.
+    start : (axes,) array
+        Joints before the first row, rad or mm.
+    joints : (n, axes) array
+        Joints up to whole turns.
+
+    Returns
+    -------
+    (n, axes) array
+        Joints without steps of more than half a turn.
+    """
     step = np.diff(joints, axis=0, prepend=start[None])
     step -= np.where(task.cell.machine.chain.sliding, 0.0, TURN * np.round(step / TURN))
     return np.asarray(start + np.cumsum(step, axis=0))

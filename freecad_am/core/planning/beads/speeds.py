@@ -26,11 +26,27 @@ DEFAULT_WIDTH_RATIO = 2.0  # a bead's width in layer heights without a model
 def rings_slowed(
     cell: Cell, paths: Sequence[BeadPath], layer_height: float
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """The paths with the tightest turns at the speed the axes allow, and a warning that says so.
+    """Slow the tightest rings of a wall down to the speed that the axes allow.
 
-    Where a wall closes, the last rings are as small as chance leaves them, and the axis that turns the part would have to
-    turn without bound. What runs at less than a layer from the axis of the part is slowed; the rest is not: that is for
-    the user to decide.
+    Where a wall closes, the last rings may be very small, and the axis that turns the part
+    would have to turn without bound. Segments at less than a layer height from the part's axis
+    are slowed. The rest is left for the user to decide.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell, with the maximum speed of each axis.
+    paths : sequence of BeadPath
+        The paths.
+    layer_height : float
+        Layer height, mm.
+
+    Returns
+    -------
+    paths : list of BeadPath
+        The paths, some with lower speeds.
+    issues : list of Issue
+        A warning if any path was slowed.
     """
     result, slowed = [], []
     for path in paths:
@@ -79,12 +95,29 @@ class _Place(NamedTuple):
 def corners_slowed(
     cell: Cell, paths: Sequence[BeadPath], layer_height: float, law: SpeedLaw | None
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """Return the paths of beads on hubs with short stretches at the speed the axes allow, and a warning.
+    """Slow short stretches of beads on hubs down to the speed that the axes allow.
 
-    At corners and near poles any five-axis controller slows down, and so does a robot. The deposit
-    then piles up: a stretch is short if the pile is at most PILE of the bead's width. Longer ones
-    are left unchanged. law: how the bead's width, height and speed depend on each other, None without
-    a model.
+    At corners and near poles any five-axis controller slows down, and so does a robot. The
+    deposit then piles up: a stretch is short if the pile is at most PILE of the bead's width.
+    Longer stretches are left unchanged.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell, with the maximum speed of each axis.
+    paths : sequence of BeadPath
+        The paths.
+    layer_height : float
+        Layer height, mm; it gives the width of beads without their own.
+    law : SpeedLaw or None
+        How the bead's width, height and speed depend on each other, None without a model.
+
+    Returns
+    -------
+    paths : list of BeadPath
+        The paths, some with lower speeds.
+    issues : list of Issue
+        A warning with the worst place if any path was slowed.
     """
     result: list[BeadPath] = []
     slow_sections: list[_Place] = []

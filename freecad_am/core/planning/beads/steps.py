@@ -26,11 +26,27 @@ from ..turns import configurations as following
 def refined_to_chord_error(
     motion: Motion, cell: Cell, chord_error: float, beads: Sequence[Bead]
 ) -> Motion:
-    """Return the motion with points added to its beads until it keeps the chord error (mm).
+    """Add points to the beads of a motion until it keeps the chord error.
 
-    beads: the beads of the motion, in order. For the part on the robot. Added points are on the
-    curves of the beads, evenly in length and in rotation; the points of a bead get new numbers.
-    Segments without joint values at their ends stay unchanged.
+    For a part on the robot. Added points are on the curves of the beads, evenly in length and
+    in rotation; the points of a bead get new numbers. Segments without joint values at their
+    ends stay unchanged.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion.
+    cell : Cell
+        The cell.
+    chord_error : float
+        Largest deviation of the tip between two points, mm.
+    beads : sequence of Bead
+        The beads of the motion, in order.
+
+    Returns
+    -------
+    Motion
+        The motion with added rows.
     """
     counts = _piece_counts(motion, cell, chord_error)
     row = np.repeat(np.arange(len(motion)), counts)
@@ -60,7 +76,22 @@ def refined_to_chord_error(
 
 
 def origins(motion: Motion, cell: Cell, chord_error: float) -> Integers:
-    """(m,) the row of the motion that each row of `refined_to_chord_error` is, or that it is on the way to."""
+    """Return the row of the motion from which each row of `refined_to_chord_error` comes.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion before the refinement, n rows.
+    cell : Cell
+        The cell.
+    chord_error : float
+        As in `refined_to_chord_error`, mm.
+
+    Returns
+    -------
+    (m,) int array
+        Row of the motion; for an added point, the row at the end of its segment.
+    """
     return np.repeat(np.arange(len(motion)), _piece_counts(motion, cell, chord_error))
 
 
@@ -149,8 +180,25 @@ REACH = 2000.0  # mm; maximum distance of a point from the axis that turns it
 def programmed(
     motion: Motion, controller: Controller, chord_error: float, blend: float
 ) -> tuple[Motion, Index]:
-    """Return the motion for programs of a controller, and its rows (m,) in the given motion. blend:
-    percent.
+    """Return the motion for programs of a controller, without steps that are too short for it.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion of n rows.
+    controller : Controller
+        The controller, with its least time and blend between points.
+    chord_error : float
+        Largest deviation that removing a row may cause, mm.
+    blend : float
+        Blending of the program, percent.
+
+    Returns
+    -------
+    motion : Motion
+        The motion of m rows. The time of removed rows goes to the next remaining row.
+    rows : (m,) int array
+        Its rows in the given motion.
     """
     step, blended = controller.least_step, controller.least_blend
     if not step:

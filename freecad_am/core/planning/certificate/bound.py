@@ -40,8 +40,27 @@ POINT_TOLERANCE = 1e-3  # share of a point's value at which its bound is near en
 
 
 def point_bound(task: Task, points: Points, threshold: Array) -> float:
-    """The least that the objective of the task can be for one bead; threshold (n,) of the condition at its points. Infinite
-    where a point has no rotation that keeps limits and condition."""
+    """Return a lower bound of the objective of one bead, from its points taken separately.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with the objective.
+    points : Points
+        The n points of the bead.
+    threshold : (n,) array
+        Smallest condition allowed at each point.
+
+    Returns
+    -------
+    float
+        Infinite if a point has no rotation that keeps limits and condition.
+
+    Notes
+    -----
+    The turn is divided into cells, and cells are divided again until the bound is within
+    POINT_TOLERANCE of a sampled value, at most LEVELS times.
+    """
     count = len(points)
     phi, half = whole_turn()
     index, phi = np.repeat(np.arange(count), CELLS), np.tile(phi, count)
@@ -112,8 +131,12 @@ class Optimality:
 
     @property
     def gaps(self) -> Array:
-        """(B,) share of each bead's objective that is not proved necessary; 0 for beads without
-        cost.
+        """Return the share of each bead's objective that is not proved necessary.
+
+        Returns
+        -------
+        (B,) array
+            1 - bound / objective; 0 for beads without cost.
         """
         costs = np.where(self.objective > 0.0, self.objective, 1.0)
         return np.where(self.objective > 0.0, 1.0 - self.bound / costs, 0.0)
@@ -124,9 +147,23 @@ def summed(
 ) -> tuple[dict[str, object] | None, list[Issue]]:
     """Return objective, bound and gap of a joint path for its report.
 
-    Covers all beads, the bead with the largest gap, each bead, and the whole job with the moves
-    between beads. Returns None and a note for arms that cannot be bounded. report(share) may raise
-    to cancel.
+    Parameters
+    ----------
+    task : Task
+        The plan, with the objective.
+    paths : sequence of BeadPath
+        The feasible paths.
+    report : callable, optional
+        Receives the finished share; may raise to cancel.
+
+    Returns
+    -------
+    figures : dict or None
+        Figures of the sum over all beads, of the bead with the largest gap, of each bead,
+        and for the displacement of the job with the moves between beads. None for arms that
+        cannot be bounded.
+    issues : list of Issue
+        A note for arms that cannot be bounded.
     """
     if task.arm.followed:
         return None, [
@@ -171,10 +208,24 @@ def _figures(objective: float, bound: float) -> dict[str, object]:
 def certified(
     task: Task, paths: Sequence[BeadPath], report: Callable[[float], None] = lambda share: None
 ) -> Optimality:
-    """The optimality of feasible paths, bead by bead, for the objective of the task; report(share) may raise to cancel.
+    """Return the optimality of feasible paths, bead by bead.
 
-    The bound holds for every course of the rotation along the beads as they are run, in the branch of the task, that keeps
-    limits and condition at the points.
+    The bound holds for every course of the rotation along the beads, in the branch of the task,
+    that keeps limits and condition at the points.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with the objective.
+    paths : sequence of BeadPath
+        The feasible paths.
+    report : callable, optional
+        Receives the finished share; may raise to cancel.
+
+    Returns
+    -------
+    Optimality
+        Objective and bound of each bead.
     """
     objective, bound = np.zeros(len(paths)), np.zeros(len(paths))
     for number, path in enumerate(paths):
@@ -192,8 +243,23 @@ def certified(
 def whole_job(
     task: Task, paths: Sequence[BeadPath], report: Callable[[float], None] = lambda share: None
 ) -> tuple[float, float]:
-    """Return eq. 17 of all beads and of the steps from each bead's end to the next start, and its
-    lower bound.
+    """Return the displacement of a job with the steps between beads, and its lower bound.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    paths : sequence of BeadPath
+        The feasible paths, in print order.
+    report : callable, optional
+        Receives the finished share; may raise to cancel.
+
+    Returns
+    -------
+    objective : float
+        Eq. 17 for the beads and the steps from each bead's end to the next start.
+    bound : float
+        Its lower bound over all rotations.
     """
     bead_points = [gather([path.bead], task.cell) for path in paths]
     costs = [_displacement_cost(task, points, path) for points, path in zip(bead_points, paths)]
@@ -321,6 +387,18 @@ def close_gaps(
     """Return the paths and their issues, with gaps closed if the task asks for it.
 
     New courses get the points that straight motion needs.
+
+    Parameters
+    ----------
+    task : Task
+        The plan; `joints.close_gap` requests the search.
+    paths : list of (BeadPath, list of Issue)
+        The paths and their issues.
+
+    Returns
+    -------
+    list of (BeadPath, list of Issue)
+        The same, with better courses where the search finds any.
     """
     if not task.parameters.close_gap or not task.cell.machine.free or task.arm.followed:
         return paths

@@ -38,12 +38,31 @@ def none_broken(phi: Array, joints: Array) -> Mask:
 def descend(
     joints_at: Joints, scale: Array, phi: Array, joined: bool, broken: Broken = none_broken
 ) -> tuple[Array, float]:
-    """Rotations (n,) with the least sum of `scale` (n - 1, axes) times squared steps that is found from phi (n,) on, and
-    that sum.
+    """Minimise the displacement along a chain of points from given rotations.
 
-    joints_at: the joints (n, axes) of rotations (n,). joined: the last rotation stays as far from the first as it is.
-    broken: points (n,) where rotations and their joints may not be; where those known may not they are returned, and
-    the sum is infinite.
+    Parameters
+    ----------
+    joints_at : Joints
+        Returns the joints (n, axes) for rotations (n,).
+    scale : (n - 1, axes) array
+        Weight of the squared step of each axis.
+    phi : (n,) array
+        Rotations at the start, rad.
+    joined : bool
+        Whether the last rotation keeps its distance to the first.
+    broken : Broken, optional
+        Returns the points (n,) at which rotations and their joints are not allowed.
+
+    Returns
+    -------
+    phi : (n,) array
+        The rotations, unchanged if a start is not allowed.
+    value : float
+        Sum of the weighted squared steps; infinite if a start is not allowed.
+
+    Notes
+    -----
+    Gauss-Newton steps along the chain of eq. 17 with numerical slopes, at most STEPS.
     """
     joints = joints_at(phi)
     if broken(phi, joints).any():
@@ -103,9 +122,29 @@ def best(
     joined: bool,
     broken: Broken = none_broken,
 ) -> tuple[Array, float]:
-    """Return the best result of `descend` from phi (n,) and from phi turned by fractions of a turn.
+    """Return the best result of `descend` from several starts.
 
-    Returns the rotations and their sum, which is infinite if no allowed course exists.
+    The starts are the given rotations and these turned by fractions of a turn.
+
+    Parameters
+    ----------
+    joints_at : Joints
+        Returns the joints (n, axes) for rotations (n,).
+    scale : (n - 1, axes) array
+        Weight of the squared step of each axis.
+    phi : (n,) array
+        Rotations at the first start, rad.
+    joined : bool
+        Whether the last rotation keeps its distance to the first.
+    broken : Broken, optional
+        Returns the points (n,) at which rotations and their joints are not allowed.
+
+    Returns
+    -------
+    phi : (n,) array
+        The best rotations, rad.
+    value : float
+        Their sum; infinite if no allowed course exists.
     """
     best_phi, best_value = phi, np.inf
     for turned in TURN / STARTS * np.arange(STARTS):
@@ -147,8 +186,26 @@ def _newton(moved: Array, slope: Array, scale: Array, joined: bool, is_fixed: Ma
 
 
 def broken_by(task: Task, points: Points, threshold: Array, phi: Array, joints: Array) -> Mask:
-    """(n,) where limits, condition (threshold (n,)) or the range of the rotation are not kept by rotations phi (n,) and
-    their joints (n, axes), as the inverse gives these, at points one after the other."""
+    """Return at which points of a chain rotations break limits, condition or range.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with limits and the range of the rotation.
+    points : Points
+        The n points, one after the other.
+    threshold : (n,) array
+        Smallest condition allowed at each point.
+    phi : (n,) array
+        Rotations, rad.
+    joints : (n, axes) array
+        Their joints as the inverse gives them, NaN out of reach.
+
+    Returns
+    -------
+    (n,) bool array
+        True where something is broken. If a point is out of reach, only such points.
+    """
     unreachable = ~np.isfinite(joints).all(axis=1)
     if unreachable.any():
         return np.asarray(unreachable)

@@ -18,14 +18,33 @@ CELLS, PARTS = 36, 3  # in a turn at first, and of a cell when it is divided
 
 
 def whole_turn() -> tuple[Array, float]:
-    """The middles (CELLS,) of the cells of a whole turn and half the width of each, rad."""
+    """Divide a whole turn into CELLS equal cells.
+
+    Returns
+    -------
+    middles : (CELLS,) array
+        Middle of each cell, -pi to pi, rad.
+    half : float
+        Half the width of a cell, rad.
+    """
     half = np.pi / CELLS
     return -np.pi + half * (2.0 * np.arange(CELLS) + 1.0), half
 
 
 def divided(phi: Array, half: float) -> Array:
-    """Return the middles (PARTS n,) of the parts of the cells phi (n,) +- half, in sequence for
-    each cell.
+    """Divide each cell into PARTS equal parts.
+
+    Parameters
+    ----------
+    phi : (n,) array
+        Middles of the cells, rad.
+    half : float
+        Half the width of a cell, rad.
+
+    Returns
+    -------
+    (PARTS n,) array
+        Middles of the parts, in sequence for each cell, rad.
     """
     offsets = (2.0 * np.arange(PARTS) - (PARTS - 1)) * half / PARTS
     return np.asarray((phi[:, None] + offsets).ravel())
@@ -34,9 +53,29 @@ def divided(phi: Array, half: float) -> Array:
 def possible(
     task: Task, points: Points, index: Index, phi: Array, half: Array, threshold: Array
 ) -> Mask:
-    """(n,) whether a rotation in the cells phi +- half (n,), rad, at points `index` (n,) may keep limits and condition, of
-    which threshold (n,) is the smallest allowed, from their middle and ends. Joints are taken to bend at most twice as much
-    between these as their second differences say."""
+    """Return whether a rotation in each cell may keep limits and condition.
+
+    This follows from the middle and the ends of the cell. Joints are assumed to bend at most
+    twice as much in between as their second differences show.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with limits.
+    points : Points
+        The points.
+    index : (n,) int array
+        Point of each cell.
+    phi, half : (n,) array
+        Middle and half width of each cell, rad.
+    threshold : (n,) array
+        Smallest condition allowed.
+
+    Returns
+    -------
+    (n,) bool array
+        False where no rotation of the cell can serve.
+    """
     count = len(phi)
     begins = ~_goes_on(index, phi, half)  # the previous cell ends elsewhere than this one begins
     sampled = np.concatenate([phi[begins] - half[begins], phi, phi + half])
@@ -156,8 +195,14 @@ class Lattice:
 
     @cached_property
     def about(self) -> tuple[Array, Array]:
-        """Where cells about each rotation are whole, (m, N) each, in steps: from -0.5 to 0.5, further where the next
-        rotation has none beyond it."""
+        """Return the range about each rotation in which cells are whole.
+
+        Returns
+        -------
+        low, high : (m, N) array
+            In steps, from -0.5 to 0.5; up to 1 where the next rotation has no whole
+            cell beyond.
+        """
         right_closed, left_closed = self.closed_cells, np.roll(self.closed_cells, 1, axis=1)
         low = np.where(left_closed, np.where(np.roll(left_closed, 1, axis=1), -0.5, -1.0), 0.0)
         return low, np.where(
@@ -180,12 +225,29 @@ class Lattice:
 
     @cached_property
     def rate(self) -> Array:
-        """(m,) the root of the cost by eq. 17 from a rotation to the next one, the largest of each point."""
+        """Return the largest root of the cost from a rotation to the next one.
+
+        Returns
+        -------
+        (m,) array
+            Root of eq. 17 for one lattice step, the largest at each point.
+        """
         moved = self.joint_steps(self.joints, np.roll(self.joints, -1, axis=1))
         return np.asarray(np.nan_to_num(np.sqrt((moved * moved) @ self.weights)).max(axis=1))
 
     def joint_steps(self, start: Array, end: Array) -> Array:
-        """(..., axes) the short ways between joints."""
+        """Return the steps between joints, the short way round for turning axes.
+
+        Parameters
+        ----------
+        start, end : (..., axes) array
+            Joints, rad or mm.
+
+        Returns
+        -------
+        (..., axes) array
+            The steps, rad or mm.
+        """
         difference = end - start
         return np.where(self.turning, shortest(difference), difference)
 
@@ -217,7 +279,26 @@ class Lattice:
 
 
 def lattice(task: Task, points: Points, rows: Index, threshold: Array, count: int) -> Lattice:
-    """The lattice of points `rows` (m,) with `count` rotations; threshold (m,) is the smallest condition allowed there."""
+    """Build the lattice of selected points.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with limits.
+    points : Points
+        The points.
+    rows : (m,) int array
+        The selected points.
+    threshold : (m,) array
+        Smallest condition allowed there.
+    count : int
+        Number N of rotations, a multiple of COARSE.
+
+    Returns
+    -------
+    Lattice
+        The joints and the possible cells at these points.
+    """
     ends = _rotations(task, points, rows, count)
     joints = task.raw_joints(
         points.select_points(np.repeat(rows, count)), np.tile(ends[:-1], len(rows))

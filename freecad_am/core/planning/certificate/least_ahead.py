@@ -30,11 +30,23 @@ TORN = 1e-4  # share of a sum: above this uncertainty of the cost ahead, bound i
 
 
 def ahead(lattice: Lattice, end_values: Array, counts: Array, max_cost: float) -> Array:
-    """Return the least sums (N,) from every rotation at the first point, infinite where none is
-    possible.
+    """Return a lower bound of the cost from every rotation at the first point to the end.
 
-    end_values: (N,) sums from the last point. counts: (m - 1,) original steps in each lattice step.
-    Steps that cost more than `max_cost` are not checked individually.
+    Parameters
+    ----------
+    lattice : Lattice
+        Lattice of m points with N rotations.
+    end_values : (N,) array
+        Costs that follow the last point.
+    counts : (m - 1,) array
+        Number of original steps in each lattice step.
+    max_cost : float
+        Steps that cost more are not checked individually.
+
+    Returns
+    -------
+    (N,) array
+        The least costs; infinite where no rotation is possible.
     """
     value = np.where(lattice.passable[-1], end_values, np.inf)
     for j in range(len(lattice.joints) - 2, -1, -1):
@@ -51,10 +63,29 @@ def before(
     count: float,
     max_cost: float,
 ) -> Array:
-    """Return the least sums (N,) from every rotation at point i of a lattice.
+    """Return the least costs from every rotation at one point over the next point.
 
-    The next step ends at point j of another lattice, whose sums are `value` (N,), and stands for
-    `count` original steps.
+    Parameters
+    ----------
+    lattice : Lattice
+        The lattice with the first point.
+    i : int
+        Index of the first point.
+    next_lattice : Lattice
+        The lattice with the second point; it may be the same.
+    j : int
+        Index of the second point.
+    value : (N,) array
+        Least costs from the second point on.
+    count : float
+        Number of original steps that this step stands for.
+    max_cost : float
+        Steps that cost more than `count` times this are not checked individually.
+
+    Returns
+    -------
+    (N,) array
+        The least costs; infinite where no rotation is possible.
     """
     offsets = _neighbours(lattice, i, next_lattice, j, count * max_cost)
     columns: Index = (np.arange(lattice.count)[:, None] + offsets) % lattice.count

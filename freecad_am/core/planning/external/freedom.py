@@ -75,18 +75,43 @@ class Freedom:
 
     @cached_property
     def shape(self) -> Array:
-        """(T, c) what one number changes at each point."""
+        """Return the effect of one unit of each change at each point.
+
+        Returns
+        -------
+        (T, c) array
+            Values of the polynomials of the changes.
+        """
         return np.asarray(self.points.powers(len(self.start) - 1) @ self.changes)
 
     @cached_property
     def unit(self) -> Array:
-        """(k,) rad or mm of external axes per unit of a number: one rad is a characteristic length."""
+        """Return the unit of the changes of each external axis.
+
+        Returns
+        -------
+        (k,) array
+            rad or mm per unit; one rad corresponds to a characteristic length.
+        """
         robot_axes = self.task.cell.robot.chain.axes
         sliding = self.task.cell.machine.chain.sliding[robot_axes:]
         return np.where(sliding, self.task.parameters.characteristic_length, 1.0)
 
     def values(self, x: Array) -> tuple[Array, Array]:
-        """The coefficients (degree + 1,) of the rotation and the external axes (T, k) for changes x (v,)."""
+        """Return the rotation and the external axes for changes.
+
+        Parameters
+        ----------
+        x : (v,) array
+            The changes: c numbers for the rotation, then for each external axis.
+
+        Returns
+        -------
+        coefficients : (degree + 1,) array
+            Coefficients of the rotation, the constant first.
+        external : (T, k) array
+            Values of the external axes, rad or mm.
+        """
         rows = x.reshape(1 + self.external.axes, -1)
         assert self.points.external is not None
         return self.start + self.changes @ rows[0], self.points.external + self.shape @ rows[
@@ -210,16 +235,43 @@ class Freedom:
 
 
 def set_external_values(points: Points, cell: Cell, values: Array) -> Points:
-    """The same points with the external axes at other values (T, k)."""
+    """Return the points with other values of the external axes.
+
+    Parameters
+    ----------
+    points : Points
+        T points.
+    cell : Cell
+        The cell, for the pose frames.
+    values : (T, k) array
+        Values of the external axes, rad or mm.
+
+    Returns
+    -------
+    Points
+        The points, with new frames.
+    """
     return dataclasses.replace(
         points, external=values, frames=cell.pose_frames(points.position, points.tool, values)
     )
 
 
 def external_rates(cell: Cell, position: Array, joints: Array) -> list[Array]:
-    """Return d q / d e (T, axes) for each external axis, with the tool fixed on the part.
+    """Return the joint rates for each external axis, with the tool fixed on the part.
 
-    position: (T, 3) in the part. joints: (T, axes).
+    Parameters
+    ----------
+    cell : Cell
+        The cell with external axes.
+    position : (T, 3) array
+        Points in the part frame, mm.
+    joints : (T, axes) array
+        Joints of robot and external axes, rad or mm.
+
+    Returns
+    -------
+    list of (T, axes) array
+        d q / d e for each external axis.
     """
     robot_axes, count = cell.robot.chain.axes, cell.machine.chain.axes
     stands = cell.station @ frames.inverse(cell.mount)
@@ -238,7 +290,20 @@ def external_rates(cell: Cell, position: Array, joints: Array) -> list[Array]:
 
 
 def axes_in_world(external: ExternalAxes, values: Array) -> list[Array]:
-    """(T, 3) where each turning axis of the positioner points in the world, from the floor on, with values (T, k)."""
+    """Return the directions of the positioner's turning axes in the world.
+
+    Parameters
+    ----------
+    external : ExternalAxes
+        The external axes.
+    values : (T, k) array
+        Their values, rad or mm.
+
+    Returns
+    -------
+    list of (T, 3) array
+        Unit vectors of each turning axis, from the floor on.
+    """
     world_axes = []
     for number, axis in enumerate(external.turning):
         direction = np.tile(axis, (len(values), 1))
@@ -278,8 +343,23 @@ class Seen:
 
 
 def least_objective(freedom: Freedom, start: Array, margin: float) -> tuple[Array, int]:
-    """Return the changes (v,) with the least objective among all with this margin, and the
-    iterations.
+    """Minimise the objective of a bead for a given margin.
+
+    Parameters
+    ----------
+    freedom : Freedom
+        The free coordinates of the bead.
+    start : (v,) array
+        The changes at the start.
+    margin : float
+        Smallest margin allowed for limits and condition.
+
+    Returns
+    -------
+    x : (v,) array
+        The changes with the least objective.
+    iterations : int
+        Iterations of SLSQP.
     """
     cache = Seen(freedom)
     initial = cache.bound_at(start)
@@ -304,9 +384,25 @@ def least_objective(freedom: Freedom, start: Array, margin: float) -> tuple[Arra
 def largest_margin(
     freedom: Freedom, start: Array, objective: float, enough: float
 ) -> tuple[Array, int]:
-    """Return the changes (v,) with the largest margin up to `enough`, and the iterations.
+    """Maximise the margin of a bead for a given objective.
 
-    Their objective is at most `objective`.
+    Parameters
+    ----------
+    freedom : Freedom
+        The free coordinates of the bead.
+    start : (v,) array
+        The changes at the start.
+    objective : float
+        Largest objective allowed.
+    enough : float
+        Margin at which the search stops.
+
+    Returns
+    -------
+    x : (v,) array
+        The changes; the start if it is out of reach or has enough margin.
+    iterations : int
+        Iterations of SLSQP.
     """
     cache, v = Seen(freedom), len(start)
     initial = cache.bound_at(start)

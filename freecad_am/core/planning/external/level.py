@@ -49,10 +49,28 @@ def ways(cell: Cell, toolpath: Toolpath) -> Iterator[Levelled]:
 
 
 def levelled(cell: Cell, toolpath: Toolpath, whole_turns: bool = False) -> Levelled:
-    """The beads of a toolpath with the values of the external axes at their points, the layer and index of each, and where
-    the tool axis is farther from the vertical than `max_from_vertical` allows. Where an axis has no room for a bead it
-    begins elsewhere, or comes in pieces of one place, which a note or a warning says; with `whole_turns` where that is one
-    that has a whole turn too."""
+    """Return the beads with values of the external axes that keep the tool upright.
+
+    Where an axis has no room for a bead, the bead begins elsewhere or is divided.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell with external axes.
+    toolpath : Toolpath
+        The toolpath in part coordinates.
+    whole_turns : bool, optional
+        Whether axes with a whole turn also get another seam or cuts.
+
+    Returns
+    -------
+    beads : list of Bead
+        The beads with the external axes at their points.
+    bead_ids : list of (int, int)
+        Layer and index of each bead.
+    issues : list of Issue
+        Tool axes beyond `max_from_vertical`, moved seams and divided beads.
+    """
     external = cell.external
     assert external is not None
     allowed = allowed_by_layer(toolpath.parts)

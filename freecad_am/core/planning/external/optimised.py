@@ -54,9 +54,23 @@ def optimised(
 ) -> list[BeadPath]:
     """Replace paths by better ones: less objective and at least the same margin.
 
-    directions: returns the tool axes (n, 3) in the frame of the face that carries the part.
-    allowed: rad from the vertical, by layer. report: receives the share of finished beads and may
-    raise to cancel.
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    paths : sequence of BeadPath
+        The paths; given polynomials and beads of two points stay unchanged.
+    directions : callable
+        Returns the tool axes (n, 3) in the frame of the face that carries the part.
+    allowed : mapping of int to float
+        Largest angle to the vertical by layer, rad.
+    report : callable, optional
+        Receives the share of finished beads; may raise to cancel.
+
+    Returns
+    -------
+    list of BeadPath
+        The paths, in the same order.
     """
     usable = [
         k
@@ -299,9 +313,26 @@ METHOD = "layer-by-layer"
 
 
 def asked(parameters: JointParameters, cell: Cell) -> tuple[bool, list[Issue]]:
-    """Return whether to optimise external axes, with a note if there are none to optimise.
+    """Return whether to optimise external axes.
 
-    Raises InputError NOT_FOR_SETUP for methods without polynomials per bead.
+    Parameters
+    ----------
+    parameters : JointParameters
+        The parameters of the joint plan.
+    cell : Cell
+        The cell.
+
+    Returns
+    -------
+    wanted : bool
+        Whether the job asks for it and the cell has external axes.
+    issues : list of Issue
+        A note if there are no external axes to optimise.
+
+    Raises
+    ------
+    InputError
+        NOT_FOR_SETUP for methods without polynomials per bead.
     """
     if parameters.external_axes == LEVEL_METHOD:
         return False, []
@@ -337,11 +368,27 @@ def choose_better(
     finish: Callable[[list[BeadPath]], Found],
     report: Callable[[float], None],
 ) -> tuple[Found, dict[str, object]]:
-    """Return the better of `level` and the plan with all external axes optimised, and the figures
-    of `level`.
+    """Return the better of the level plan and the plan with all external axes optimised.
 
-    level: the finished paths and issues. planned: its beads before `finish` adds points and unwraps
-    turns.
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    level : Found
+        The finished paths and issues of the level plan.
+    planned : sequence of BeadPath
+        Its beads before `finish` adds points and unwraps turns.
+    finish : callable
+        Returns the finished paths and issues of some paths.
+    report : callable
+        Receives the finished share; may raise to cancel.
+
+    Returns
+    -------
+    result : Found
+        Paths and issues of the better plan.
+    figures : dict
+        Figures of the level plan, for comparison.
     """
     # few jobs have external axes
 

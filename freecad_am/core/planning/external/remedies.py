@@ -71,9 +71,27 @@ def added(
 ) -> Cells:
     """Yield cells with a positioner or a track added.
 
-    A positioner, for a load of `mass` kg, helps a part whose tool axes may not lean; a track helps
-    a long part. Mechanisms of the robot's manufacturer are preferred. Yields none if the cell has
-    external axes or the robot holds the part.
+    A positioner helps a part whose tool axes may not lean; a track helps a long part.
+    Mechanisms of the robot's manufacturer are preferred.
+
+    Parameters
+    ----------
+    settings : CellParameters
+        The cell of the infeasible job.
+    folders : sequence of str
+        Folders with user machines.
+    toolpath : Toolpath
+        The toolpath in part coordinates.
+    codes : set[str]
+        Codes of the errors; NOT_LEVEL asks for a positioner.
+    mass : float, optional
+        Load of the positioner, kg.
+
+    Yields
+    ------
+    (Text, CellParameters)
+        The change as a remedy, and the cell. No cells if there are external axes already or
+        the robot holds the part.
     """
     robot = machines.load(settings.machine, tuple(folders))
     if settings.external or arrangement_of(settings.setup).carries_part or robot.arm is None:

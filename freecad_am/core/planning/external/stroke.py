@@ -29,15 +29,40 @@ STEPS = 200  # of the search for the middle of directions
 
 
 def directions_on_face(cell: Cell, tool: Array) -> Array:
-    """Tool axes (n, 3) of the part as seen from the face that carries it."""
+    """Return tool axes in the frame of the face that carries the part.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+    tool : (n, 3) array
+        Tool axes in the part frame.
+
+    Returns
+    -------
+    (n, 3) array
+        The same directions in the frame of the face.
+    """
     turned = cell.station[:3, :3] @ cell.mount[:3, :3].T
     return np.asarray(tool @ turned.T)
 
 
 def middle(directions: Array) -> Array | None:
-    """Return the direction (3,) with the least maximum angle to the directions (n, 3).
+    """Return the direction with the least maximum angle to all directions.
 
-    None where they point all ways.
+    Parameters
+    ----------
+    directions : (n, 3) array
+        Unit vectors.
+
+    Returns
+    -------
+    (3,) array or None
+        Unit vector; None if the mean of the directions vanishes.
+
+    References
+    ----------
+    Badoiu and Clarkson 2003: step towards the farthest direction, by less each time.
     """
     mean = directions.mean(axis=0)
     if np.linalg.norm(mean) < 1e-6:
@@ -54,7 +79,20 @@ def middle(directions: Array) -> Array | None:
 
 
 def upright(external: ExternalAxes, directions: Array) -> list[Array]:
-    """All ways (n, k) to turn the directions (n, 3) of the face upright, up to whole turns."""
+    """Return all ways to turn directions upright, up to whole turns.
+
+    Parameters
+    ----------
+    external : ExternalAxes
+        The external axes, one or two of which turn the part.
+    directions : (n, 3) array
+        Unit vectors in the frame of the face.
+
+    Returns
+    -------
+    list of (n, k) array
+        Angles of the turning axes, rad, continuous along the rows.
+    """
     source = directions @ external.at_zero.T
     if len(external.turning) == 1:
         return [
@@ -73,9 +111,24 @@ def upright(external: ExternalAxes, directions: Array) -> list[Array]:
 
 
 def chosen(cell: Cell, courses: Sequence[Array], previous: Array) -> Array:
-    """Choose the course with least motion within the limits among all courses and whole turns.
+    """Choose the course with the least motion within the limits.
 
-    A tie goes to the one that starts nearest to the previous values (k,).
+    All courses and whole turns are candidates. A tie goes to the one that starts nearest to the
+    previous values.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell with external axes.
+    courses : sequence of (n, t) array
+        Values of the t turning axes, rad.
+    previous : (k,) array
+        Values of all external axes before.
+
+    Returns
+    -------
+    (n, k) array
+        Values of all external axes; the others keep their previous values.
     """
     rows, lower, upper = limits_of(cell)
     speed, all_axes = (
@@ -91,8 +144,19 @@ def chosen(cell: Cell, courses: Sequence[Array], previous: Array) -> Array:
 
 
 def limits_of(cell: Cell) -> tuple[Index, Array, Array]:
-    """Return the indices of the external axes that turn the part, and their limits (k,) less the
-    reserve.
+    """Return the external axes that turn the part and their limits.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell with external axes.
+
+    Returns
+    -------
+    rows : (t,) int array
+        Indices among the external axes.
+    lower, upper : (t,) array
+        Limits less the reserve, rad.
     """
     assert cell.external is not None
     rows = cell.external.turned
@@ -107,7 +171,22 @@ WAITS = RESERVE
 
 
 def lacks(cell: Cell, values: Array, whole_turns: bool = False) -> bool:
-    """Whether an axis is out of its limits at some of the values (n, k): one that has less than a whole turn, or any."""
+    """Return whether an axis leaves its limits at some of the values.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell with external axes.
+    values : (n, k) array
+        Values of the external axes, rad or mm.
+    whole_turns : bool, optional
+        Whether axes with a whole turn are also checked.
+
+    Returns
+    -------
+    bool
+        True if such an axis leaves its limits.
+    """
     rows, lower, upper = limits_of(cell)
     over = np.maximum(lower - values[:, rows], values[:, rows] - upper)
     return bool((over[:, whole_turns | (upper - lower < TURN)] > ROUNDING).any())
@@ -116,9 +195,29 @@ def lacks(cell: Cell, values: Array, whole_turns: bool = False) -> bool:
 def find_room(
     cell: Cell, bead: Bead, max_lean: float, previous: Array, overlap: float
 ) -> list[Bead]:
-    """The bead with values of the external axes that have room, from another seam or in the fewest pieces; empty where
-    neither helps. max_lean: rad from the vertical; previous: values (k,) where the axes are; overlap: mm that a closed bead runs
-    on. It gets points where seams, or ends of pieces, have room between its own."""
+    """Return a bead, or its pieces, with room for the external axes.
+
+    Another seam is tried first, then the fewest pieces. Points are added where seams or ends of
+    pieces have room between the points of the bead.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell with external axes.
+    bead : Bead
+        The bead.
+    max_lean : float
+        Largest angle to the vertical, rad.
+    previous : (k,) array
+        Values of the external axes before the bead.
+    overlap : float
+        Length that a closed bead runs past its seam, mm.
+
+    Returns
+    -------
+    list of Bead
+        The bead or its pieces with values of the external axes; empty if nothing helps.
+    """
     moved = _begun_elsewhere(cell, bead, max_lean, previous, overlap) if bead.closed else None
     if moved is not None:
         return [moved]
@@ -187,8 +286,23 @@ def _share(bead: Bead, last_point: int, section: Bead) -> float:
 
 
 def runs_on(cell: Cell, bead: Bead, max_lean: float, overlap: float) -> bool:
-    """Return whether a closed bead with external axes keeps the tilt limit over its seam overlap,
-    mm.
+    """Return whether a closed bead keeps the tilt limit over its seam overlap.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell with external axes.
+    bead : Bead
+        The bead with values of the external axes; open beads have no overlap.
+    max_lean : float
+        Largest angle to the vertical, rad.
+    overlap : float
+        Length of the overlap, mm.
+
+    Returns
+    -------
+    bool
+        True also without an overlap.
     """
     external = cell.external
     if overlap <= 0.0 or not bead.closed:
@@ -204,10 +318,24 @@ def runs_on(cell: Cell, bead: Bead, max_lean: float, overlap: float) -> bool:
 
 
 def waiting(cell: Cell, values: Array, beginning: Array) -> Array:
-    """Return the external values (m, k) of the seam overlap of a bead.
+    """Return the external values for the seam overlap of a bead.
 
-    They equal its beginning (m, k). If that leaves the limits of an axis, apart from whole turns,
-    the axes wait at the values of its end. values: (n, k) of the bead.
+    They equal its beginning. If that leaves the limits of an axis, apart from whole turns, the
+    axes wait at the values of its end.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell with external axes.
+    values : (n, k) array
+        External values of the bead.
+    beginning : (m, k) array
+        External values of the points that the overlap repeats.
+
+    Returns
+    -------
+    (m, k) array
+        `beginning` itself, or the repeated last row of `values`.
     """
     rows, lower, upper = limits_of(cell)
     turned = beginning[:, rows] + TURN * np.round((values[-1, rows] - values[0, rows]) / TURN)

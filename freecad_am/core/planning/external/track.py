@@ -31,11 +31,24 @@ MAX_TRIALS = 3  # that are worth planning
 def place_track(
     beads: Sequence[Bead], cell: Cell, served: Callable[[Sequence[Bead]], float]
 ) -> Iterator[list[Bead]]:
-    """Yield the beads with track values at their points, at most MAX_TRIALS times, in the order of
-    motion.
+    """Yield the beads with track values at their points, in the order of motion.
 
-    Without a track, yields the unchanged beads. served: returns the share of the sampled beads that
-    the robot can print.
+    At most MAX_TRIALS placements that serve all sampled beads are yielded; if none does, the
+    best one. Without a track, the unchanged beads.
+
+    Parameters
+    ----------
+    beads : sequence of Bead
+        The beads in print order.
+    cell : Cell
+        The cell, perhaps with a track.
+    served : callable
+        Returns the share of the sampled beads that the robot can print.
+
+    Yields
+    ------
+    list of Bead
+        The beads with values of the track.
     """
     external = cell.external
     if external is None or external.slides is None:

@@ -68,11 +68,33 @@ class _Run(NamedTuple):
 def plan(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[Place], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """Return the paths of all beads and their issues.
+    """Plan the paths of a machine without a free coordinate.
 
     Points are added where straight motion of the axes would leave the bead. If a limited rotary
     axis lacks the stroke for a bead, its seam is moved or it is split; then the beads are
     renumbered.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with a five-axis machine.
+    beads : sequence of Bead
+        The beads in print order.
+    bead_ids : sequence of Place
+        Layer and index of each bead.
+    progress : callable
+        Receives share and text; may raise to cancel.
+
+    Returns
+    -------
+    paths : list of BeadPath
+        The paths; NaN joints where unreachable.
+    issues : list of Issue
+        Segments that are not straight, moved seams and split beads.
+
+    References
+    ----------
+    Dai 2020, section 3.
     """
     paths: list[BeadPath] = []
     issues: list[Issue] = []

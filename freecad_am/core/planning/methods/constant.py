@@ -32,8 +32,25 @@ Clear = Callable[[float], bool]  # whether no link comes too near with an RZ, ra
 def plan(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int, int]], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """Return the paths of all beads with the job's RZ, or with the RZ of the largest worst-case
-    margin if 'auto'.
+    """Plan the paths with one RZ for the whole job.
+
+    Parameters
+    ----------
+    task : Task
+        The plan; `joints.rz` is the angle or 'auto' for the largest worst-case margin.
+    beads : sequence of Bead
+        The beads in print order.
+    bead_ids : Sequence[tuple[int, int]]
+        Layer and index of each bead.
+    progress : callable
+        Receives share and text; may raise to cancel.
+
+    Returns
+    -------
+    paths : list of BeadPath
+        The paths.
+    issues : list of Issue
+        Notes if no RZ is feasible or clears the links.
     """
     requested = task.parameters.rz
     full = gather(beads, task.cell)
@@ -78,11 +95,27 @@ def plan(
 def best_rz(
     task: Task, points: Points, thresholds: Array, clear: Clear | None = None
 ) -> tuple[float, float, bool]:
-    """Return the RZ (rad) with the largest worst-case margin over all points, this margin, and a
-    flag.
+    """Return the RZ with the largest worst-case margin over all points.
 
-    A negative margin means that no RZ is feasible. RZ values with clear links are preferred; the
-    flag is false if none has clear links.
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    points : Points
+        T points.
+    thresholds : (T,) array
+        Smallest condition allowed.
+    clear : Clear or None, optional
+        Returns whether the links are clear with an RZ; None without the check.
+
+    Returns
+    -------
+    rz : float
+        The angle, rad; one with clear links if possible.
+    margin : float
+        Its margin; negative if no RZ is feasible.
+    is_clear : bool
+        False if no feasible RZ has clear links.
     """
     rough = np.linspace(-np.pi, np.pi, RZ_CANDIDATES, endpoint=False)
     rough_margins = margins(task, points, thresholds, rough)
@@ -131,7 +164,24 @@ def _keeps_clear(task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int
 
 
 def margins(task: Task, points: Points, thresholds: Array, values: Array) -> Array:
-    """(C,) the smallest margin over all points for each constant RZ of values (C,)."""
+    """Return the smallest margin over all points for constant values of RZ.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with limits.
+    points : Points
+        T points.
+    thresholds : (T,) array
+        Smallest condition allowed.
+    values : (C,) array
+        Values of RZ, rad.
+
+    Returns
+    -------
+    (C,) array
+        Margin to limits and condition; -inf if a point is out of reach.
+    """
     result = np.empty(len(values))
     for index, rz in enumerate(values):
         phi, _ = task.cell.phi_of_rz(points.tool, np.full(len(points), rz))
@@ -177,8 +227,31 @@ def bead_paths(
     joints: Array,
     reason: str,
 ) -> list[BeadPath]:
-    """Return paths without a polynomial, from the rotation phi (T,) and joints (T, axes) of all
-    points.
+    """Return paths without polynomials from the rotation and joints at all points.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    beads : sequence of Bead
+        The B beads.
+    bead_ids : Sequence[tuple[int, int]]
+        Layer and index of each bead.
+    points : Points
+        All T points of the beads.
+    threshold : (T,) array
+        Smallest condition allowed.
+    phi : (T,) array
+        Rotation about the tool axis, rad.
+    joints : (T, axes) array
+        Joints, rad or mm, NaN out of reach.
+    reason : str
+        Text that the report shows for how the rotation was found.
+
+    Returns
+    -------
+    list of BeadPath
+        The paths, renumbered within each layer.
     """
     condition = task.condition(points, phi, joints)
     margin = points.worst(

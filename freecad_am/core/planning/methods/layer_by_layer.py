@@ -34,9 +34,31 @@ NOT_MUCH_WORSE = 2.0
 def plan(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[Place], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """Return the paths of all beads and notes on moved seams and split beads.
+    """Plan the paths with one polynomial of the rotation per bead.
 
     Beads with a given polynomial use it and are checked like the others.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    beads : sequence of Bead
+        The beads in print order.
+    bead_ids : sequence of Place
+        Layer and index of each bead.
+    progress : callable
+        Receives share and text; may raise to cancel.
+
+    Returns
+    -------
+    paths : list of BeadPath
+        The paths; moved seams and split beads change their number.
+    issues : list of Issue
+        Notes on moved seams and split beads.
+
+    References
+    ----------
+    Chalvin 2020, section 4.3.
     """
     fixed = given.coefficients(task.parameters, bead_ids)
     free = [k for k in range(len(beads)) if k not in fixed]

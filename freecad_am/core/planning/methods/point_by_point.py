@@ -31,7 +31,30 @@ STEPS = 2
 def plan(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int, int]], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """Return the paths of all beads, each point optimised from the point before."""
+    """Plan the paths point by point, each with the least motion from the point before.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    beads : sequence of Bead
+        The beads in print order.
+    bead_ids : Sequence[tuple[int, int]]
+        Layer and index of each bead.
+    progress : callable
+        Receives share and text; may raise to cancel.
+
+    Returns
+    -------
+    paths : list of BeadPath
+        The paths.
+    issues : list of Issue
+        Always empty.
+
+    References
+    ----------
+    Chalvin 2020, section 5.2.
+    """
     points = gather(beads, task.cell)
     threshold = task.thresholds(points)
     counts = np.diff(np.append(points.first, len(points)))

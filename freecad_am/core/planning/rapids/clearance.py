@@ -223,8 +223,19 @@ def _evenly(cell: Cell, moves: Moves, count: Index) -> Looks:
 
 
 def evenly(count: Index) -> tuple[Index, Array]:
-    """Return the move (l,) and the share of it for evenly spaced positions: on each move one more than the
-    count (k,), both ends included.
+    """Spread positions evenly along moves.
+
+    Parameters
+    ----------
+    count : (k,) int array
+        Number of intervals on each move.
+
+    Returns
+    -------
+    move : (n,) int array
+        Move of each position.
+    share : (n,) array
+        Share of the move, both ends included.
     """
     move = np.repeat(np.arange(len(count)), count + 1)
     step = np.arange(len(move)) - np.repeat(np.cumsum(count + 1) - count - 1, count + 1)

@@ -62,7 +62,20 @@ DEFAULT_CHOICE = Choice()
 
 
 def groups(direction: int, thorough: bool) -> tuple[tuple[Choice, ...], ...]:
-    """Return the retracts in their order of preference; the retracts of a group are checked together."""
+    """Return the retracts to try in their order of preference.
+
+    Parameters
+    ----------
+    direction : int
+        Index of the requested direction.
+    thorough : bool
+        Whether other heights and directions are allowed, not only rotations and tilts.
+
+    Returns
+    -------
+    tuple[tuple[Choice, ...], ...]
+        Groups of retracts that are checked together.
+    """
     if not thorough:
         return (
             (Choice(1.0, direction),),
@@ -196,11 +209,16 @@ class Retracts:
 
     @cached_property
     def directions(self) -> Array:
-        """(10, n, 3) possible directions of retracts.
+        """Return the possible directions of retracts.
 
-        These are tool axis, build direction, platform normal, halfway between two of the former,
-        and from the tool axis to four sides; NaN for a direction that leads back to the bead or
-        repeats an earlier one.
+        These are tool axis, build direction, platform normal, halfway between two of the
+        former, and from the tool axis to four sides.
+
+        Returns
+        -------
+        (10, n, 3) array
+            Unit vectors in the part frame; NaN for a direction that leads back to the
+            bead or repeats an earlier one.
         """
         tool, build = self.ends.tool, self.ends.build
         normal = np.broadcast_to(self.cell.mount[:3, 2], tool.shape)
@@ -236,7 +254,13 @@ class Retracts:
 
     @cached_property
     def leaning(self) -> Array:
-        """(1 + leans, n, 3) vectors added to the tool axes at the far end."""
+        """Return the tilts of the tool axis at the far end of a retract.
+
+        Returns
+        -------
+        (1 + leans, n, 3) array
+            Vectors to add to the tool axes; the first is zero.
+        """
         sides = [self._sides(2.0 * np.pi * k / SIDES) for k in range(SIDES)]
         return np.stack(
             [0.0 * sides[0], *(math.tan(angle) * side for angle in LEANS_RAD[1:] for side in sides)]
@@ -268,11 +292,30 @@ class Retracts:
         tolerance: float = STRAY_MM,
         thorough: bool = True,
     ) -> tuple[list[Leg | None], list[Failure | None]]:
-        """Return the legs off the ends `end_numbers` (k,) by the heights (k,) mm along a direction.
+        """Return the legs off ends of beads along a direction.
 
-        A leg that is not possible is replaced by the nearest alternative; without any, it is None
-        and the failure of the requested leg is returned. Not `thorough`: the only alternatives are
-        other rotations.
+        A leg that is not possible is replaced by the nearest alternative.
+
+        Parameters
+        ----------
+        end_numbers : (k,) int array
+            The ends.
+        height : (k,) array
+            Requested heights, mm.
+        direction : int, optional
+            Index among `directions`.
+        tolerance : float, optional
+            Largest deviation of the tip from the straight line, mm.
+        thorough : bool, optional
+            Whether all alternatives are tried; otherwise only other rotations and
+            tilts.
+
+        Returns
+        -------
+        legs : list of Leg or None
+            None if no alternative is possible.
+        failures : list of Failure or None
+            Reason why the requested leg is impossible; None if it is possible.
         """
         legs: list[Leg | None] = [None] * len(end_numbers)
         failures: list[Failure | None] = [None] * len(end_numbers)
@@ -454,7 +497,19 @@ class Retracts:
         return fits
 
     def condition(self, joints: Array) -> Array:
-        """(n,) the robot's condition at joints (n, axes), as of deposit rows; infinite where nothing is free to lose."""
+        """Return the condition of the robot.
+
+        Parameters
+        ----------
+        joints : (n, axes) array
+            Joints, rad or mm.
+
+        Returns
+        -------
+        (n,) array
+            sigma_min / sigma_max as of deposit rows; infinite for a machine without a
+            free coordinate.
+        """
         if not self.cell.machine.free:
             return np.full(len(joints), np.inf)
         chain = self.cell.robot.chain
@@ -475,6 +530,18 @@ class Retracts:
         return np.where(sliding, RESERVE, 0.0)
 
     def reserve_of_limits(self, reserve: float) -> Array:
+        """Return the reserve to keep from each limit.
+
+        Parameters
+        ----------
+        reserve : float
+            Requested reserve, rad or mm.
+
+        Returns
+        -------
+        (axes + m,) array
+            The reserve of each limit row, at least the smallest one.
+        """
         return np.maximum(self._least, reserve)
 
     def _explain_failures(

@@ -48,8 +48,25 @@ class Attempt:
 def attempts(
     cell: Cell, retract: float, beads: Sequence[Bead], bodies: Sequence[Body]
 ) -> list[Attempt]:
-    """Return the retracts to try after the requested one, up to where the nozzle is beyond the sphere
-    about all obstacles.
+    """Return the retracts to try after the requested one.
+
+    Heights grow up to where the nozzle is beyond the sphere about all obstacles.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell, with the platform.
+    retract : float
+        Requested height, mm; 0 for none.
+    beads : sequence of Bead
+        The beads, part coordinates.
+    bodies : sequence of Body
+        Obstacles in part coordinates.
+
+    Returns
+    -------
+    list of Attempt
+        Attempts in order of preference.
     """
     radius = 0.5 * cell.platform_diameter
     x, y, origin = cell.mount[:3, 0], cell.mount[:3, 1], cell.mount[:3, 3]
@@ -94,7 +111,18 @@ class Ranges:
     speed: Array
 
     def lasts(self, start: Array, end: Array) -> Array:
-        """(...) s that moves from (..., axes) to (..., axes) take, by the axis that takes longest."""
+        """Return the time that moves take, by the slowest axis.
+
+        Parameters
+        ----------
+        start, end : (..., axes) array
+            Joints, rad or mm.
+
+        Returns
+        -------
+        (...) array
+            Times, s.
+        """
         seconds: Array = (np.abs(end - start) / self.speed).max(axis=-1)
         return seconds
 
@@ -127,7 +155,24 @@ class _Tree:
 
 
 def way_round(start: Array, end: Array, ranges: Ranges, free: Free, fits: Fits) -> Array | None:
-    """Return the positions (m, axes) of a clear path between two others; None if none is found."""
+    """Find a clear path between two positions in the joints.
+
+    Parameters
+    ----------
+    start, end : (axes,) array
+        The positions, rad or mm.
+    ranges : Ranges
+        The search space and the axis speeds.
+    free : Free
+        Returns whether moves between rows of joints are clear.
+    fits : Fits
+        Returns whether positions keep limits and condition.
+
+    Returns
+    -------
+    (m, axes) array or None
+        The positions in between; None if the search fails.
+    """
     route = _connect(start, end, ranges, free, fits)
     if route is None:
         return None
@@ -276,9 +321,29 @@ class LedRound:
         attempts: Sequence[Attempt],
         deposited: int,
     ) -> tuple[Legs, Array] | None:
-        """Return legs off the ends of beads, with the joints (axes,) at the ends by their number, and the via
-        points (m, axes) of a path between them, with `deposited` points printed; None without one. legs:
-        the legs tried before.
+        """Find legs and a path between them that avoid all obstacles.
+
+        Parameters
+        ----------
+        ends : mapping of int to Array
+            Joints (axes,) at the ends of the beads, by number of the end.
+        legs : Mapping[int, Leg or None]
+            Legs tried before, by number of the end; None without one.
+        attempts : sequence of Attempt
+            Retracts to try.
+        deposited : int
+            Number of printed points.
+
+        Returns
+        -------
+        legs : dict
+            Leg or None by number of the end.
+        via_points : (m, axes) array
+            Positions between the legs.
+
+        Notes
+        -----
+        None is returned in place of both if the search fails, or failed too often before.
         """
         if not ends or self._lost >= MAX_FAILED_DETOURS:
             return None

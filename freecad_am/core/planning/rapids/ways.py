@@ -302,8 +302,18 @@ class RapidWays:
 
 
 def findings(rapids: RapidWays) -> tuple[Issue, ...]:
-    """Return an error for each bead that cannot be reached or left, and notes about rapids that replace
-    the requested ones.
+    """Return the issues of the rapids.
+
+    Parameters
+    ----------
+    rapids : RapidWays
+        The rapids of a joint path.
+
+    Returns
+    -------
+    tuple of Issue
+        An error for each bead that cannot be reached or left, and notes about rapids that
+        replace the requested ones.
     """
     met: list[Issue] = []
     for k in rapids.met:

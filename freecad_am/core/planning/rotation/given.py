@@ -24,7 +24,21 @@ METHOD, GIVEN = "layer-by-layer", "given"
 def coefficients(
     parameters: JointParameters, bead_ids: Sequence[Place]
 ) -> dict[int, tuple[float, ...]]:
-    """The coefficients given, by number of the bead among the places (layer, index)."""
+    """Return the coefficients given by the user.
+
+    Parameters
+    ----------
+    parameters : JointParameters
+        The joint parameters with `given`.
+    bead_ids : sequence of Place
+        Layer and index of each bead.
+
+    Returns
+    -------
+    dict[int, tuple[float, ...]]
+        Coefficients, the constant first, by number of the bead; beads without any are
+        missing.
+    """
     polynomials = {polynomial.bead: polynomial.coefficients for polynomial in parameters.given}
     default = polynomials.get(None)
     by_number = {k: polynomials.get(bead_id, default) for k, bead_id in enumerate(bead_ids)}
@@ -37,7 +51,24 @@ def paths(
     bead_ids: Sequence[Place],
     fixed: Mapping[int, tuple[float, ...]],
 ) -> dict[int, BeadPath]:
-    """The paths that the given coefficients make, by number of the bead."""
+    """Return the paths that given coefficients make.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    beads : sequence of Bead
+        All beads.
+    bead_ids : sequence of Place
+        Layer and index of each bead.
+    fixed : Mapping[int, tuple[float, ...]]
+        Coefficients by number of the bead.
+
+    Returns
+    -------
+    dict[int, BeadPath]
+        Path by number of the bead.
+    """
     if not fixed:
         return {}
     numbers = sorted(fixed)

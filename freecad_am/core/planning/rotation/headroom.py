@@ -42,8 +42,21 @@ class Judgement:
 
 
 def judge_paths(paths: Sequence[BeadPath], limits: Limits, max_speed: Array) -> Judgement:
-    """Return the margins of planned beads to limits, condition and joint speeds (axes,), rad/s or mm/s;
-    rapids do not count.
+    """Return the margins of planned beads to limits, condition and joint speeds.
+
+    Parameters
+    ----------
+    paths : sequence of BeadPath
+        The paths, without rapids.
+    limits : Limits
+        The limits.
+    max_speed : (axes,) array
+        Maximum speed of each axis, rad/s or mm/s.
+
+    Returns
+    -------
+    Judgement
+        The margins at all points and the worst places.
     """
     joints = np.concatenate([path.joints for path in paths])
     layer = np.repeat([path.layer for path in paths], [len(path.joints) for path in paths])

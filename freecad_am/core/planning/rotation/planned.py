@@ -23,8 +23,25 @@ def rotation_along(
     bead_ids: Sequence[tuple[int, int]],
     parameters: Mapping[int, Array],
 ) -> dict[int, Array]:
-    """The rotation phi (rad, counted on) at parameters of beads, by their numbers among the beads of a toolpath with their
-    places (layer, index): interpolated between the points of the path, 0 where the path has nothing of a bead."""
+    """Return the rotation that a joint path has along beads of its toolpath.
+
+    Parameters
+    ----------
+    paths : sequence of BeadPath
+        The paths, perhaps from other seams or in pieces.
+    beads : sequence of Bead
+        The beads of the toolpath.
+    bead_ids : Sequence[tuple[int, int]]
+        Layer and index of each bead.
+    parameters : mapping of int to Array
+        Bead parameters (n,) by number of the bead.
+
+    Returns
+    -------
+    dict of int to (n,) array
+        Rotation phi, rad, interpolated between the points of the path; 0 where the path has
+        no part of a bead.
+    """
     paths_by_layer: dict[int, list[BeadPath]] = {}
     for path in paths:
         paths_by_layer.setdefault(path.layer, []).append(path)

@@ -37,7 +37,25 @@ MOST_ROWS = 600
 
 
 def approached(constraints: Constraints, start: Array) -> Array:
-    """x (k,) at which the worst constraint is as good as steps from the start (k,) make it, or good enough."""
+    """Improve the worst constraint by steps of linear programs.
+
+    Parameters
+    ----------
+    constraints : Constraints
+        Returns values (r,) and derivatives (r, k) at x (k,); None out of reach.
+    start : (k,) array
+        Variables at the start.
+
+    Returns
+    -------
+    (k,) array
+        Variables at which the worst constraint is satisfied with SUFFICIENT_SLACK, or does
+        not improve further.
+
+    Notes
+    -----
+    A trust region bounds each step; its size follows the ratio of actual to predicted gain.
+    """
     from scipy.optimize import (
         linprog,  # slow to import, and most jobs on parts of revolution never need it
     )
@@ -107,10 +125,33 @@ def refine(
     selected: Mask | None = None,
     report: Callable[[float], None] = lambda share: None,
 ) -> Refined:
-    """Improve the coefficients of every bead, or of the wanted (B,); points are all points of the beads.
+    """Improve the coefficients of every bead, or of selected ones.
 
-    starts: (S, B, degree + 1), the first the one to be preferred; NaN where a bead has no further one. Closed beads that
-    join up stay joined. report: called before each bead with the share that is done; it may raise to cancel.
+    Closed beads that join up stay joined.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with the objective.
+    points : Points
+        All T points of the B beads.
+    thresholds : (T,) array
+        Smallest condition allowed.
+    starts : (S, B, degree + 1) array
+        Starts, the preferred one first; NaN where a bead has no further start.
+    selected : (B,) bool array or None, optional
+        Beads to improve; None for all.
+    report : callable, optional
+        Receives the finished share before each bead; may raise to cancel.
+
+    Returns
+    -------
+    Refined
+        The best result of each bead.
+
+    References
+    ----------
+    Chalvin 2020, eqs. 16 to 19.
     """
     initial = state_of(task, points, thresholds, starts[0], slopes=False)
     tolerance = task.parameters.tolerance
@@ -171,10 +212,31 @@ def refine_along(
     directions: Array,
     extra_constraints: Linear,
 ) -> tuple[Array, str, int]:
-    """Return better coefficients (degree + 1,) of one bead that keep `extra_constraints`.
+    """Improve the coefficients of one bead under extra constraints.
 
-    Also returns why the optimiser stopped and its iterations. directions: (degree + 1, degree + 1)
-    allowed changes, from `refine_state.changes`. thresholds: (T,).
+    Parameters
+    ----------
+    task : Task
+        The plan, with the objective.
+    points : Points
+        The T points of the bead.
+    thresholds : (T,) array
+        Smallest condition allowed.
+    start : (degree + 1,) array
+        Coefficients at the start, the constant first.
+    directions : (degree + 1, degree + 1) array
+        Allowed changes as columns, from `refine_state.changes`.
+    extra_constraints : Linear
+        Linearised constraints to keep.
+
+    Returns
+    -------
+    coefficients : (degree + 1,) array
+        The better coefficients.
+    reason : str
+        Why the optimiser stopped.
+    iterations : int
+        Its iterations.
     """
     used = directions[:, np.abs(directions).any(axis=0)]
     return _slsqp(_Bead(task, points, thresholds, extra_constraints), start, used)
@@ -401,7 +463,31 @@ def evaluate_paths(
     coefficients: Array,
     refined: Refined,
 ) -> list[BeadPath]:
-    """Return the paths of all beads for given coefficients (B, degree + 1), evaluated at every point."""
+    """Return the paths of all beads for coefficients, evaluated at every point.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    beads : sequence of Bead
+        The B beads.
+    bead_ids : sequence of Place
+        Layer and index of each bead.
+    points : Points
+        All T points of the beads.
+    threshold : (T,) array
+        Smallest condition allowed.
+    coefficients : (B, degree + 1) array
+        Coefficients, the constant first.
+    refined : Refined
+        Reason and iterations of each bead.
+
+    Returns
+    -------
+    list of BeadPath
+        The paths; the objective is NaN if it needs the Jacobian and a point is out of
+        reach.
+    """
     phi, _ = task.rotation(points, points.polynomial(coefficients))
     joints = task.joints(points, phi)
     condition = task.condition(points, phi, joints)

@@ -16,10 +16,24 @@ from ..task import Task
 
 
 def changes(task: Task, points: Points, degree: int) -> Array:
-    """(B, degree + 1, degree + 1) per bead the coefficients, the constant first, of independent changes as columns.
+    """Return independent changes of the coefficients of each bead.
 
-    They are Chebyshev polynomials over the bead's parameter, so that all are of the size of a rotation; the column that
-    would part the ends of a closed bead is zero.
+    They are Chebyshev polynomials over the bead's parameter, so that all have the size of a
+    rotation. The column that would separate the ends of a closed bead is zero.
+
+    Parameters
+    ----------
+    task : Task
+        The plan; `joined` keeps closed beads closed.
+    points : Points
+        Points of B beads.
+    degree : int
+        Degree of the polynomials.
+
+    Returns
+    -------
+    (B, degree + 1, degree + 1) array
+        One change per column, the constant first.
     """
     joined = task.joined & points.closed
     # most beads have their ends where others have them
@@ -61,7 +75,31 @@ class State:
 def state_of(
     task: Task, points: Points, thresholds: Array, coefficients: Array, slopes: bool = True
 ) -> State:
-    """The state at coefficients (B, degree + 1): with the derivatives of the constraints, or else `predicted`."""
+    """Return objective, constraints and derivatives at coefficients.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with objective and limits.
+    points : Points
+        T points of B beads.
+    thresholds : (T,) array
+        Smallest condition allowed.
+    coefficients : (B, degree + 1) array
+        Coefficients, the constant first.
+    slopes : bool, optional
+        Whether to compute the derivatives of the constraints; otherwise the predicted
+        decrease.
+
+    Returns
+    -------
+    State
+        The state.
+
+    References
+    ----------
+    Chalvin 2020, eqs. 17 to 19.
+    """
     phi, phi_rate = task.rotation(points, points.polynomial(coefficients))
     joints = task.joints(points, phi)
     if np.isnan(joints).any():
@@ -169,7 +207,31 @@ def _narrow(task: Task) -> int:
 
 
 def values_of(task: Task, thresholds: Array, phi: Array, joints: Array, ratio: Array) -> Array:
-    """Eqs. 18 and 19 as corrected, one row per limit and one for the condition `ratio` (T,): (m + 1, T)."""
+    """Return the constraint values at all points.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with limits.
+    thresholds : (T,) array
+        Smallest condition allowed.
+    phi : (T,) array
+        Rotations, rad.
+    joints : (T, axes) array
+        Joints, rad or mm.
+    ratio : (T,) array
+        Condition sigma_min / sigma_max.
+
+    Returns
+    -------
+    (m + 1, T) array
+        One row per limit and one for the condition; another one if the rotation has a range
+        of less than a turn. Values are >= 0 where kept.
+
+    References
+    ----------
+    Chalvin 2020, eqs. 18 and 19 as corrected in ERRATA.
+    """
     values = [
         0.25 * (1.0 - task.rows.offset(joints).T ** 2),
         (ratio - thresholds * (1.0 + CONDITION_RESERVE))[None],
@@ -182,7 +244,28 @@ def values_of(task: Task, thresholds: Array, phi: Array, joints: Array, ratio: A
 def slopes_of(
     task: Task, phi: Array, phi_rate: Array, joints: Array, rates: Array, matrix: Array
 ) -> Array:
-    """(m + 1, T) their derivatives by the value of the polynomial at each point."""
+    """Return the derivatives of the constraint values by the polynomial's value.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with limits.
+    phi : (T,) array
+        Rotations, rad.
+    phi_rate : (T,) array
+        d phi / d value of the polynomial.
+    joints : (T, axes) array
+        Joints, rad or mm.
+    rates : (T, axes) array
+        d q / d value.
+    matrix : (T, 6, axes) array
+        Jacobians at the deposition point.
+
+    Returns
+    -------
+    (m + 1, T) array
+        One row per row of `values_of`.
+    """
     slopes = [
         -0.5 * task.rows.offset(joints).T * (rates @ task.rows.matrix.T / task.rows.half).T,
         criteria.condition_rate(task, joints, rates, matrix)[None],

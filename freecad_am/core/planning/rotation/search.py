@@ -93,10 +93,30 @@ def everywhere(
     offsets: int = OFFSETS,
     best_alone: bool = False,
 ) -> Found:
-    """Return candidates over the whole range of offset (one turn) and slope, for every bead.
+    """Return candidates over the whole range of offset and slope, for every bead.
 
-    Closed beads that have to join up only allow slopes of whole turns. best_alone: only the best
-    candidate of each bead matters; once one serves, the conditions of worse ones are not computed.
+    Closed beads that have to join up only allow slopes of whole turns.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    points : Points
+        T points of B beads, perhaps thinned.
+    thresholds : (T,) array
+        Smallest condition allowed.
+    slopes : array or None, optional
+        Slopes to try; None for the usual ones.
+    offsets : int, optional
+        Number of offsets over a turn.
+    best_alone : bool, optional
+        Whether only the best candidate of each bead matters; then conditions of worse ones
+        are not computed.
+
+    Returns
+    -------
+    Found
+        C candidates per bead.
     """
     joined = task.joined & points.closed
     if slopes is None:
@@ -127,9 +147,25 @@ def add_conditions(
     candidates: Found,
     select_needed: Callable[[Array], Mask],
 ) -> Array:
-    """Return the margins (C, B) of candidates that were judged by limits only, lowered by their condition
-    where that matters: wherever `select_needed` of the margins, (C, B), says so, until all needed ones
-    are known.
+    """Lower the margins of candidates by their condition where that matters.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    points : Points
+        T points of B beads.
+    thresholds : (T,) array
+        Smallest condition allowed.
+    candidates : Found
+        C candidates per bead with margins to limits only.
+    select_needed : callable
+        Returns the candidates (C, B) that matter for margins (C, B).
+
+    Returns
+    -------
+    (C, B) array
+        Margins; exact for all candidates that matter.
     """
     margin, is_known, bead_ids = (
         candidates.margin.copy(),
@@ -156,8 +192,25 @@ def add_conditions(
 def judge(
     task: Task, points: Points, thresholds: Array, coefficients: Array, conditions: bool = True
 ) -> Found:
-    """Return objective and margin for given candidates (C, B, degree + 1); without `conditions` the margin
-    covers the limits only.
+    """Return objective and margin of candidates.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    points : Points
+        T points of B beads.
+    thresholds : (T,) array
+        Smallest condition allowed.
+    coefficients : (C, B, degree + 1) array
+        The candidates, the constant first.
+    conditions : bool, optional
+        Whether the margin includes the condition; otherwise only limits.
+
+    Returns
+    -------
+    Found
+        The candidates with objective and margin.
     """
     size = max(1, CHUNK // len(points))
     results = [
@@ -265,9 +318,23 @@ MAX_MARGIN_LOSS = 0.01
 
 
 def resolve(task: Task, points: Points, thresholds: Array, coefficients: Array) -> Array:
-    """(B, degree + 1) coefficients moved along their valley; unchanged where the optimum is the only one.
+    """Move coefficients along a valley of equal objective to the best margin.
 
-    points may be thinned; coefficients (B, degree + 1) are the optimum found.
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    points : Points
+        T points of B beads, perhaps thinned.
+    thresholds : (T,) array
+        Smallest condition allowed.
+    coefficients : (B, degree + 1) array
+        The optimum, the constant first.
+
+    Returns
+    -------
+    (B, degree + 1) array
+        Unchanged where the optimum is unique.
     """
     current = judge(task, points, thresholds, coefficients[None])
     coarse = _offset_candidates(
@@ -294,7 +361,22 @@ def resolve(task: Task, points: Points, thresholds: Array, coefficients: Array) 
 
 
 def as_good(task: Task, objective: ArrayLike, best: Array) -> Mask:
-    """Whether objectives count as equal to the best ones."""
+    """Return whether objectives count as equal to the best ones.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with the tolerance.
+    objective : array
+        Objectives.
+    best : array
+        Best objectives, broadcast against `objective`.
+
+    Returns
+    -------
+    bool array
+        True within the tolerance.
+    """
     good: Mask = (
         np.asarray(objective) <= best * (1.0 + OBJECTIVE_TOLERANCE) + task.parameters.tolerance
     )
@@ -360,7 +442,22 @@ BEADS_PER_BATCH = 64  # beads; bounds the memory
 
 
 def find_infeasible(task: Task, beads: Sequence[Bead], paths: Sequence[BeadPath]) -> list[int]:
-    """Return which of the beads exceed a limit with their rotation, at their points or between them."""
+    """Return the beads that exceed a limit at their points or between them.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    beads : sequence of Bead
+        The beads.
+    paths : sequence of BeadPath
+        Their paths.
+
+    Returns
+    -------
+    list of int
+        Numbers of the beads, sorted.
+    """
     infeasible = [k for k, path in enumerate(paths) if path.margin < MIN_MARGIN]
     low = [
         k
@@ -393,8 +490,27 @@ def replace_infeasible(
     candidates_found: Found,
     report: Callable[[float], None],
 ) -> dict[int, BeadPath | None]:
-    """Return the results of `find_rotations` for beads that exceed limits though a candidate did not at
-    few of their points. report: takes the finished share; it may raise to cancel.
+    """Replace paths that exceed limits although a candidate did not.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    beads : sequence of Bead
+        The beads.
+    bead_ids : sequence of Place
+        Layer and index of each bead.
+    paths : sequence of BeadPath
+        Their paths.
+    candidates_found : Found
+        The candidates of the beads, rated at a few points.
+    report : callable
+        Receives the finished share; may raise to cancel.
+
+    Returns
+    -------
+    dict[int, BeadPath or None]
+        Results of `find_rotations` by number of the bead.
     """
     promising = candidates_found.margin.max(axis=0) >= 0.0
     rows = [k for k in find_infeasible(task, beads, paths) if promising[k]]
@@ -415,10 +531,26 @@ def replace_infeasible(
 def find_rotations(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[Place], candidates_found: Found
 ) -> list[BeadPath | None]:
-    """Return for each bead the path of the best rotation, None if no rotation serves.
+    """Return the path of the best rotation of each bead that serves everywhere.
 
-    The rotation serves at every point and between points. It is refined from there if the refined
-    path keeps the limits too. candidates_found: the candidates of the beads, rated at a few points.
+    The rotation serves at every point and between points. It is refined from there if the
+    refined path keeps the limits too.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    beads : sequence of Bead
+        The beads.
+    bead_ids : sequence of Place
+        Layer and index of each bead.
+    candidates_found : Found
+        The candidates of the beads, rated at a few points.
+
+    Returns
+    -------
+    list[BeadPath or None]
+        The paths; None if no rotation serves.
     """
     points, between = gather(beads, task.cell), gather([_finer(bead) for bead in beads], task.cell)
     thresholds = task.thresholds(points)

@@ -16,10 +16,23 @@ from ..points import Points
 
 
 def along_beads(arm: SerialArm, flange: Array, branch: int, points: Points) -> Array:
-    """Return joints (R, T, axes) for flange poses (R, T, 4, 4), followed from the first point of
-    each bead.
+    """Return joints followed from the first point of each bead.
 
-    The first point takes the least singular solution. NaN if no solution has the configuration.
+    Parameters
+    ----------
+    arm : SerialArm
+        An arm with several solutions per configuration.
+    flange : (R, T, 4, 4) array
+        Flange poses, base frame.
+    branch : int
+        Index of the configuration.
+    points : Points
+        The T points.
+
+    Returns
+    -------
+    (R, T, axes) array
+        The first point of a bead takes the least singular solution; NaN without a solution.
     """
     found, several = _bearing(arm, flange, branch)
     joints: Array = found[0]
@@ -33,14 +46,48 @@ def along_beads(arm: SerialArm, flange: Array, branch: int, points: Points) -> A
 
 
 def from_before(arm: SerialArm, flange: Array, branch: int, before: Array) -> Array:
-    """Joints (..., axes) for flange poses (..., 4, 4), nearest to those before, whose leading axes may be fewer."""
+    """Return the joints nearest to previous ones.
+
+    Parameters
+    ----------
+    arm : SerialArm
+        An arm with several solutions per configuration.
+    flange : (..., 4, 4) array
+        Flange poses, base frame.
+    branch : int
+        Index of the configuration.
+    before : (..., axes) array
+        Previous joints, rad; leading dimensions may be missing.
+
+    Returns
+    -------
+    (..., axes) array
+        Joints, rad; NaN without a solution.
+    """
     found, several = _bearing(arm, flange, branch)
     first: Array = found[0]
     return _nearest(found, np.broadcast_to(before, first.shape)) if several else first
 
 
 def step_by_step(arm: SerialArm, flange: Array, branch: int, before: Array) -> Array:
-    """Joints (k, moves, axes) for flange poses (k, moves, 4, 4), followed from joints before (k, axes)."""
+    """Return joints followed through sequences of moves.
+
+    Parameters
+    ----------
+    arm : SerialArm
+        An arm with several solutions per configuration.
+    flange : (k, moves, 4, 4) array
+        Flange poses, base frame.
+    branch : int
+        Index of the configuration.
+    before : (k, axes) array
+        Joints before the first move, rad.
+
+    Returns
+    -------
+    (k, moves, axes) array
+        Joints, rad; NaN without a solution.
+    """
     found, several = _bearing(arm, flange, branch)
     joints: Array = found[0]
     if several:

@@ -30,13 +30,39 @@ AT_POLE = math.radians(0.1)
 
 
 def onto_pole(directions: Array, pole: Array, within: float = AT_POLE) -> Array:
-    """Directions (n, 3), those within an angle (rad) of a turning axis (3,), or of its other way, brought onto it."""
+    """Bring directions near a turning axis onto it.
+
+    Parameters
+    ----------
+    directions : (n, 3) array
+        Unit vectors.
+    pole : (3,) array
+        The turning axis, unit vector.
+    within : float, optional
+        Largest angle to the axis or its opposite, rad.
+
+    Returns
+    -------
+    (n, 3) array
+        The directions; near ones equal the axis or its opposite.
+    """
     near = np.linalg.norm(np.cross(directions, pole), axis=1) < math.sin(within)
     return np.where(near[:, None], np.sign(directions @ pole)[:, None] * pole, directions)
 
 
 def rotary_courses(found: Turns) -> list[Array]:
-    """Two courses (n, 2) through the turns of the directions along a bead; an axis that is free stays where it was."""
+    """Return two courses through the turns of directions along a bead.
+
+    Parameters
+    ----------
+    found : Turns
+        The solutions of both rotary axes at n points.
+
+    Returns
+    -------
+    list of (n, 2) array
+        Angles, rad; an axis that is free keeps its previous angle.
+    """
     turned = np.stack([found.first_turn, found.second_turn], axis=-1)
     for axis, free in enumerate((found.first_free, found.second_free)):
         turned[:, :, axis] = hold_free_angles(turned[:, :, axis], free)
@@ -44,10 +70,23 @@ def rotary_courses(found: Turns) -> list[Array]:
 
 
 def led_over(course: Array, free: Mask, place: Array) -> Array:
-    """Interpolate the free angles (n,) evenly between their neighbours along a bead.
+    """Interpolate the free angles evenly between their neighbours along a bead.
 
-    place: (n,) mm along the bead. The axis has the whole distance to turn, instead of a jump at its
-    end.
+    The axis has the whole distance to turn, instead of a jump at its end.
+
+    Parameters
+    ----------
+    course : (n,) array
+        Angles of one axis, rad.
+    free : (n,) bool array
+        Points at which the angle has no effect.
+    place : (n,) array
+        Position along the bead, mm.
+
+    Returns
+    -------
+    (n,) array
+        Angles, rad; free ones before the first and after the last fixed one stay.
     """
     known = np.flatnonzero(~free)
     if not len(known):
@@ -59,7 +98,18 @@ def led_over(course: Array, free: Mask, place: Array) -> Array:
 
 
 def continuous(turned: Array) -> list[Array]:
-    """Two courses (n, 2) through the branches (2, n, 2), one begun on each, that go straight on through a pole."""
+    """Return two courses through the branches that go straight on through a pole.
+
+    Parameters
+    ----------
+    turned : (2, n, 2) array
+        Angles of both rotary axes in two branches, rad.
+
+    Returns
+    -------
+    list of (n, 2) array
+        One course that begins on each branch, unwrapped.
+    """
     step = np.diff(turned, axis=1)
     across = turned[::-1, 1:] - turned[:, :-1]
     stay, change = (
@@ -71,8 +121,19 @@ def continuous(turned: Array) -> list[Array]:
 
 
 def hold_free_angles(angles: Array, free: Mask) -> Array:
-    """Return the angles (2, n) with free ones equal to the previous fixed one, at the beginning to
-    the next one.
+    """Set free angles to the previous fixed one, at the beginning to the next one.
+
+    Parameters
+    ----------
+    angles : (2, n) array
+        Angles of one axis in two branches, rad.
+    free : (n,) bool array
+        Points at which the angle has no effect.
+
+    Returns
+    -------
+    (2, n) array
+        The angles; unchanged if all are free.
     """
     known = np.flatnonzero(~free)
     if not len(known):
@@ -82,8 +143,22 @@ def hold_free_angles(angles: Array, free: Mask) -> Array:
 
 
 def in_turns(course: Array, before: Array, lower: Array, upper: Array) -> Array:
-    """A course (n, a) moved by the whole turns that bring its start nearest to the axes before (a,) and leave it between
-    lower and upper (a,); an axis without room is brought to the middle between them."""
+    """Move a course by whole turns to start near previous values within limits.
+
+    Parameters
+    ----------
+    course : (n, a) array
+        Angles, rad.
+    before : (a,) array
+        Previous angles, rad.
+    lower, upper : (a,) array
+        Limits, rad, perhaps infinite.
+
+    Returns
+    -------
+    (n, a) array
+        The course; an axis without room is centred between its limits.
+    """
     low, high = course.min(axis=0), course.max(axis=0)
     fewest, greatest = (
         np.ceil((lower - low) / TURN - 1e-12),
@@ -106,12 +181,31 @@ def chosen_course(
     turning: Mask,
     least_motion: bool = False,
 ) -> Array:
-    """Choose the course (n, a) within the limits (a,) that starts nearest to the values before
-    (a,).
+    """Choose the course within the limits that starts nearest to previous values.
 
-    All whole turns of the `turning` axes (a,) are candidates; the distance is measured as time at
-    maximum speed. `least_motion` puts the least motion first. If no course is within the limits,
-    the one that exceeds them least is taken; if every course has NaN values, the first.
+    All whole turns of the turning axes are candidates; the distance is measured as time at
+    maximum speed.
+
+    Parameters
+    ----------
+    ways : sequence of (n, a) array
+        The courses, rad or mm.
+    before : (a,) array
+        Previous values.
+    lower, upper : (a,) array
+        Limits, perhaps infinite.
+    speed : (a,) array
+        Maximum speeds, rad/s or mm/s.
+    turning : (a,) bool array
+        Axes that may move by whole turns.
+    least_motion : bool, optional
+        Whether the least motion comes first, before the start.
+
+    Returns
+    -------
+    (n, a) array
+        If no course is within the limits, the one that exceeds them least; if every course
+        has NaN values, the first.
     """
     ranked = []
     for course in ways:
@@ -140,8 +234,27 @@ class Lock:
 
 
 def courses(cell: Cell, lock: Lock | None, bead: Bead, pole: float = AT_POLE) -> list[Array]:
-    """All ways (n, 5) to run a bead, up to whole turns. Directions within `pole` rad of the turning axis count as along it;
-    where that is more than usual, the axis turns there as it has to be afterwards."""
+    """Return all ways to run a bead on a five-axis machine, up to whole turns.
+
+    Directions near the turning axis count as along it. With a `pole` larger than the default
+    the axis turns evenly there.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell with a five-axis machine.
+    lock : Lock or None
+        The locked rotary axis; None without one.
+    bead : Bead
+        The bead of n points.
+    pole : float, optional
+        Angle to the turning axis that counts as along it, rad.
+
+    Returns
+    -------
+    list of (n, 5) array
+        Axis values, rad or mm.
+    """
     arm, torch = FiveAxis(cell.machine.chain), cell.station[:3, 2]
     points, tools = cell.to_flange(bead.points, bead.tool)
     if lock is not None:
@@ -159,9 +272,23 @@ def courses(cell: Cell, lock: Lock | None, bead: Bead, pole: float = AT_POLE) ->
 
 
 def chosen(cell: Cell, ways: Sequence[Array], before: Array) -> Array:
-    """Choose the course (n, 5) within the limits that starts nearest to the current axis values.
+    """Choose the course within the limits that starts nearest to the current axis values.
 
     All courses and whole turns are candidates.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell with a five-axis machine.
+    ways : sequence of (n, 5) array
+        The courses, rad or mm.
+    before : (5,) array
+        Current axis values.
+
+    Returns
+    -------
+    (n, 5) array
+        The course.
     """
     lower, upper = cell.limits.lower + RESERVE, cell.limits.upper - RESERVE
     return chosen_course(
@@ -181,10 +308,26 @@ def _locked(arm: FiveAxis, lock: Lock, tools: Array, torch: Array) -> Array:
 
 
 def lock_of(cell: Cell, parameters: JointParameters, toolpath: Toolpath) -> Lock | None:
-    """Return the locked axis and its angle: the requested one, or the angle with the least maximum
-    residual.
+    """Return the locked axis and its angle.
 
-    None without a lock. Raises InputError NOT_FOR_SETUP for robots.
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+    parameters : JointParameters
+        Joint parameters with `lock` and `lock_at`.
+    toolpath : Toolpath
+        The toolpath, for the angle with the least maximum residual.
+
+    Returns
+    -------
+    Lock or None
+        None without a lock.
+
+    Raises
+    ------
+    InputError
+        NOT_FOR_SETUP for robots.
     """
     if parameters.lock == "none":
         return None
@@ -211,11 +354,28 @@ def lock_of(cell: Cell, parameters: JointParameters, toolpath: Toolpath) -> Lock
 def as_held(
     cell: Cell, paths: Sequence[BeadPath], lock: Lock | None, allowed: float
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """Return the paths with the actual tool axes of their beads, and an issue for the worst
-    residual of a lock.
+    """Return the paths with the actual tool axes of their beads.
 
-    Actual and requested axes differ at poles and with a locked axis. A residual beyond `allowed`
-    rad is an error. Robots keep the requested axes.
+    Actual and requested axes differ at poles and with a locked axis. Robots keep the requested
+    axes.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+    paths : sequence of BeadPath
+        The paths.
+    lock : Lock or None
+        The locked axis; None without one.
+    allowed : float
+        Residual beyond which the issue is an error, rad.
+
+    Returns
+    -------
+    paths : list of BeadPath
+        The paths.
+    issues : list of Issue
+        The worst residual with a lock.
     """
     if cell.machine.free:
         return list(paths), []

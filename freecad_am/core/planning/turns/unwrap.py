@@ -36,7 +36,24 @@ USABLE = 0.98
 
 
 def unwrapped(task: Task, paths: list[BeadPath]) -> tuple[list[BeadPath], list[Issue]]:
-    """The paths with whole turns added so that each starts as near to the end of the one before as its margin allows."""
+    """Add whole turns so that each path starts near the end of the previous one.
+
+    The margin of each path to the limits limits the turns.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with limits.
+    paths : list of BeadPath
+        The paths in print order.
+
+    Returns
+    -------
+    paths : list of BeadPath
+        The paths.
+    issues : list of Issue
+        Notes on axes that rewind between beads.
+    """
     result: list[BeadPath] = []
     back: dict[int, list[int]] = {}
     before: Array | None = None
@@ -89,11 +106,24 @@ def _turns(task: Task, path: BeadPath, before: Array) -> Array:
 
 
 def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:
-    """Return a closed bead from a start at which the turning axis has enough stroke, and the
-    start's index.
+    """Return a closed bead from a start at which the turning axis has enough stroke.
 
-    joints: (n, axes) unwrapped over the bead. The bead is unchanged if no axis turns, if no start
-    helps, or if an external axis waits at its limit and does not close.
+    Parameters
+    ----------
+    task : Task
+        The plan, with limits.
+    bead : Bead
+        The bead of n points.
+    joints : (n, axes) array
+        Joints unwrapped over the bead, rad or mm.
+
+    Returns
+    -------
+    bead : Bead
+        The bead; unchanged if no axis turns, no start helps, or an external axis waits at
+        its limit and does not close.
+    index : int
+        Index of the start; 0 for an unchanged bead.
     """
     axis = turning_axis(task, joints)
     if axis is None or not bead.closed or not _come_round(bead):
@@ -125,12 +155,28 @@ def turning_axis(task: Task, joints: Array) -> int | None:
 
 
 def pieces(task: Task, bead: Bead, joints: Array, more: int = 0) -> list[slice]:
-    """Return the slices of a bead in which the turning axis stays within its limits.
+    """Divide a bead so that the turning axis stays within its limits.
 
-    A piece ends where the axis would pass a limit; the next one starts with the axis turned back.
-    An axis without the stroke for a full turn gets pieces of equal length, `more` than the fewest,
-    which then need rotations of their own. If points are out of reach, the number is unknown and
-    the bead stays whole.
+    A piece ends where the axis would pass a limit; the next one starts with the axis turned
+    back. An axis without the stroke for a full turn gets pieces of equal length, which then
+    need rotations of their own.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with limits.
+    bead : Bead
+        The bead of n points.
+    joints : (n, axes) array
+        Joints unwrapped over the bead, rad or mm.
+    more : int, optional
+        Number of pieces beyond the fewest.
+
+    Returns
+    -------
+    list of slice
+        The points of each piece; one piece if points are out of reach or cutting does not
+        help.
     """
     axis = int(np.argmax(np.ptp(joints, axis=0) * ~task.unturned))
     low, high = task.rows_of_axis(axis)
@@ -215,11 +261,25 @@ MOVED, SPLIT = "seam moved for a limited axis", "split for a limited axis"
 def for_beads(
     task: Task, beads: Sequence[Bead], places: Sequence[Place]
 ) -> list[list[BeadPath] | None]:
-    """Return for each bead the path from another seam, or the paths of its pieces; None if neither
-    keeps all limits.
+    """Find another seam or pieces for beads that exceed limits.
 
     The search treats the robot's last axis and the external axes as continuous; then a start or
     cuts are chosen that suit their limits.
+
+    Parameters
+    ----------
+    task : Task
+        The plan, with limits.
+    beads : sequence of Bead
+        The beads.
+    places : sequence of Place
+        Layer and index of each bead.
+
+    Returns
+    -------
+    list[list[BeadPath] or None]
+        The path from another seam, or the paths of the pieces; None if neither keeps all
+        limits.
     """
     result: list[list[BeadPath] | None] = [None] * len(beads)
     left = [k for k, bead in enumerate(beads) if not is_spiral(bead)]
@@ -251,8 +311,23 @@ def for_beads(
 def insert_replacements(
     task: Task, paths: Sequence[BeadPath], helped: Mapping[int, list[BeadPath]]
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """Return the paths with the replacements inserted and beads renumbered, and notes on the
-    changes.
+    """Insert replacements of paths and renumber the beads.
+
+    Parameters
+    ----------
+    task : Task
+        The plan.
+    paths : sequence of BeadPath
+        The paths.
+    helped : Mapping[int, list[BeadPath]]
+        Replacements by index of the path.
+
+    Returns
+    -------
+    paths : list of BeadPath
+        The paths in print order.
+    issues : list of Issue
+        Notes on moved seams and split beads; an error for a spiral on a limited axis.
     """
     result: list[BeadPath] = []
     issues: list[Issue] = []
