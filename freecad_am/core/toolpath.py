@@ -312,6 +312,26 @@ class Layer:
 
 
 @dataclass(frozen=True, eq=False)
+class Checks:
+    """What planning measured of a deposit; None if it is not checked or unknown.
+
+    unsupported: mm of bead without support. on_part: number of checked points on the part, their
+    largest distance from it and the allowed one, mm. volumes: mm3 of a filled part, of the volume
+    that beads miss, and of stray beads. uneven: (k, 3) number, least and largest height, mm, of
+    layers with uneven height. twice: mm3 of beads, as wide as their spacing, over other beads in
+    their layer. fitted: the fit to a scan. predicted: the predicted deposit against the part.
+    """
+
+    unsupported: float | None = None
+    on_part: tuple[float, float, float] | None = None
+    volumes: tuple[float, float, float] | None = None
+    uneven: Array | None = None
+    twice: float | None = None
+    fitted: Fitted | None = None
+    predicted: PredictedShape | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Toolpath:
     """All layers from the platform up.
 
@@ -319,19 +339,12 @@ class Toolpath:
     and layer_height: mm. overlap: seam overlap of closed beads, mm. issues: of slicing and strategy
     (spacing, tilt-back, clearance). surroundings: bodies in part coordinates that the nozzle must
     not touch. law: the bead model at other speeds, None without one. bead_width: mm, for beads
-    without a width of their own. unsupported: mm of bead without support, None if not checked.
-    wire_feed: mm/s, None if unknown. on_part: number of checked points on the part, their largest
-    distance from it and the allowed one, mm; None if not checked. volumes: mm3 of a filled part, of
-    the volume that beads miss, and of stray beads; None if unknown. feature_label: of one of
+    without a width of their own. wire_feed: mm/s, None if unknown. feature_label: of one of
     several.
 
     features: for several features printed together, the toolpath data of each, without layers; the
-    other fields then describe the first feature. uneven: (k, 3) number, least and largest height,
-    mm, of layers with uneven height; None without any. twice: mm3 of beads, as wide as their
-    spacing, over other beads in their layer; None if unknown. max_from_vertical: rad, maximum angle
-    of the tool axis from the vertical in a cell with a positioner. fitted: the fit to a scan.
-    predicted: the predicted deposit against the part; None if not requested. retreat: mm, at bead
-    ends.
+    other fields then describe the first feature. max_from_vertical: rad, maximum angle of the tool
+    axis from the vertical in a cell with a positioner. retreat: mm, at bead ends.
     """
 
     layers: tuple[Layer, ...]
@@ -344,18 +357,12 @@ class Toolpath:
     surroundings: tuple[Body, ...] = ()
     law: SpeedLaw | None = None
     bead_width: float | None = None
-    unsupported: float | None = None
     wire_feed: float | None = None
-    on_part: tuple[float, float, float] | None = None
-    volumes: tuple[float, float, float] | None = None
     feature_label: str = ""
     features: tuple[Toolpath, ...] = ()
-    uneven: Array | None = None
-    twice: float | None = None
     max_from_vertical: float = math.pi
-    fitted: Fitted | None = None
-    predicted: PredictedShape | None = None
     retreat: float = 0.0
+    checks: Checks = field(default_factory=Checks)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frame", _frozen(self.frame, (4, 4), "frame"))
@@ -365,6 +372,10 @@ class Toolpath:
         for i, layer in enumerate(self.layers):
             for j, bead in enumerate(layer.beads):
                 yield i, j, bead
+
+    def add_checks(self, **results: Any) -> Toolpath:
+        """Return the toolpath with further results of checks, fields of `Checks`."""
+        return dataclasses.replace(self, checks=dataclasses.replace(self.checks, **results))
 
     @property
     def deposited(self) -> Toolpath:

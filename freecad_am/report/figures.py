@@ -108,18 +108,18 @@ def build(
         "totals": totals.as_dict(sums),
         "spacing_mm": None,
         "layer_heights": []
-        if toolpath.uneven is None
+        if toolpath.checks.uneven is None
         else [
             {"layer": int(layer), "least_mm": float(smallest), "largest_mm": float(largest)}
-            for layer, smallest, largest in toolpath.uneven
+            for layer, smallest, largest in toolpath.checks.uneven
         ],
-        "unsupported_mm": toolpath.unsupported,
+        "unsupported_mm": toolpath.checks.unsupported,
         "on_part": None
-        if toolpath.on_part is None
+        if toolpath.checks.on_part is None
         else dict(
             zip(
                 ("places", "worst_mm", "allowed_mm"),
-                (int(toolpath.on_part[0]), *toolpath.on_part[1:]),
+                (int(toolpath.checks.on_part[0]), *toolpath.checks.on_part[1:]),
                 strict=True,
             )
         ),
@@ -168,7 +168,7 @@ def features(
                 "chord_error_mm": path.chord_error,
                 "deposit_s": float(np.nan_to_num(motion.duration)[rows & motion.moves].sum()),
                 "spacing_mm": summarize(layer_spacing.between_layers(path)),
-                "unsupported_mm": path.unsupported,
+                "unsupported_mm": path.checks.unsupported,
                 "deposit": deposit_balance.as_dict(balance),
                 "spacing_comparison": rows_of_wall,
                 "beads": None
@@ -249,20 +249,20 @@ def summarize(spacing: Sequence[Array]) -> dict[str, float | None]:
 
 def _scan(toolpath: Toolpath) -> dict[str, Any] | None:
     """Return the figures of the scan to which layers were fitted, None without a scan."""
-    if toolpath.fitted is None:
+    if toolpath.checks.fitted is None:
         return None
     from . import scan_figures
 
-    return scan_figures.as_dict(toolpath.fitted)
+    return scan_figures.as_dict(toolpath.checks.fitted)
 
 
 def _predicted_shape(toolpath: Toolpath) -> dict[str, Any] | None:
     """Return the figures of the deposit predicted for a machining allowance, None without one."""
-    if toolpath.predicted is None:
+    if toolpath.checks.predicted is None:
         return None
     from . import predicted_figures
 
-    return predicted_figures.as_dict(toolpath.predicted)
+    return predicted_figures.as_dict(toolpath.checks.predicted)
 
 
 def _process(process: ProcessParameters, toolpath: Toolpath) -> dict[str, Any]:

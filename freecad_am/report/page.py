@@ -111,11 +111,13 @@ def render(content: Content) -> str:
         "" if plotting_modules() else f'<p class="sub">{MISSING}</p>',
         *_joints(content, pictures),
         ""
-        if content.toolpath.fitted is None
-        else scan_figures.section(content.toolpath.fitted, content.toolpath.frame),
+        if content.toolpath.checks.fitted is None
+        else scan_figures.section(content.toolpath.checks.fitted, content.toolpath.frame),
         ""
-        if content.toolpath.predicted is None
-        else predicted_figures.section(content.toolpath.predicted, pictures.predicted(), path_rows),
+        if content.toolpath.checks.predicted is None
+        else predicted_figures.section(
+            content.toolpath.checks.predicted, pictures.predicted(), path_rows
+        ),
         _process(content, pictures),
         _hub_layers(content, pictures),
         *(_spacings(feature) for feature in content.features if feature.rows),

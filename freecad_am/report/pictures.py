@@ -130,7 +130,7 @@ class Pictures:
 
     def predicted(self) -> list[str]:
         """The predicted deposit against the part."""
-        shape = self.source.toolpath.predicted
+        shape = self.source.toolpath.checks.predicted
         if shape is None or shape.deviation is None:
             return []
         charts = deviation.charts(shape.deviation, shape.allowance)

@@ -187,7 +187,7 @@ def clad(doc):
 def test_deposit_beside_the_part_is_refused(doc, monkeypatch, make, way):
     feature = make(doc)
     sound = api.result(api.make_toolpath(doc, feature))
-    count, worst, allowed = sound.on_part
+    count, worst, allowed = sound.checks.on_part
     assert (
         count == sound.point_count
         and worst <= allowed
@@ -198,7 +198,7 @@ def test_deposit_beside_the_part_is_refused(doc, monkeypatch, make, way):
     toolpath = api.make_toolpath(doc, feature)
     (issue,) = [one for one in api.issues(toolpath) if one.code == "OFF_PART"]
     assert issue.level == "error" and None not in (issue.layer, issue.bead, issue.point)
-    assert api.result(toolpath).on_part[1] == pytest.approx(np.abs(way).sum(), rel=0.35)
+    assert api.result(toolpath).checks.on_part[1] == pytest.approx(np.abs(way).sum(), rel=0.35)
 
 
 def test_of_several_features_the_one_beside_its_part_is_refused(doc, monkeypatch):
@@ -210,7 +210,7 @@ def test_of_several_features_the_one_beside_its_part_is_refused(doc, monkeypatch
             api.make_solid_feature(doc, box, layer_height=4.0, bead_spacing=6.0, chord_error=0.1)
         )
     sound = api.result(api.make_toolpath(doc, features))
-    count, worst, allowed = sound.on_part
+    count, worst, allowed = sound.checks.on_part
     assert count == sound.point_count and worst <= allowed
     lay, numbers = in_sequence.layers_of, iter((0, 1))
     way = np.array([0, 9.0, 0])
@@ -220,7 +220,7 @@ def test_of_several_features_the_one_beside_its_part_is_refused(doc, monkeypatch
     toolpath = api.make_toolpath(doc, features)
     (issue,) = [one for one in api.issues(toolpath) if one.code == "OFF_PART"]
     assert issue.level == "error" and issue.layer >= 3 and None not in (issue.bead, issue.point)
-    assert api.result(toolpath).on_part[1] == pytest.approx(9.0, rel=0.35)
+    assert api.result(toolpath).checks.on_part[1] == pytest.approx(9.0, rel=0.35)
 
 
 def test_triangles_of_a_large_part_are_larger_and_no_place_is_told_farther_than_it_is():

@@ -44,7 +44,9 @@ def test_a_feature_is_saved_and_changed(doc, cone, tmp_path):
     toolpath = api.make_toolpath(doc, feature)
     away, wanted = heights(api.result(toolpath))
     np.testing.assert_allclose(away, wanted, atol=1e-6)
-    assert api.result(toolpath).family == "cladding" and api.result(toolpath).unsupported == 0.0
+    assert (
+        api.result(toolpath).family == "cladding" and api.result(toolpath).checks.unsupported == 0.0
+    )
     doc.saveAs(str(tmp_path / "clad.FCStd"))
     App.closeDocument(doc.Name)
     again = App.openDocument(str(tmp_path / "clad.FCStd"))

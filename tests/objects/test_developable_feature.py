@@ -350,7 +350,7 @@ def test_what_beads_lay_beside_solids_on_a_hub_is_told(doc):
         )
         found[thick] = api.result(api.make_toolpath(doc, feature))
     narrow, wide = found[3.0], found[24.0]
-    part, left, beside = narrow.volumes
+    part, left, beside = narrow.checks.volumes
     outside = Part.makeBox(24.0, 3.0, 40.0, App.Vector(15.0, -1.5, 30.0)).cut(rod.Shape).Volume
     assert part == pytest.approx(outside, rel=1e-3) and left == pytest.approx(0.0, abs=1.0)
     laid = 2.0 * sum(6.0 * bead.length + 9.0 * np.pi for _, _, bead in narrow)
@@ -358,10 +358,12 @@ def test_what_beads_lay_beside_solids_on_a_hub_is_told(doc):
     (issue,) = [one for one in narrow.issues if one.code == "DEPOSITED_BESIDE"]
     assert issue.level == "warning" and f"{beside / 1000.0:.3g} cm3" in issue.message
     assert not {"DEPOSITED_BESIDE", "NOT_DEPOSITED"} & {one.code for one in wide.issues}
-    part, left, beside = wide.volumes
+    part, left, beside = wide.checks.volumes
     laid = 2.0 * 4.0 * sum(bead.length for _, _, bead in wide)
-    assert wide.twice == pytest.approx(laid - (part - left + beside), rel=1e-6)
-    assert ("DEPOSITED_TWICE" in {one.code for one in wide.issues}) == (wide.twice > 0.03 * part)
+    assert wide.checks.twice == pytest.approx(laid - (part - left + beside), rel=1e-6)
+    assert ("DEPOSITED_TWICE" in {one.code for one in wide.issues}) == (
+        wide.checks.twice > 0.03 * part
+    )
     assert (
         part == pytest.approx(sum(24.0 * 40.0 * 2.0 for _ in wide.layers), rel=0.1)
         and left + beside < 0.03 * part

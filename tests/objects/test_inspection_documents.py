@@ -175,7 +175,7 @@ def test_a_predicted_deposit_is_inspected_as_a_measured_one(doc, root):
         assert away == pytest.approx(
             found.deviation[k], abs=0.06
         )  # by the kernel; triangles are within 0.05 mm
-    predicted = api.result(path).predicted
+    predicted = api.result(path).checks.predicted
     assert abs(predicted.laid / predicted.fed - 1.0) < 1e-6
     assert predicted.fed == pytest.approx(12.0 * api.result(path).length, rel=1e-9)
     assert predicted.allowance == 1.0 and predicted.places == len(found.deviation)

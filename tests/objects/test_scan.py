@@ -40,8 +40,8 @@ def test_a_fitted_toolpath_is_kept_and_follows_its_scan(doc, tmp_path):
     toolpath = api.make_toolpath(doc, feature, scan=scan, scan_band=10)
     x, y, z = heights(toolpath).T
     assert np.abs(z - bent(x, y)).max() < 0.06
-    assert api.result(toolpath).fitted.layers == int(
-        np.ceil(np.abs(api.result(toolpath).fitted.off).max() / 0.4)
+    assert api.result(toolpath).checks.fitted.layers == int(
+        np.ceil(np.abs(api.result(toolpath).checks.fitted.off).max() / 0.4)
     )
     copy = str(tmp_path / "copy.FCStd")
     doc.saveCopy(copy)

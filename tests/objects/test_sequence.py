@@ -203,4 +203,4 @@ def test_what_one_feature_leaves_out_and_what_of_another_is_over_nothing_are_tol
     first = next(k for k, layer in enumerate(made.layers) if layer.feature == 2)
     assert over.layer == first and over.level == "warning"
     laid = sum(bead.length for bead in made.layers[first].beads)
-    assert made.unsupported == pytest.approx(laid / 3.0, rel=0.25)
+    assert made.checks.unsupported == pytest.approx(laid / 3.0, rel=0.25)

@@ -130,7 +130,8 @@ def test_beads_lie_in_the_shape(doc, name):
     ]
     assert not off or max(off) < 0.1
     assert (
-        made.on_part[0] == min(20_000, sum(map(len, beads))) and made.on_part[1] <= made.on_part[2]
+        made.checks.on_part[0] == min(20_000, sum(map(len, beads)))
+        and made.checks.on_part[1] <= made.checks.on_part[2]
     )
     assert not [issue for issue in api.issues(toolpath) if issue.level == "error"]
 
@@ -291,7 +292,7 @@ def balanced(doc, shape):
         ),
     )
     told = {issue.code: issue.message for issue in api.issues(toolpath)}
-    return api.result(toolpath).volumes, told
+    return api.result(toolpath).checks.volumes, told
 
 
 def test_what_beads_leave_of_a_solid_and_lay_beside_it_is_told(doc):

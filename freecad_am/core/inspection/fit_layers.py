@@ -242,11 +242,10 @@ def fit_layers(
         left_out,
         motion,
     )
+    uneven_heights = np.array(uneven) if uneven else toolpath.checks.uneven
     return replace(
-        toolpath,
+        toolpath.add_checks(uneven=uneven_heights, fitted=record),
         layers=tuple(layers),
-        uneven=np.array(uneven) if uneven else toolpath.uneven,
-        fitted=record,
         issues=(*_issues(record, toolpath.layer_height), *toolpath.issues),
     )
 

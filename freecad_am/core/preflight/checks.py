@@ -129,15 +129,15 @@ def layers(
 def lies_on_part(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
     """Promise on the distance between the beads and the faces or solids of the part."""
     what = "The deposit is on the part"
-    if toolpath.on_part is None:
+    if toolpath.checks.on_part is None:
         return Promise(what, "not checked: the part has no faces to measure from", None)
-    count, worst, allowed = toolpath.on_part
+    count, worst, allowed = toolpath.checks.on_part
     deviations = select_issues(issues, (on_part.CODE,))
     how = Text(
         "distance of {:.0f} bead points to the original shape, independent of slicing",
         count,
     )
-    if toolpath.fitted is not None:
+    if toolpath.checks.fitted is not None:
         how = Text(
             "distance of {:.0f} bead points to the original shape, less the layer shift from a "
             "scan",
@@ -209,22 +209,24 @@ def once(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
 def beads_supported(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
     """Promise on unsupported beads."""
     what = "Every bead is supported from below"
-    if toolpath.unsupported is None:
+    if toolpath.checks.unsupported is None:
         return Promise(what, "not checked: it is not known how wide the beads count", None)
     overhangs = select_issues(issues, (support.CODE,), WARNING)
     how = (
         "each short piece of a bead, against its build direction, above earlier deposit with "
         "its actual width and existing parts"
     )
-    is_supported = not overhangs and toolpath.unsupported <= 0.0
-    return Promise(what, how, is_supported, toolpath.unsupported, "mm", 0.0, issue_place(overhangs))
+    is_supported = not overhangs and toolpath.checks.unsupported <= 0.0
+    return Promise(
+        what, how, is_supported, toolpath.checks.unsupported, "mm", 0.0, issue_place(overhangs)
+    )
 
 
 def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...]:
     """Promises on the predicted deposit, at the requested speeds, for parts with a machining allowance;
     empty without a prediction.
     """
-    prediction = toolpath.predicted
+    prediction = toolpath.checks.predicted
     if prediction is None:
         return ()
     from ..process.shape import compare  # few jobs have one

@@ -209,9 +209,9 @@ def set_wire_feed(
 
 def _fills(toolpath: Toolpath, wire_rate: float) -> bool:
     """Whether a wire rate, mm3/s, feeds as much as the beads of a filled part deposit."""
-    if toolpath.volumes is None:
+    if toolpath.checks.volumes is None:
         return False
-    part_volume, left_out, outside = toolpath.volumes
+    part_volume, left_out, outside = toolpath.checks.volumes
     deposited = part_volume - left_out + outside
     seconds = sum(
         float((np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / bead.speed[1:]).sum())

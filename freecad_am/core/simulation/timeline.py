@@ -37,9 +37,11 @@ def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> A
     # the width of a segment is the mean of the widths at its ends
     mean_width = 0.5 * (width + np.concatenate([width[:1], width[:-1]]))
     height: Array | float = toolpath.layer_height
-    if toolpath.features or toolpath.fitted is not None:
+    if toolpath.features or toolpath.checks.fitted is not None:
         height = (
-            _mean_heights(toolpath) if toolpath.fitted is not None else toolpath.layer_heights
+            _mean_heights(toolpath)
+            if toolpath.checks.fitted is not None
+            else toolpath.layer_heights
         )[motion.layer]
     return np.where(motion.deposit & motion.moves, mean_width * length, 0.0) * height
 

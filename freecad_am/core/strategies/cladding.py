@@ -14,7 +14,7 @@ from ..parameters.filled import CladdingParameters
 from ..parameters.process import ProcessParameters
 from ..process.bead_model import BeadModel
 from ..process.order import IslandOrder, RankedBead, add_waits, order_beads
-from ..toolpath import Bead, Toolpath
+from ..toolpath import Bead, Checks, Toolpath
 from .progress import Progress, silent
 from .solids.beads import MadeBead, bead_of, layer_volumes, twice_volume
 from .solids.filling import Pictures, bead_width, over_fed, spaced
@@ -100,8 +100,10 @@ def plan(
         clad_faces.surroundings,
         None if model is None else model.law(process.acceleration),
         width,
-        volumes=layer_volumes(strategy, covers),
-        twice=twice_volume(made_beads, strategy, covers, width),
+        checks=Checks(
+            volumes=layer_volumes(strategy, covers),
+            twice=twice_volume(made_beads, strategy, covers, width),
+        ),
     )
 
 

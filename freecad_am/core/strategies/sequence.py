@@ -57,16 +57,19 @@ def join_toolpaths(
         ),
         surroundings=tuple(bodies),
         law=None,
-        unsupported=None,
-        on_part=None,
-        volumes=None,
-        twice=None,
         feature_label="",
         wire_feed=first_path.wire_feed if len(feeds) == 1 else None,
         features=tuple(
             replace(toolpath, layers=(), issues=(), surroundings=()) for toolpath in toolpaths
         ),
-        uneven=_uneven(toolpaths, numbers),
+        checks=replace(
+            first_path.checks,
+            unsupported=None,
+            on_part=None,
+            volumes=None,
+            twice=None,
+            uneven=_uneven(toolpaths, numbers),
+        ),
     )
 
 
@@ -74,10 +77,13 @@ def _uneven(toolpaths: Sequence[Toolpath], numbers: Sequence[Index]) -> Array | 
     """Numbers, least and largest heights (k, 3) of the features' layers with uneven height."""
     rows = [
         np.column_stack(
-            [layer_numbers[toolpath.uneven[:, 0].astype(np.intp)], toolpath.uneven[:, 1:]]
+            [
+                layer_numbers[toolpath.checks.uneven[:, 0].astype(np.intp)],
+                toolpath.checks.uneven[:, 1:],
+            ]
         )
         for toolpath, layer_numbers in zip(toolpaths, numbers)
-        if toolpath.uneven is not None
+        if toolpath.checks.uneven is not None
     ]
     return np.vstack(rows) if rows else None
 

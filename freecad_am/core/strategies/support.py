@@ -42,9 +42,8 @@ def check_support(
     open_, issues = support.find_unsupported(
         toolpath, ground, toolpath.traits.starts_on_base, _lowest(toolpath, toolpath.traits, 0)
     )
-    return replace(
-        toolpath, unsupported=math.fsum(open_.values()), issues=(*toolpath.issues, *issues)
-    )
+    checked = toolpath.add_checks(unsupported=math.fsum(open_.values()))
+    return replace(checked, issues=(*toolpath.issues, *issues))
 
 
 def feature_support(

@@ -30,9 +30,9 @@ def check_on_part(toolpath: CoreToolpath, inputs: Given, sources: Sequence[Taken
         return toolpath
     places, off, limit = distances
     if (
-        toolpath.fitted is not None
+        toolpath.checks.fitted is not None
     ):  # these layers follow the scan and are no farther off than they were moved
         from ...core.inspection.fit_layers import max_moves  # jobs without a scan need none of it
 
-        off = np.maximum(off - max_moves(toolpath.fitted, places.layer), 0.0)
+        off = np.maximum(off - max_moves(toolpath.checks.fitted, places.layer), 0.0)
     return on_part.check_on_part(toolpath, places, off, limit)

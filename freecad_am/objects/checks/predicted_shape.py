@@ -76,7 +76,8 @@ def add_shape_issues(
         deviation=deviation_map(deposit, comparison, len(toolpath.layers)),
     )
     return dataclasses.replace(
-        toolpath, predicted=shape, issues=(*toolpath.issues, *issues(toolpath, targets, shape))
+        toolpath.add_checks(predicted=shape),
+        issues=(*toolpath.issues, *issues(toolpath, targets, shape)),
     )
 
 

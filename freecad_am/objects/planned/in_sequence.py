@@ -140,12 +140,15 @@ def planned_in_sequence(
         toolpath = _judge_feature(toolpath, number, entry, plates, stands)
     feature_parts = toolpath.features
     on_parts = [
-        feature_part.on_part for feature_part in feature_parts if feature_part.on_part is not None
+        feature_part.checks.on_part
+        for feature_part in feature_parts
+        if feature_part.checks.on_part is not None
     ]
     worst = max(on_parts, key=lambda entry: entry[1] / entry[2], default=None)
-    return dataclasses.replace(
-        toolpath,
-        unsupported=math.fsum(feature_part.unsupported or 0.0 for feature_part in feature_parts),
+    return toolpath.add_checks(
+        unsupported=math.fsum(
+            feature_part.checks.unsupported or 0.0 for feature_part in feature_parts
+        ),
         on_part=None if worst is None else (sum(entry[0] for entry in on_parts), *worst[1:]),
     )
 
@@ -173,7 +176,7 @@ def _judge_feature(
     balance = deposit_balance.toolpath_balance(
         entry.inputs.wall, feature_part, entry.inputs.process.bead_width
     )
-    checked = dataclasses.replace(checked, unsupported=math.fsum(lengths.values()))
+    checked = checked.add_checks(unsupported=math.fsum(lengths.values()))
     feature_issues = (*(above_platform(feature_part, inputs) if bases else ()), *checked.issues)
     further_issues = (
         *deposit_balance.issues(balance),

@@ -116,11 +116,10 @@ def layers_of(inputs: Given) -> CoreToolpath:
         toolpath = enforce_layer_time(
             toolpath, getattr(inputs.strategy, "min_layer_time", 0.0), process.rapid_speed
         )
-    twice = toolpath.twice if family.is_filled else deposited_twice(toolpath)
+    twice = toolpath.checks.twice if family.is_filled else deposited_twice(toolpath)
     return dataclasses.replace(
-        toolpath,
+        toolpath.add_checks(twice=twice),
         max_from_vertical=inputs.build.max_from_vertical,
-        twice=twice,
         retreat=process.retreat,
     )
 

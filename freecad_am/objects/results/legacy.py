@@ -25,6 +25,7 @@ Place = tuple[str | int, ...]
 _DTYPES = (np.dtype("float64"), np.dtype("int64"), np.dtype("bool"))
 _BYTES_PER_FLOAT = 7
 _OLDER_BYTES_PER_FLOAT = 6
+FIRST_VERSION = 1  # of all schemas, as these documents have them
 _PIECE = 8192  # numbers that have one order of differences
 _HIGHEST_ORDER = 8  # of differences
 _ALL_BUT_SIGN = np.int64(0x7FFFFFFFFFFFFFFF)
@@ -129,9 +130,8 @@ class _Reader:
             return tuple(self.value(entry, all_of_it) for entry in tree["t"])
         if "d" in tree:
             return {key: self.value(entry, all_of_it) for key, entry in tree["d"]}
-        return _class_of(tree["c"])(
-            **{name: self.value(entry, all_of_it) for name, entry in tree["v"].items()}
-        )
+        fields = {name: self.value(entry, all_of_it) for name, entry in tree["v"].items()}
+        return schemas.record(_schema_of(tree["c"]), FIRST_VERSION, fields)
 
     def array(self, number: int, first_row: int, rows: int, all_of_it: bool) -> NDArray[Any]:
         """Rows of a table, which they share where it is read at once."""
@@ -345,8 +345,8 @@ def _older_bytes(numbers: _Unfolded, length: int, start: int) -> bytes:
     return integers[:, :_OLDER_BYTES_PER_FLOAT].tobytes()[:length]
 
 
-def _class_of(name: str) -> Any:
-    """Return the class of a former name, `.module:class`; only of results, so that opening a document calls nothing else."""
+def _schema_of(name: str) -> str:
+    """Return the schema of a former name, `.module:class`; only of results, so that opening a document calls nothing else."""
     if name not in SCHEMA_NAMES:
         raise ValueError(f"{name} is not a result")
-    return schemas.class_of(SCHEMA_NAMES[name])
+    return SCHEMA_NAMES[name]

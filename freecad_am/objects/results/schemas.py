@@ -71,17 +71,37 @@ SCHEMAS: dict[str, Schema] = {
     "speed_law": Schema("core.toolpath:SpeedLaw"),
     "surface_patch": Schema("core.geometry.walls.patch:Patch"),
     "surface_wall": Schema("core.geometry.walls.surface_wall:SurfaceWall"),
-    "toolpath": Schema("core.toolpath:Toolpath"),
+    "toolpath": Schema("core.toolpath:Toolpath", 2),
+    "toolpath_checks": Schema("core.toolpath:Checks"),
     "touched_point": Schema("core.parameters.cell_records:TouchedPoint"),
     "torus_surface": Schema("core.geometry.walls.surface:Torus"),
     "verification": Schema("verify:Verification"),
     "wall_rim": Schema("core.geometry.walls.patch_wall:Rim"),
 }
 
+_FIELDS_OF_CHECKS = (
+    "unsupported",
+    "on_part",
+    "volumes",
+    "uneven",
+    "twice",
+    "fitted",
+    "predicted",
+)
+
+
+def _gather_checks(fields: Fields) -> Fields:
+    """Return the fields of a toolpath with its checks in a record of their own."""
+    checks = {name: fields[name] for name in _FIELDS_OF_CHECKS if name in fields}
+    others = {name: value for name, value in fields.items() if name not in checks}
+    return {**others, "checks": record("toolpath_checks", 1, checks)}
+
+
 # by name and version: turns the fields of that version into the next version's
 UPGRADES: dict[tuple[str, int], Callable[[Fields], Fields]] = {
     ("cell_parameters", 1): lambda fields: fields,  # texts, which the class turns into records
     ("nozzle_parameters", 1): lambda fields: fields,
+    ("toolpath", 1): _gather_checks,
 }
 
 _PACKAGE = __name__.split(".", maxsplit=1)[0]

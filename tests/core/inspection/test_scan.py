@@ -88,11 +88,11 @@ def between(layer):
 
 def test_the_first_layer_lies_on_what_was_scanned_and_the_others_lead_back(block, laid):
     made = laid
-    x, y, _ = made.fitted.places.T
-    assert np.abs(made.fitted.off - bent(x, y)).max() < 0.06
-    count = made.fitted.layers
+    x, y, _ = made.checks.fitted.places.T
+    assert np.abs(made.checks.fitted.off - bent(x, y)).max() < 0.06
+    count = made.checks.fitted.layers
     assert (
-        count - 1 < np.abs(made.fitted.off).max() / (0.2 * HEIGHT) <= count
+        count - 1 < np.abs(made.checks.fitted.off).max() / (0.2 * HEIGHT) <= count
     )  # the fewest that keep heights within a fifth
     for number, layer in enumerate(made.layers):
         x, y, z = between(layer).T
@@ -118,8 +118,8 @@ def test_outliers_move_nothing(laid):
 
 def test_thinner_layers_are_laid_faster_by_as_much(laid):
     made = laid
-    for number in range(made.fitted.layers):
-        low, high = made.uneven[number, 1:]
+    for number in range(made.checks.fitted.layers):
+        low, high = made.checks.uneven[number, 1:]
         assert 0.79 * HEIGHT < low < high < 1.21 * HEIGHT
         for bead in made.layers[number].beads:
             middle = 0.5 * (bead.height[1:] + bead.height[:-1])
@@ -128,7 +128,7 @@ def test_thinner_layers_are_laid_faster_by_as_much(laid):
             )  # as much at every place
     tops = [np.concatenate([bead.points[:, 2] for bead in layer.beads]) for layer in made.layers]
     assert made.layers[0].beads[0].height[0] == pytest.approx(
-        HEIGHT - bent(*made.layers[0].beads[0].points[0, :2]) / made.fitted.layers, abs=0.02
+        HEIGHT - bent(*made.layers[0].beads[0].points[0, :2]) / made.checks.fitted.layers, abs=0.02
     )
     assert tops[-1] == pytest.approx((len(made.layers) - 1) * HEIGHT)
 
@@ -157,7 +157,7 @@ def test_scans_that_do_not_serve_are_refused(block):
         with pytest.raises(InputError) as error:
             fit(block, of, **more)
         assert error.value.code == code
-    assert fit(block, points + (0.0, 0.0, 4.0), scan_within=7.0).fitted.off.min() > 2.0
+    assert fit(block, points + (0.0, 0.0, 4.0), scan_within=7.0).checks.fitted.off.min() > 2.0
 
 
 def test_a_part_with_few_layers_tells_what_remains(block):
@@ -165,8 +165,8 @@ def test_a_part_with_few_layers_tells_what_remains(block):
     told = [issue for issue in few.issues if issue.code == "SCAN_REMAINS"]
     left = np.concatenate([bead.points[:, 2] for bead in few.layers[-1].beads]) - 14 * HEIGHT
     assert len(told) == 1 and left.max() > 1.0
-    assert f"up to {few.fitted.remains:.3f} mm" in told[0].message
-    assert few.fitted.remains == pytest.approx(left.max(), abs=0.02)
+    assert f"up to {few.checks.fitted.remains:.3f} mm" in told[0].message
+    assert few.checks.fitted.remains == pytest.approx(left.max(), abs=0.02)
 
 
 def test_units_and_other_parts_are_told_from_the_part():
@@ -238,7 +238,7 @@ def test_the_body_to_keep_clear_of_is_where_it_was_scanned():
 )
 def test_how_far_layers_are_moved_at_most_is_known_of_each(block, surface, parameters):
     made = fit(block, points_on(surface), **parameters)
-    known = max_moves(made.fitted, np.arange(len(made.layers)))
+    known = max_moves(made.checks.fitted, np.arange(len(made.layers)))
     far = np.array(
         [
             max(np.abs(bead.points[:, 2] - number * HEIGHT).max() for bead in layer.beads)
@@ -248,7 +248,10 @@ def test_how_far_layers_are_moved_at_most_is_known_of_each(block, surface, param
     assert (
         far <= known + 0.03
     ).all()  # patches of neighbours lead on a little beyond the first layer
-    assert np.abs(far - known).max() < 0.1 * known.max() + 0.03 and known[made.fitted.layer] > 0.1
+    assert (
+        np.abs(far - known).max() < 0.1 * known.max() + 0.03
+        and known[made.checks.fitted.layer] > 0.1
+    )
 
 
 def test_the_volume_is_that_of_layers_as_high_as_they_were_fitted(block):

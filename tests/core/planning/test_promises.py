@@ -29,7 +29,9 @@ def sound(sliced, cell_of):
     """A cell, joint path, and evidence of a sound job with the whole motion."""
     toolpath = sliced("sphere", HEIGHT)
     toolpath = dataclasses.replace(
-        toolpath, on_part=(500.0, 0.01, 0.2), unsupported=0.0, wire_feed=None, bead_width=WIDTH
+        toolpath.add_checks(on_part=(500.0, 0.01, 0.2), unsupported=0.0),
+        wire_feed=None,
+        bead_width=WIDTH,
     )
     cell = cell_of(toolpath)
     path = plan_joints(toolpath, cell, JointParameters())
@@ -185,14 +187,14 @@ def test_layers_that_are_not_one_layer_height_apart(sound):
 @pytest.mark.parametrize(
     ("promise", "change"),
     [
-        ("The deposit is on the part", lambda e: {"toolpath": dataclasses.replace(
-            e.toolpath, on_part=(500.0, 0.21, 0.2))}),
+        ("The deposit is on the part", lambda e: {"toolpath": e.toolpath.add_checks(
+            on_part=(500.0, 0.21, 0.2))}),
         ("All of the part is deposited", lambda e: {"balance": Balance("Part", 1e5, 3e3, 1e5, 0.0)}),
         ("Nothing is deposited outside the part", lambda e: {"balance": Balance("Part", 1e5, 0.0, 1e5, 3e4)}),
         ("Little is deposited twice", lambda e: {"balance": Balance("Part", 1e5, 0.0, 1e5, 0.0, filled=True, twice=1.1e4)}),
         ("Little is deposited twice", lambda e: {"balance": Balance("Part", None, None, 1e5, twice=1.1e4)}),
-        ("Every bead is supported from below", lambda e: {"toolpath": dataclasses.replace(
-            e.toolpath, unsupported=2.0)}),
+        ("Every bead is supported from below", lambda e: {"toolpath": e.toolpath.add_checks(
+            unsupported=2.0)}),
         ("The wire feeds what the beads take", lambda e: {"toolpath": dataclasses.replace(
             e.toolpath, wire_feed=1.1 * e.toolpath.wire_feed)}),
         ("The nozzle stays clear of deposit, part and platform while it deposits", lambda e: {
@@ -262,7 +264,7 @@ def without(evidence, **parts):
 @pytest.mark.parametrize(
     ("promise", "change"),
     [
-        ("The deposit is on the part", lambda e: without(e, toolpath={"on_part": None})),
+        ("The deposit is on the part", lambda e: {"toolpath": e.toolpath.add_checks(on_part=None)}),
         ("All of the part is deposited", lambda e: {"balance": None}),
         ("Nothing is deposited outside the part", lambda e: {"balance": None}),
         ("Nothing is deposited outside the part", lambda e: without(e, balance={"outside": None})),
@@ -273,7 +275,7 @@ def without(evidence, **parts):
         ("Little is deposited twice", lambda e: without(e, balance={"twice": None})),
         (
             "Every bead is supported from below",
-            lambda e: without(e, toolpath={"unsupported": None}),
+            lambda e: {"toolpath": e.toolpath.add_checks(unsupported=None)},
         ),
         ("The wire feeds what the beads take", lambda e: without(e, toolpath={"wire_feed": None})),
         ("The wire feeds what the beads take", lambda e: without(e, process={"bead_model": "csw"})),

@@ -47,7 +47,9 @@ def toolpath(*layers, family="surface", height=HEIGHT, width=WIDTH):
 def told(path, planes=(), bodies=(), bases=()):
     """Length over nothing, and the issues."""
     found = support.check_support(path, planes, bodies, bases)
-    return found.unsupported, [issue for issue in found.issues if issue.code == "UNSUPPORTED"]
+    return found.checks.unsupported, [
+        issue for issue in found.issues if issue.code == "UNSUPPORTED"
+    ]
 
 
 @pytest.mark.parametrize(
@@ -272,8 +274,8 @@ def test_the_mushroom_is_told_with_its_length(mushroom_path):
     below = np.array([z for z, _, _ in layers[first - 1]])
     over = [length for z, _, length in layers[first] if np.abs(below - z).min() > 4.0]
     assert len(over) == 6
-    assert mushroom_path.unsupported == pytest.approx(sum(over), rel=1e-9)
-    assert mushroom_path.unsupported == pytest.approx(
+    assert mushroom_path.checks.unsupported == pytest.approx(sum(over), rel=1e-9)
+    assert mushroom_path.checks.unsupported == pytest.approx(
         6 * 2.0 * np.pi * layers[first][0][1], rel=2e-3
     )
     (issue,) = [one for one in mushroom_path.issues if one.code == "UNSUPPORTED"]

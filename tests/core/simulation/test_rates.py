@@ -10,8 +10,11 @@ import pytest
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.simulation.table_links import rates
 from freecad_am.core.simulation.timeline import timeline, totals, volumes
+from freecad_am.core.toolpath import Checks
 
-PATH = SimpleNamespace(layer_height=2.0, bead_width=None, wire_feed=None, features=(), fitted=None)
+PATH = SimpleNamespace(
+    layer_height=2.0, bead_width=None, wire_feed=None, features=(), checks=Checks()
+)
 
 
 def of_time(motion, step, function):

@@ -10,6 +10,7 @@ import pytest
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
 from freecad_am.core.program import DEPOSIT, DepositOff, DepositOn, LayerStart, Moves, Wait
 from freecad_am.core.simulation.timeline import timeline, totals
+from freecad_am.core.toolpath import Checks
 
 PROCESS = ProcessParameters(
     lead_on=0.4,
@@ -122,7 +123,7 @@ def test_totals_are_sums_over_the_segments(a_motion):
     motion = a_motion(8)
     line = timeline(motion, PROCESS)
     path = SimpleNamespace(
-        layer_height=2.0, bead_width=None, wire_feed=10.0, features=(), fitted=None
+        layer_height=2.0, bead_width=None, wire_feed=10.0, features=(), checks=Checks()
     )
     sums = totals(motion, line, PROCESS, path)
     beads = [
@@ -150,7 +151,7 @@ def test_a_width_that_varies_counts_by_the_trapezoid(a_motion):
     rows = np.flatnonzero(motion.deposit)
     steps = np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1)
     path = SimpleNamespace(
-        layer_height=1.5, bead_width=None, wire_feed=None, features=(), fitted=None
+        layer_height=1.5, bead_width=None, wire_feed=None, features=(), checks=Checks()
     )
     sums = totals(motion, timeline(motion, PROCESS), PROCESS, path)
     assert sums.fed is None

@@ -109,11 +109,11 @@ def test_what_is_laid_all_the_way_round_a_hub_is_known(surface, size, fill):
         else (lambda z: surface.radius * (1.0 - z / surface.height))
     )
     part = quad(lambda z: math.pi * (size[1] ** 2 - foot(z) ** 2), size[2], size[3])[0]
-    told, near = path.volumes, 0.012 * max(part, whole)
+    told, near = path.checks.volumes, 0.012 * max(part, whole)
     assert told[0] == pytest.approx(part, rel=1e-3)
     assert told[1] == pytest.approx(left + max(part - whole, 0.0), abs=near)
     assert told[2] == pytest.approx(beside + max(whole - part, 0.0), abs=near)
-    assert path.twice == pytest.approx(twice, abs=near)
+    assert path.checks.twice == pytest.approx(twice, abs=near)
     thin = size[3] - size[2] < SPACING
     assert (told[2] > 0.5 * part) == thin
 
@@ -139,7 +139,7 @@ def test_what_layers_reach_beyond_a_solid_lies_beside_it():
     block = box(np.array([20.0, -17.0, 20.0]), np.array([high, 17.0, 95.0]))
     path = planned(solids(CYLINDER, block))
     part = 75.0 * quad(lambda y: high - math.sqrt(45.0**2 - y * y), -17.0, 17.0)[0]
-    assert len(path.layers) > 1 and path.volumes[0] == pytest.approx(part, rel=1e-3)
+    assert len(path.layers) > 1 and path.checks.volumes[0] == pytest.approx(part, rel=1e-3)
     laid = (
         HEIGHT
         * 75.0
@@ -150,7 +150,7 @@ def test_what_layers_reach_beyond_a_solid_lies_beside_it():
         )
     )
     assert laid > 1.1 * part
-    assert path.volumes[2] == pytest.approx(laid - part, rel=0.05)
+    assert path.checks.volumes[2] == pytest.approx(laid - part, rel=0.05)
 
 
 @pytest.mark.parametrize(

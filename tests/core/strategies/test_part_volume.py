@@ -77,4 +77,4 @@ def test_the_balance_of_a_toolpath_has_it():
     strategy = SolidParameters(layer_height=3.0, bead_spacing=10.0, chord_error=0.01)
     solids = prepare_stack(bodies, strategy, "part")
     path = plan(solids, strategy, BuildDirectionParameters(), ProcessParameters(), None)
-    assert path.volumes[0] == pytest.approx(volume, rel=1e-9)
+    assert path.checks.volumes[0] == pytest.approx(volume, rel=1e-9)

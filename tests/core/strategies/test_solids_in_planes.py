@@ -189,29 +189,29 @@ def test_what_beads_leave_and_what_lies_beside_is_known():
     """A plate filled, and a fin thinner than a bead: how much wider one bead is, and what is above the last cut."""
     part, left, beside = planned(
         box((0, 0, 0), (60, 30, 9)), fill="contours", layer_height=2.0
-    ).volumes
+    ).checks.volumes
     assert part == pytest.approx(60 * 30 * 9) and beside < 1.0
     rounded = 4 * (1.0 - 0.25 * math.pi) * 2.0**2  # mm^2 that a contour leaves in its four corners
     assert (
         60 * 30 * 1 < left < 60 * 30 * 1 + 4 * 5 * 2.0 * rounded
     )  # at most five rings in four layers of 2 mm
-    part, left, beside = planned(box((0, 0, 0), (60, 2, 8)), widths="adaptive").volumes
+    part, left, beside = planned(box((0, 0, 0), (60, 2, 8)), widths="adaptive").checks.volumes
     assert part == pytest.approx(960.0) and left < 0.01 * 960.0 and beside < 0.02 * 960.0
-    part, left, beside = planned(box((0, 0, 0), (60, 2, 8))).volumes
+    part, left, beside = planned(box((0, 0, 0), (60, 2, 8))).checks.volumes
     assert part == pytest.approx(960.0) and left < 1.0
     assert beside == pytest.approx(
         960.0 + 2 * 8 * math.pi * 2.0, rel=0.2
     )  # twice as wide, and round ends
     part, left, beside = planned(
         box((0, 0, 0), (60, 30, 10.5)), fill="contours", layer_height=4.0
-    ).volumes
+    ).checks.volumes
     assert (
         part == pytest.approx(60 * 30 * 10.5) and left < 3 * 5 * 4.0 * rounded
     )  # three layers, the last cut 10 mm up
     assert beside == pytest.approx(60 * 30 * 1.5, abs=1.0)
     apart = planned(
         box((0, 0, 0), (30, 30, 9)), box((40, 0, 0), (60, 30, 9)), fill="contours", layer_height=2.0
-    ).volumes
+    ).checks.volumes
     assert apart[0] == pytest.approx(
         50 * 30 * 9
     )  # of several solids too, where they cannot overlap
@@ -236,8 +236,8 @@ def test_what_beads_lay_twice_is_known():
         laid = sum(np.hypot(*np.diff(line, axis=0).T).sum() for line in lines) * 4.0
         expected = (laid - once.sum() * 0.04) * 4.0
         volume = math.prod(np.ptp(part.vertices, axis=0))
-        assert made.twice == pytest.approx(expected, abs=0.01 * volume)
-        assert made.twice >= least * volume
+        assert made.checks.twice == pytest.approx(expected, abs=0.01 * volume)
+        assert made.checks.twice >= least * volume
     half = planned(
         box((0, 0, 0), (60, 30, 4)),
         fill="lines",
@@ -245,7 +245,7 @@ def test_what_beads_lay_twice_is_known():
         bead_spacing=4.0,
         layer_height=4.0,
     )
-    assert half.twice < 0.01 * 60 * 30 * 4  # lines farther apart, which meet their contour
+    assert half.checks.twice < 0.01 * 60 * 30 * 4  # lines farther apart, which meet their contour
 
 
 @pytest.mark.parametrize(
@@ -279,7 +279,7 @@ def test_beads_deposit_the_volume_of_the_part_where_they_crowd(part, fill):
 
     volume = SolidMesh(part.vertices, part.triangles).volume
     made = planned(part, fill=fill, process=process)
-    assert laid(made) == pytest.approx(volume, rel=0.03) and made.twice < 0.03 * volume
+    assert laid(made) == pytest.approx(volume, rel=0.03) and made.checks.twice < 0.03 * volume
     assert (
         min(bead.width.min() for _, _, bead in made if bead.width is not None) >= 0.3 * 4.0 - 1e-9
     )
@@ -359,12 +359,13 @@ def test_beads_are_as_short_as_their_spacing_where_that_is_less_than_2_mm():
     rod = hull(np.array([(np.cos(a), np.sin(a), z) for a in angle for z in (0.0, 2.0)]), "rod")
     thin = {"layer_height": 0.25, "bead_spacing": 0.6, "chord_error": 0.01}
     made = planned(rod, **thin)
-    part, left, beside = made.volumes
+    part, left, beside = made.checks.volumes
     assert (
-        part == pytest.approx(2.0 * math.pi, rel=0.01) and left + beside + made.twice < 0.03 * part
+        part == pytest.approx(2.0 * math.pi, rel=0.01)
+        and left + beside + made.checks.twice < 0.03 * part
     )
     made = planned(rod, shortest=2.0, **thin)  # it goes on over the ring
-    assert made.volumes[1] + made.twice > 0.1 * part
+    assert made.checks.volumes[1] + made.checks.twice > 0.1 * part
     for apart, least in ((0.6, 0.6), (2.0, 2.0), (5.0, 2.0)):
         assert SolidParameters(bead_spacing=apart).least_bead == least
 
@@ -789,7 +790,7 @@ def test_a_solid_between_two_cuts_is_named_with_its_place_and_volume():
         float, re.search(r"at \(([-\d.]+), ([-\d.]+), ([-\d.]+)\)", issue.message).groups()
     )
     assert 6.0 < x < 60.0 and 0.0 < y < 40.0 and 9.2 < z < 10.0
-    part, left, _ = made.volumes
+    part, left, _ = made.checks.volumes
     assert part == pytest.approx(60 * 40 * 2.0 + 6 * 40 * 8.0) and left >= 1000.0 * bare
 
 
@@ -906,7 +907,7 @@ def test_a_thin_flange_of_one_solid_is_not_made_up_for_by_a_foot_that_counts_too
         planned(one, layer_height=2.0, bead_spacing=3.0, direction="0 0 1"),
         planned(*bodies, layer_height=2.0, bead_spacing=3.0, direction="0 0 1"),
     ):
-        part, left, beside = made.volumes
+        part, left, beside = made.checks.volumes
         assert part == pytest.approx(60 * 40 * 2.0 + 6 * 40 * 8.0)
         assert (
             1728.0 < left < 1.04 * 1728.0
@@ -918,7 +919,7 @@ def test_curved_layers_are_not_compared_with_what_lies_between_planes():
     """Layers round a corner, from a foot along an arm: by the heights of planes a third of it would be left and beside."""
     foot, arm = box((0, 0, 0), (16, 16, 32)), box((16, 0, 16), (48, 16, 32))
     made = planned(foot, arm, layers="geodesic", bead_spacing=4.0, direction="0 0 1")
-    part, left, beside = made.volumes
+    part, left, beside = made.checks.volumes
     assert part == pytest.approx(2 * 16 * 16 * 32.0, rel=1e-3)
     assert left < 0.06 * part and beside < 0.06 * part
 

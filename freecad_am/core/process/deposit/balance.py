@@ -58,9 +58,9 @@ def feature_balance(value: Any, width: float) -> Balance | None:
 
 def toolpath_balance(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
     """The balance once beads exist, which give the covered volume exactly where they fill a part."""
-    if toolpath.volumes is None:
+    if toolpath.checks.volumes is None:
         return _beads_balance(value, toolpath, width)
-    part_volume, left_out, outside = toolpath.volumes
+    part_volume, left_out, outside = toolpath.checks.volumes
     own_hub = value.own if isinstance(value, SolidsOnHub) else None
     hub = own_hub.hub if own_hub else 0.0
     if own_hub:  # the rest of the part within the surface under the solids
@@ -75,7 +75,7 @@ def toolpath_balance(value: Any, toolpath: Toolpath, width: float) -> Balance | 
         solids=own_hub.apart if own_hub else (),
         width=toolpath.bead_width or 0.0,
         filled=True,
-        twice=toolpath.twice,
+        twice=toolpath.checks.twice,
         hub=hub,
     )
 
@@ -83,16 +83,18 @@ def toolpath_balance(value: Any, toolpath: Toolpath, width: float) -> Balance | 
 def _beads_balance(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
     """The balance of beads that fill nothing, with the volume deposited twice. Curves have no other figures."""
     balance = feature_balance(value, width)
-    if toolpath.twice is None:
+    if toolpath.checks.twice is None:
         return balance
     length = math.fsum(bead.length for _, _, bead in toolpath)
     beads = length * (toolpath.bead_width or width) * toolpath.layer_height
     if balance is None:
         return Balance(
-            value.label, None, None, beads, width=width, twice=toolpath.twice, lines=True
+            value.label, None, None, beads, width=width, twice=toolpath.checks.twice, lines=True
         )
     return replace(
-        balance, beads=beads if balance.beads is None else balance.beads, twice=toolpath.twice
+        balance,
+        beads=beads if balance.beads is None else balance.beads,
+        twice=toolpath.checks.twice,
     )
 
 

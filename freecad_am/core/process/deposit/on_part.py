@@ -113,7 +113,7 @@ def check_on_part(toolpath: Toolpath, places_: Places, off: Array, limit: float)
     if not len(measured):
         return toolpath
     worst = int(measured[off[measured].argmax()])
-    checked = replace(toolpath, on_part=(float(len(measured)), float(off[worst]), limit))
+    checked = toolpath.add_checks(on_part=(float(len(measured)), float(off[worst]), limit))
     if off[worst] <= limit:
         return checked
     where = tuple(int(column[worst]) for column in (places_.layer, places_.bead, places_.point))

@@ -26,7 +26,7 @@ from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.bead_model import BeadModel
 from ...process.order import Course, IslandOrder, RankedBead, add_waits, order_beads
-from ...toolpath import Bead, Toolpath
+from ...toolpath import Bead, Checks, Toolpath
 from ...types import Array, Mask
 from .. import size
 from ..progress import Progress, silent
@@ -313,20 +313,25 @@ def plan(
         solids.surroundings,
         None if model is None else model.law(process.acceleration),
         width,
-        volumes=volumes(
-            None if strategy.margin else part_volume(solids),
-            strategy,
-            covers,
-            sum(piece.bare for piece in missed),
-            slab_volumes(solids, strategy),
-            numbers,
+        checks=Checks(
+            volumes=volumes(
+                None if strategy.margin else part_volume(solids),
+                strategy,
+                covers,
+                sum(piece.bare for piece in missed),
+                slab_volumes(solids, strategy),
+                numbers,
+            ),
+            twice=twice_volume(made_beads, strategy, covers, width),
+            uneven=np.array(
+                [
+                    (number, min(extremes), max(extremes))
+                    for number, extremes in sorted(heights.items())
+                ]
+            )
+            if heights
+            else None,
         ),
-        twice=twice_volume(made_beads, strategy, covers, width),
-        uneven=np.array(
-            [(number, min(extremes), max(extremes)) for number, extremes in sorted(heights.items())]
-        )
-        if heights
-        else None,
     )
 
 
