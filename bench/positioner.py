@@ -28,7 +28,7 @@ from freecad_am.core.planning.external.level import levelled
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.task import Task
 from freecad_am.core.strategies.revolution import plan as strategy
-from freecad_am.core.toolpath import Toolpath
+from freecad_am.core.toolpath import MotionRules, Toolpath
 
 from rows import Row
 from sizes import choose
@@ -62,7 +62,9 @@ def run() -> list[Row]:
         SIX.nozzle,
         SIX.platform_diameter,
     )
-    upright = dataclasses.replace(toolpath, max_from_vertical=math.radians(LEVEL))
+    upright = dataclasses.replace(
+        toolpath, rules=MotionRules(max_from_vertical=math.radians(LEVEL))
+    )
     six, eight = (cells.resolve(one, toolpath.frame) for one in (SIX, POSITIONER))
     parameters = JointParameters()
 

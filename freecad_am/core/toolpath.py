@@ -331,20 +331,39 @@ class Checks:
     predicted: PredictedShape | None = None
 
 
+@dataclass(frozen=True)
+class MotionRules:
+    """What a motion along the beads keeps.
+
+    overlap: seam overlap of closed beads, mm. retreat: mm, at bead ends. max_from_vertical: rad,
+    maximum angle of the tool axis from the vertical in a cell with a positioner.
+    """
+
+    overlap: float = 0.0
+    retreat: float = 0.0
+    max_from_vertical: float = math.pi
+
+
+@dataclass(frozen=True, eq=False)
+class SequencedFeature:
+    """One of several features in a toolpath. values: its toolpath without layers, which carry the
+    number of their feature.
+    """
+
+    label: str
+    values: Toolpath
+
+
 @dataclass(frozen=True, eq=False)
 class Toolpath:
     """All layers from the platform up.
 
     frame: (4, 4) pose of the feature frame in part coordinates (interface.md, `mount`). chord_error
-    and layer_height: mm. overlap: seam overlap of closed beads, mm. issues: of slicing and strategy
-    (spacing, tilt-back, clearance). surroundings: bodies in part coordinates that the nozzle must
-    not touch. law: the bead model at other speeds, None without one. bead_width: mm, for beads
-    without a width of their own. wire_feed: mm/s, None if unknown. feature_label: of one of
-    several.
-
-    features: for several features printed together, the toolpath data of each, without layers; the
-    other fields then describe the first feature. max_from_vertical: rad, maximum angle of the tool
-    axis from the vertical in a cell with a positioner. retreat: mm, at bead ends.
+    and layer_height: mm. issues: of slicing and strategy (spacing, tilt-back, clearance).
+    surroundings: bodies in part coordinates that the nozzle must not touch. law: the bead model at
+    other speeds, None without one. bead_width: mm, for beads without a width of their own.
+    wire_feed: mm/s, None if unknown. features: several features printed together, else empty; the
+    other fields then describe the first one.
     """
 
     layers: tuple[Layer, ...]
@@ -352,16 +371,13 @@ class Toolpath:
     layer_height: float
     chord_error: float
     issues: tuple[Issue, ...] = ()
-    overlap: float = 0.0
     family: str = field(default=DEFAULT_KIND)
     surroundings: tuple[Body, ...] = ()
     law: SpeedLaw | None = None
     bead_width: float | None = None
     wire_feed: float | None = None
-    feature_label: str = ""
-    features: tuple[Toolpath, ...] = ()
-    max_from_vertical: float = math.pi
-    retreat: float = 0.0
+    features: tuple[SequencedFeature, ...] = ()
+    rules: MotionRules = MotionRules()
     checks: Checks = field(default_factory=Checks)
 
     def __post_init__(self) -> None:
@@ -398,14 +414,14 @@ class Toolpath:
         of = np.array([layer.feature for layer in self.layers])
         numbers = [np.flatnonzero(of == k) for k in range(len(self.features))]
         return tuple(
-            (dataclasses.replace(one, layers=tuple(self.layers[k] for k in some)), some)
+            (dataclasses.replace(one.values, layers=tuple(self.layers[k] for k in some)), some)
             for one, some in zip(self.features, numbers, strict=True)
         )
 
     @property
     def layer_heights(self) -> Array:
         """(layers,) mm, the height of each layer."""
-        heights = [one.layer_height for one in self.features] or [self.layer_height]
+        heights = [one.values.layer_height for one in self.features] or [self.layer_height]
         return np.array([heights[layer.feature if self.features else 0] for layer in self.layers])
 
     @property
@@ -429,7 +445,7 @@ class Toolpath:
 
         0 if unknown, as in old documents: such beads count as lines.
         """
-        known = [one.bead_width or 0.0 for one in self.features or (self,)]
+        known = [one.values.bead_width or 0.0 for one in self.features] or [self.bead_width or 0.0]
         return np.concatenate(
             [
                 np.full(len(bead), known[self.layers[i].feature if self.features else 0])

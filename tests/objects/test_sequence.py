@@ -103,9 +103,7 @@ def test_what_is_saved_is_there_again(doc, features, tmp_path):
     assert [layer.feature for layer in after.layers] == [layer.feature for layer in before.layers]
     for (_, _, old), (_, _, new) in zip(before, after, strict=True):
         np.testing.assert_array_equal(old.points, new.points)
-    assert [one.feature_label for one in after.features] == [
-        one.feature_label for one in before.features
-    ]
+    assert [one.label for one in after.features] == [one.label for one in before.features]
 
 
 def test_own_speeds(doc, features):

@@ -10,7 +10,15 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError, Issue
-from freecad_am.core.toolpath import Bead, Layer, Toolpath
+from freecad_am.core.toolpath import (
+    Bead,
+    Checks,
+    Layer,
+    MotionRules,
+    SequencedFeature,
+    SpeedLaw,
+    Toolpath,
+)
 from freecad_am.objects.results import schemas, store
 
 
@@ -218,6 +226,57 @@ def test_results_stored_before_format_5_are_read():
         store.unpack(floats[:-9], text, "k", "x")
     with pytest.raises(InputError, match="cannot be read"):
         store.unpack(floats, text.replace('"n":[', '"n":[9'), "k", "x")
+
+
+def sequenced_toolpath():
+    """What the result in data/toolpath-1.npz was made of, when a toolpath was one flat record."""
+    up = np.tile([0.0, 0.0, 1.0], (4, 1))
+
+    def bead(z, **more):
+        points = np.array([[0.0, 0.0, z], [1.0, 0.0, z], [1.0, 1.0, z], [0.0, 0.0, z]])
+        return Bead(points, up, up, np.arange(4.0), np.full(4, 6.0), True, **more)
+
+    filled = bead(
+        0.0,
+        width=np.full(4, 5.0),
+        height=np.full(4, 2.0),
+        wire_share=1.5,
+        kind="closing",
+        closing=True,
+        ring=2,
+        returns=True,
+        bead_class="hull",
+        external=np.zeros((4, 2)),
+        ends=(1.0, 2.0, 3.0, 4.0, 5.0),
+        phase=np.arange(4.0),
+    )
+    checks = Checks(0.5, (10.0, 0.1, 0.2), (1.0, 2.0, 3.0), np.array([[0.0, 1.5, 2.5]]), 0.25)
+    first = Toolpath(
+        (),
+        np.eye(4),
+        2.0,
+        0.01,
+        family="solid",
+        law=SpeedLaw(1.0, 2.0, 3.0, 4.0),
+        bead_width=5.0,
+        wire_feed=7.0,
+        rules=MotionRules(4.0, 6.0, 1.0),
+        checks=checks,
+    )
+    second = Toolpath((), np.eye(4), 2.0, 0.02)
+    return dataclasses.replace(
+        first.add_checks(unsupported=0.75),
+        layers=(Layer((filled,)), Layer((bead(2.0),), 3.0, True, 1)),
+        issues=(Issue("warning", "X", "text", 1),),
+        features=(SequencedFeature("Pièce", first), SequencedFeature("Tube", second)),
+    )
+
+
+def test_toolpaths_stored_as_one_flat_record_are_read():
+    stored = np.load(Path(__file__).parent / "data" / "toolpath-1.npz")
+    path = store.unpack(stored["floats"], str(stored["text"]), "k", "x")
+    assert equal(path, sequenced_toolpath())
+    assert equal(store.unpack(*store.pack(path, "k"), "k", "x"), path)
 
 
 def test_damaged_results_are_told():

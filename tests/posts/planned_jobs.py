@@ -19,7 +19,7 @@ from freecad_am.core.parameters.program import NcParameters, ProgramParameters
 from freecad_am.core.planning.beads import steps
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.toolpath import Bead, Layer, Toolpath
+from freecad_am.core.toolpath import Bead, Layer, MotionRules, Toolpath
 from freecad_am.posts import catalogue
 from tests.programs import build
 
@@ -283,8 +283,7 @@ def planned(name, lift=LIFT, retreat=0.0, ramps=()):
         HEIGHT,
         CHORD_ERROR,
         family="developable",
-        max_from_vertical=setup.most,
-        retreat=retreat,
+        rules=MotionRules(retreat=retreat, max_from_vertical=setup.most),
     )
     path = plan_joints(toolpath, cell, JointParameters(degree=1))
     assert path.feasible, [issue.message for issue in path.issues]

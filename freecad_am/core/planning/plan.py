@@ -123,8 +123,7 @@ def plan_joints(
         arm_clearance,
         lock,
         toolpath.chord_error,
-        toolpath.overlap,
-        toolpath.retreat,
+        toolpath.rules,
         features,
     )
 
@@ -441,7 +440,8 @@ def _as_run(task: Task, paths: Sequence[BeadPath]) -> list[tuple[BeadPath, list[
     ):
         return [(path, []) for path in paths]
     longer = [
-        extend_past_seam(task, go_back(task, path, task.retreat), task.overlap) for path in paths
+        extend_past_seam(task, go_back(task, path, task.rules.retreat), task.rules.overlap)
+        for path in paths
     ]
     return all_refined(task, longer, task.chord_error)
 

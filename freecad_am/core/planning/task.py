@@ -17,7 +17,7 @@ from ..kinematics.cell import Cell
 from ..kinematics.inverse.serial_arm import SerialArm
 from ..kinematics.limits import RESERVE, Limits, PoseFrames
 from ..parameters.joints import JointParameters
-from ..toolpath import Toolpath
+from ..toolpath import MotionRules, Toolpath
 from ..types import Array, Index, Mask
 from .arm_kept import ArmKept
 from .points import Points, in_pieces, unwrapped, unwrapped_by_turns
@@ -147,9 +147,9 @@ class Task:
 
     joined: whether the polynomial of a closed bead must return to its start value apart from whole
     turns. Parts of revolution do not need this: there a limited axis rewinds between layers. kept:
-    the link clearance check, if requested. lock: the locked one of two rotary axes. chord_error,
-    overlap, retreat: mm, from the toolpath. parts: the toolpath of each feature, and its layers,
-    which give travel speeds and maximum tilts.
+    the link clearance check, if requested. lock: the locked one of two rotary axes. chord_error:
+    mm. rules: of the toolpath. parts: the toolpath of each feature, and its layers, which give
+    travel speeds and maximum tilts.
     """
 
     cell: Cell
@@ -159,8 +159,7 @@ class Task:
     kept: ArmKept | None = None
     lock: Lock | None = None
     chord_error: float = 0.0
-    overlap: float = 0.0
-    retreat: float = 0.0
+    rules: MotionRules = MotionRules()
     parts: Parts = ()
 
     @cached_property

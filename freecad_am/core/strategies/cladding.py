@@ -14,7 +14,7 @@ from ..parameters.filled import CladdingParameters
 from ..parameters.process import ProcessParameters
 from ..process.bead_model import BeadModel
 from ..process.order import IslandOrder, RankedBead, add_waits, order_beads
-from ..toolpath import Bead, Checks, Toolpath
+from ..toolpath import Bead, Checks, MotionRules, Toolpath
 from .progress import Progress, silent
 from .solids.beads import MadeBead, bead_of, layer_volumes, twice_volume
 from .solids.filling import Pictures, bead_width, over_fed, spaced
@@ -95,7 +95,6 @@ def plan(
         strategy.layer_height,
         strategy.chord_error,
         tuple(issues),
-        process.overlap,
         "cladding",
         clad_faces.surroundings,
         None if model is None else model.law(process.acceleration),
@@ -104,6 +103,7 @@ def plan(
             volumes=layer_volumes(strategy, covers),
             twice=twice_volume(made_beads, strategy, covers, width),
         ),
+        rules=MotionRules(process.overlap),
     )
 
 

@@ -67,10 +67,10 @@ def plan(
         strategy.layer_height,
         strategy.chord_error,
         curves_.issues,
-        process.overlap,
         "curves",
         curves_.surroundings,
         bead_width=process.bead_width,
+        rules=MotionRules(process.overlap),
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..geometry.obstacles import Body
 from ..issues import InputError, Issue
-from ..toolpath import Layer, Toolpath
+from ..toolpath import Layer, SequencedFeature, Toolpath
 from ..types import Array, Index
 
 BY_FEATURE, BY_HEIGHT = "feature", "height"
@@ -20,7 +20,11 @@ FLOATS = (
 
 
 def join_toolpaths(
-    toolpaths: Sequence[Toolpath], sequence: str, up: Array, bodies: Sequence[Body]
+    toolpaths: Sequence[Toolpath],
+    labels: Sequence[str],
+    sequence: str,
+    up: Array,
+    bodies: Sequence[Body],
 ) -> Toolpath:
     """Join the toolpaths of several features, each with its label, in the order of deposit.
 
@@ -57,10 +61,10 @@ def join_toolpaths(
         ),
         surroundings=tuple(bodies),
         law=None,
-        feature_label="",
         wire_feed=first_path.wire_feed if len(feeds) == 1 else None,
         features=tuple(
-            replace(toolpath, layers=(), issues=(), surroundings=()) for toolpath in toolpaths
+            SequencedFeature(label, _without_layers(toolpath))
+            for label, toolpath in zip(labels, toolpaths, strict=True)
         ),
         checks=replace(
             first_path.checks,
@@ -71,6 +75,10 @@ def join_toolpaths(
             uneven=_uneven(toolpaths, numbers),
         ),
     )
+
+
+def _without_layers(toolpath: Toolpath) -> Toolpath:
+    return replace(toolpath, layers=(), issues=(), surroundings=())
 
 
 def _uneven(toolpaths: Sequence[Toolpath], numbers: Sequence[Index]) -> Array | None:
@@ -101,7 +109,7 @@ def update_feature(
 ) -> Toolpath:
     """The toolpath with an updated feature and further issues, numbered through."""
     features = list(toolpath.features)
-    features[number] = replace(feature, layers=(), issues=(), surroundings=())
+    features[number] = replace(features[number], values=_without_layers(feature))
     return replace(toolpath, features=tuple(features), issues=(*toolpath.issues, *issues))
 
 
@@ -116,7 +124,7 @@ def refuse_floating(toolpath: Toolpath, number: int, lengths: dict[int, float]) 
         return
     raise InputError(
         "FLOATS",
-        feature.feature_label,
+        toolpath.features[number].label,
         "the feature has no support: {:.4g} of {:.4g} mm of its first layer are unsupported when "
         "deposited; move it onto the existing part, set its substrate, or deposit its support "
         "first",

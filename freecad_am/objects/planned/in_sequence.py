@@ -123,12 +123,13 @@ def planned_in_sequence(
                 layers = add_wire_speed(layers_of(inputs), inputs)
         except InputError as error:
             raise InputError(error.code, f"{entry.label}: {error.where}", error.message) from None
-        planned_parts.append(dataclasses.replace(layers, feature_label=entry.label))
+        planned_parts.append(layers)
         if stands is None:
             stands = mounted(cell or CellParameters(), layers.frame, layers.family)
     assert stands is not None
     around = _distinct([body for entry in members for body in entry.surroundings()])
-    toolpath = sequence.join_toolpaths(planned_parts, order, stands[:3, 2], around)
+    labels = [entry.label for entry in members]
+    toolpath = sequence.join_toolpaths(planned_parts, labels, order, stands[:3, 2], around)
     plates = platforms(cell, toolpath)
     progress.report(STRATEGY, CLEARING)
     for number, entry in enumerate(members):
@@ -138,7 +139,7 @@ def planned_in_sequence(
     progress.report(CHECKED, "looking for beads over nothing")
     for number, entry in enumerate(members):
         toolpath = _judge_feature(toolpath, number, entry, plates, stands)
-    feature_parts = toolpath.features
+    feature_parts = [feature.values for feature in toolpath.features]
     on_parts = [
         feature_part.checks.on_part
         for feature_part in feature_parts

@@ -18,6 +18,7 @@ from ...core.process.deposit.pieces import deposited_twice
 from ...core.process.order import enforce_layer_time
 from ...core.process.wire import set_wire_feed
 from ...core.strategies import support
+from ...core.toolpath import MotionRules
 from ...core.toolpath import Toolpath as CoreToolpath
 from ..families.given import Given, platform_frame
 from ..families.planner import CHECKED, CLEARING, STRATEGY
@@ -119,8 +120,7 @@ def layers_of(inputs: Given) -> CoreToolpath:
     twice = toolpath.checks.twice if family.is_filled else deposited_twice(toolpath)
     return dataclasses.replace(
         toolpath.add_checks(twice=twice),
-        max_from_vertical=inputs.build.max_from_vertical,
-        retreat=process.retreat,
+        rules=MotionRules(process.overlap, process.retreat, inputs.build.max_from_vertical),
     )
 
 

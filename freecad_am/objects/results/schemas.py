@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import functools
 import importlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 Fields = dict[str, Any]
@@ -51,6 +51,7 @@ SCHEMAS: dict[str, Schema] = {
     "mesh": Schema("core.geometry.mesh.triangle_mesh:Mesh"),
     "mesh_wall": Schema("core.geometry.walls.mesh_wall:MeshWall"),
     "motion": Schema("core.motion:Motion"),
+    "motion_rules": Schema("core.toolpath:MotionRules"),
     "nozzle_parameters": Schema("core.parameters.cell:NozzleParameters", 2),
     "nozzle_shape": Schema("core.parameters.cell_records:NozzleShape"),
     "obstacle": Schema("core.geometry.obstacles:Body"),
@@ -90,18 +91,31 @@ _FIELDS_OF_CHECKS = (
 )
 
 
-def _gather_checks(fields: Fields) -> Fields:
-    """Return the fields of a toolpath with its checks in a record of their own."""
-    checks = {name: fields[name] for name in _FIELDS_OF_CHECKS if name in fields}
-    others = {name: value for name, value in fields.items() if name not in checks}
-    return {**others, "checks": record("toolpath_checks", 1, checks)}
+_FIELDS_OF_RULES = ("overlap", "retreat", "max_from_vertical")
 
 
-# by name and version: turns the fields of that version into the next version's
-UPGRADES: dict[tuple[str, int], Callable[[Fields], Fields]] = {
+def _gather(fields: Fields, names: Sequence[str], schema: str) -> Any:
+    """Take fields out and return the record of them, of version 1 of a schema."""
+    return record(schema, 1, {name: fields.pop(name) for name in names if name in fields})
+
+
+def _divide_toolpath(fields: Fields) -> Any:
+    """Return the fields of version 2 of a toolpath; one without layers is a feature of a sequence."""
+    fields = dict(fields)
+    label = fields.pop("feature_label", "")
+    fields["checks"] = _gather(fields, _FIELDS_OF_CHECKS, "toolpath_checks")
+    fields["rules"] = _gather(fields, _FIELDS_OF_RULES, "motion_rules")
+    if fields["layers"]:
+        return fields
+    feature = {"label": label, "values": record("toolpath", 2, fields)}
+    return record("sequenced_feature", 1, feature)
+
+
+# by name and version: turns the fields of that version into the next version's, or into a record
+UPGRADES: dict[tuple[str, int], Callable[[Fields], Any]] = {
     ("cell_parameters", 1): lambda fields: fields,  # texts, which the class turns into records
     ("nozzle_parameters", 1): lambda fields: fields,
-    ("toolpath", 1): _gather_checks,
+    ("toolpath", 1): _divide_toolpath,
 }
 
 _PACKAGE = __name__.split(".", maxsplit=1)[0]
@@ -149,4 +163,6 @@ def record(name: str, version: int, fields: Fields) -> Any:
         raise ValueError(f"{name} has version {version}, which is later than this one")
     for earlier in range(version, SCHEMAS[name].version):
         fields = UPGRADES[name, earlier](fields)
+        if not isinstance(fields, dict):
+            return fields
     return kind(**fields)

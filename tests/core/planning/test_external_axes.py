@@ -20,6 +20,7 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.toolpath import MotionRules
 
 ROBOT, POSITIONER = "kuka-kr8-r2100-2-arc-hw", "motoman-motopos-d500"
 STANDS = (1400.0, 120.0, -50.0, 0.0, 0.0, 30.0)  # mm, deg
@@ -100,7 +101,7 @@ def file_of_built_in():
 
 
 def levelled_to(toolpath, degrees):
-    return dataclasses.replace(toolpath, max_from_vertical=math.radians(degrees))
+    return dataclasses.replace(toolpath, rules=MotionRules(max_from_vertical=math.radians(degrees)))
 
 
 def feasible(toolpath, cell, **joints):

@@ -15,6 +15,7 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.toolpath import MotionRules
 from tests.core.planning.test_external_axes import (
     PLATFORM,
     ROBOT,
@@ -163,7 +164,9 @@ def test_a_turntable_alone_turns_what_the_robot_need_not(hemisphere, tables):
 
 
 def test_a_table_on_another_one_keeps_the_tool_upright(hemisphere, tables):
-    levelled = dataclasses.replace(hemisphere, max_from_vertical=math.radians(10.0))
+    levelled = dataclasses.replace(
+        hemisphere, rules=MotionRules(max_from_vertical=math.radians(10.0))
+    )
     cell = cell_for(
         levelled, f"{named(tables['tilt'], STANDS['tilt'])}; {named(tables['turn'], ON_TILT)}"
     )

@@ -16,6 +16,7 @@ from freecad_am.core.planning.external.optimised import least_margin
 from freecad_am.core.planning.external.stroke import directions_on_face
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.task import Task
+from freecad_am.core.toolpath import MotionRules
 
 from .test_external_axes import (
     POSITIONER,
@@ -219,7 +220,7 @@ def test_what_it_cannot_serve_is_told(hemisphere):
     alone = cell_for(
         hemisphere, external="none", deposition_point=(1400.0, 0.0, 300.0, 0.0, 0.0, 0.0)
     )
-    free = dataclasses.replace(hemisphere, max_from_vertical=math.pi)
+    free = dataclasses.replace(hemisphere, rules=MotionRules())
     path = plan_joints(free, alone, JointParameters(external_axes="optimised"))
     assert [issue.code for issue in path.issues if "joints.external_axes" in issue.message] == [
         "NOT_USED"

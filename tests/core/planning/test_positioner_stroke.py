@@ -164,8 +164,9 @@ def test_the_text_keeps_the_limits_and_lies_on_the_beads(hemisphere, cell_with, 
 @pytest.mark.parametrize("turn", [170.0, 200.0])
 @pytest.mark.long
 def test_beads_that_begin_elsewhere_and_the_last_pieces_run_on_as_asked(sliced, cell_with, turn):
+    levelled = levelled_to(sliced("sphere", 10.0, chord_error=0.1), MOST)
     toolpath = dataclasses.replace(
-        levelled_to(sliced("sphere", 10.0, chord_error=0.1), MOST), overlap=OVERLAP
+        levelled, rules=dataclasses.replace(levelled.rules, overlap=OVERLAP)
     )
     planned = plan_joints(toolpath, cell_with(toolpath, 134.0, turn), JointParameters())
     assert planned.feasible and "BEAD_SPLIT" in codes(

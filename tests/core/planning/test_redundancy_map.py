@@ -28,6 +28,7 @@ from freecad_am.core.planning import redundancy_map as spin_map
 from freecad_am.core.planning.points import TURN, gather
 from freecad_am.core.planning.task import Task
 from freecad_am.kdl import KdlArm
+from freecad_am.core.toolpath import MotionRules
 
 PART_ON_ROBOT = {}
 TOOL_ON_ROBOT = {"setup": "tool-on-robot", "deposition_point": (900.0, 0.0, -100.0, 0.0, 0.0, 0.0)}
@@ -492,7 +493,7 @@ ON_POSITIONER = {
 @pytest.fixture(scope="module")
 def on_positioner(dome):
     """A plan with e1 to e3, of which e3 turns all the time; its task and beads."""
-    toolpath = dataclasses.replace(dome, max_from_vertical=np.radians(10.0))
+    toolpath = dataclasses.replace(dome, rules=MotionRules(max_from_vertical=np.radians(10.0)))
     cell = cells.resolve(CellParameters(**ON_POSITIONER), toolpath.frame)
     planned = plan.plan_joints(
         toolpath, cell, JointParameters(method="constant", min_condition=0.0)

@@ -15,8 +15,8 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.toolpath import Bead, Layer, Toolpath
 from freecad_am.kdl import KdlArm, available
+from freecad_am.core.toolpath import Bead, Layer, MotionRules, Toolpath
 
 MACHINES = ["table-xyzac", "table-xyzbc", "head-table-xyzbc"]
 
@@ -258,7 +258,7 @@ def test_seams_are_moved_where_a_limited_axis_has_room(overlap):
     # 400 deg of stroke: a whole turn fits from 40 deg of starts alone, and the seams are all round
     cell = with_limits(resolved(), 4, -200.0, 200.0)
     beads = [around(Developable(60.0, 200.0), 2.0 * k, 40.0, start=1.1 * k) for k in range(6)]
-    planned = dataclasses.replace(toolpath(*beads), overlap=overlap)
+    planned = dataclasses.replace(toolpath(*beads), rules=MotionRules(overlap=overlap))
     path = plan_joints(planned, cell, JointParameters())
     assert path.feasible, [issue.message for issue in path.issues]
     assert "SEAM_MOVED" in {issue.code for issue in path.issues} and len(path.beads) == len(beads)
@@ -404,7 +404,14 @@ def test_an_overlap_runs_on():
     cell = resolved()
     one = around(Developable(60.0), 0.0, 20.0)
     path = plan_joints(
-        Toolpath((Layer((one,)),), np.eye(4), 2.0, 0.05, overlap=7.0, family="developable"),
+        Toolpath(
+            (Layer((one,)),),
+            np.eye(4),
+            2.0,
+            0.05,
+            rules=MotionRules(overlap=7.0),
+            family="developable",
+        ),
         cell,
         JointParameters(),
     )

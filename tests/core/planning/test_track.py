@@ -22,7 +22,7 @@ from freecad_am.core.planning.external import remedies as external_remedies
 from freecad_am.core.planning.external.level import figures
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.toolpath import Bead, Layer, Toolpath
+from freecad_am.core.toolpath import Bead, Layer, MotionRules, Toolpath
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
 from tests.core.planning.test_external_axes import bryant, driven, kdl_chain, kdl_pose
@@ -254,7 +254,9 @@ def test_a_track_that_is_too_short_is_told(track, tmp_path):
     assert not path.feasible
     values = np.concatenate([bead.bead.external[:, 0] for bead in path.beads])
     assert values.min() >= -100.0 and values.max() <= 150.0
-    level = dataclasses.replace(wall(200.0, 1), max_from_vertical=math.radians(5.0))
+    level = dataclasses.replace(
+        wall(200.0, 1), rules=MotionRules(max_from_vertical=math.radians(5.0))
+    )
     issues = plan_joints(level, cell_for(track), JointParameters()).issues
     assert any(
         issue.code == "NOT_LEVEL" and "nothing turns the part" in issue.message for issue in issues

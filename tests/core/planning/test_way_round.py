@@ -20,7 +20,7 @@ from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.rapids import way_round as sampled
 from freecad_am.core.planning.rapids.way_round import Ranges, way_round
 from freecad_am.core.simulation import rapid_look
-from freecad_am.core.toolpath import Layer, Toolpath
+from freecad_am.core.toolpath import Layer, MotionRules, Toolpath
 from tests.core.planning.test_arm_clearance import CELL, CLEARANCE, dome, planned
 from tests.core.planning.test_obstacles import cell_with, nearest, nozzle_points
 from tests.kdl_links import KdlLinks
@@ -159,7 +159,7 @@ def test_rapids_over_a_positioner_are_led_past_an_obstacle(monkeypatch):
         planned_jobs.HEIGHT,
         planned_jobs.CHORD_ERROR,
         family="developable",
-        max_from_vertical=setup.most,
+        rules=MotionRules(max_from_vertical=setup.most),
     )
     path = plan_joints(toolpath, there, JointParameters(degree=1))
 

@@ -91,10 +91,10 @@ def levelled(cell: Cell, toolpath: Toolpath, whole_turns: bool = False) -> Level
         )
         sections = [dataclasses.replace(bead, external=values)]
         if stroke.lacks(cell, values, whole_turns) or not stroke.runs_on(
-            cell, sections[0], max_lean, toolpath.overlap
+            cell, sections[0], max_lean, toolpath.rules.overlap
         ):
             sections = (
-                stroke.find_room(cell, bead, max_lean, previous, toolpath.overlap) or sections
+                stroke.find_room(cell, bead, max_lean, previous, toolpath.rules.overlap) or sections
             )
         for section in sections:
             assert section.external is not None
@@ -218,7 +218,9 @@ def axes_figures(cell: Cell, paths: Sequence[BeadPath]) -> dict[str, object]:
 def allowed_by_layer(features: Parts) -> dict[int, float]:
     """The largest angle to the vertical, rad, of each layer."""
     return {
-        int(layer): feature.max_from_vertical for feature, layers in features for layer in layers
+        int(layer): feature.rules.max_from_vertical
+        for feature, layers in features
+        for layer in layers
     }
 
 

@@ -161,7 +161,7 @@ def _race(task: Task, run: _Run) -> float:
 def _finer(task: Task, bead: Bead, previous: Array, pole: float) -> _Run:
     """The bead with directions within `pole` rad of a pole on it, finer where it must be."""
     cell, checked, axes = task.cell, bead, previous
-    bead = gone_back(bead, task.retreat).run_on(task.overlap)
+    bead = gone_back(bead, task.rules.retreat).run_on(task.rules.overlap)
     for _ in range(ROUNDS):
         # compute the whole bead again: near a pole the shorter continuation only shows with more
         # points
@@ -244,7 +244,7 @@ def _ways(task: Task, bead: Bead) -> Iterator[list[Bead]]:
                 )
                 if start:
                     yield [bead.started_at(start)]
-    extended = bead.run_on(task.overlap)
+    extended = bead.run_on(task.rules.overlap)
     for count in range(2, min(MOST_PIECES, (len(extended) - 1) // (FEWEST_POINTS - 1)) + 1):
         cuts = np.round(np.linspace(0, len(extended) - 1, count + 1)).astype(int).tolist()
         yield [

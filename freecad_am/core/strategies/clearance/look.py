@@ -80,7 +80,7 @@ def space_of(
     layer = np.repeat([i for i, _, _ in toolpath], counts)
     heights = toolpath.heights
     lean, own_start = 0.0, np.searchsorted(layer, layer)
-    if (toolpath.features[feature] if toolpath.features else toolpath).traits.has_axis:
+    if (toolpath.features[feature].values if toolpath.features else toolpath).traits.has_axis:
         # directions and tools are turned as one there; the last turn of a spiral belongs to the current layer
         feature_rows = np.repeat(beads_of(toolpath, feature), counts)
         turned = np.arccos(

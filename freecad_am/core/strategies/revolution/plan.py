@@ -106,8 +106,8 @@ def plan(
         strategy.layer_height,
         strategy.chord_error,
         tuple(issues),
-        process.overlap,
         bead_width=process.bead_width,
+        rules=MotionRules(process.overlap),
     )
 
 

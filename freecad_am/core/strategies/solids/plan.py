@@ -26,7 +26,7 @@ from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.bead_model import BeadModel
 from ...process.order import Course, IslandOrder, RankedBead, add_waits, order_beads
-from ...toolpath import Bead, Checks, Toolpath
+from ...toolpath import Bead, Checks, MotionRules, Toolpath
 from ...types import Array, Mask
 from .. import size
 from ..progress import Progress, silent
@@ -308,7 +308,6 @@ def plan(
         strategy.layer_height,
         strategy.chord_error,
         tuple(all_issues),
-        process.overlap,
         "solid" if solids.has_plane_layers() else "developable",
         solids.surroundings,
         None if model is None else model.law(process.acceleration),
@@ -332,6 +331,7 @@ def plan(
             if heights
             else None,
         ),
+        rules=MotionRules(process.overlap),
     )
 
 

@@ -27,7 +27,7 @@ from ...slicing.fronts import layers as slicing
 from ...slicing.fronts.curve import Smoothing
 from ...slicing.fronts.rims import Rims, local_distances, nearest_feet
 from ...slicing.fronts.smooth import turn
-from ...toolpath import Bead, Layer, Toolpath
+from ...toolpath import Bead, Layer, MotionRules, Toolpath
 from ...types import Array
 from .. import size
 from ..progress import Progress, silent
@@ -283,9 +283,9 @@ def plan(
         height,
         strategy.chord_error,
         (*issues, *departures),
-        process.overlap,
         "surface",
         bead_width=process.bead_width,
+        rules=MotionRules(process.overlap),
     )
 
 

@@ -76,9 +76,9 @@ def plan(
         strategy.layer_height,
         strategy.chord_error,
         (*issues, *omitted, *departures),
-        process.overlap,
         "surface",
         bead_width=process.bead_width,
+        rules=MotionRules(process.overlap),
     )
 
 
