@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -40,6 +40,48 @@ def _frozen(values: Any, shape: tuple[int | None, ...], name: str) -> Array:
     return array
 
 
+@dataclass(frozen=True)
+class BeadRole:
+    """What a bead is in its layer.
+
+    kind: its role in the filling: 'contour', 'line', 'zigzag', 'spiral', 'centre' (in the middle of
+    contours or thin regions), 'closing' (a gap between other beads); '' for strategies without
+    fillings. ring: number of contours outside of the bead. closing: whether it fills a gap between
+    beads, nearer to them than a layer height. returns: whether it is the first bead of a layer on a
+    solid that already has a layer. bead_class: of `bead_classes.CLASSES`, or ''.
+    """
+
+    kind: str = ""
+    ring: int = 0
+    closing: bool = False
+    returns: bool = False
+    bead_class: str = ""
+
+
+@dataclass(frozen=True)
+class BeadEnds:
+    """Start and end of a bead with speeds of their own: lengths and ramps in mm, speeds in mm/s; speed 0
+    is the speed of the bead.
+    """
+
+    start_length: float
+    start_speed: float
+    end_length: float
+    end_speed: float
+    start_ramp: float = 0.0
+    end_ramp: float = 0.0
+
+    @property
+    def has_ramps(self) -> bool:
+        """Whether the speed changes gradually at an end."""
+        return self.start_ramp > 0.0 or self.end_ramp > 0.0
+
+    @property
+    def length(self) -> float:
+        """Length of both ends with their ramps, mm."""
+        return self.start_length + self.end_length + (self.start_ramp + self.end_ramp)
+
+
 @dataclass(frozen=True, eq=False)
 class Bead:
     """One uninterrupted deposit of n points, n >= 2. A closed bead repeats its first point as its
@@ -52,14 +94,8 @@ class Bead:
     mm as predicted, or None without a bead model. wire_share: mm of wire per mm of bead if the wire
     follows the travel speed, else None. tangents: (n, 2, 3) unit vectors along which the bead
     arrives at and leaves each point, equal except at corners; None if a strategy does not provide
-    them. closing: whether it fills a gap between beads, nearer to them than a layer height. kind:
-    its role in the filling of its layer: 'contour', 'line', 'zigzag', 'spiral', 'centre' (in the
-    middle of contours or thin regions), 'closing' (a gap between other beads); '' for strategies
-    without fillings. ring: number of contours outside of the bead. returns: whether it is the first
-    bead of a layer on a solid that already has a layer. external: (n, k) rad of external axes, once
-    planned. bead_class: of `bead_classes.CLASSES`, or ''. ends: mm of its start, mm/s there (0: the
-    speed of the bead), the same two for its end, then mm of both ramps. phase: (n,) PHASES of
-    segments, if planned.
+    them. ends: None without speeds of their own. external: (n, k) rad of external axes, once
+    planned. phase: (n,) PHASES of segments, if planned.
     """
 
     points: Array
@@ -70,15 +106,11 @@ class Bead:
     closed: bool
     width: Array | None = None
     tangents: Array | None = None
-    closing: bool = False
     height: Array | None = None
     wire_share: float | None = None
-    kind: str = ""
-    ring: int = 0
-    returns: bool = False
+    role: BeadRole = BeadRole()
+    ends: BeadEnds | None = None
     external: Array | None = None
-    bead_class: str = ""
-    ends: tuple[float, ...] = ()
     phase: Array | None = None
 
     def __post_init__(self) -> None:
@@ -250,9 +282,8 @@ class Bead:
 
     def part(self, rows: slice) -> Bead:
         """Some of its points, two or more in a row, as an open bead of their own."""
-        return dataclasses.replace(
-            self, **self._rows(rows), closed=False, returns=self.returns and not rows.start
-        )
+        role = dataclasses.replace(self.role, returns=self.role.returns and not rows.start)
+        return dataclasses.replace(self, **self._rows(rows), closed=False, role=role)
 
     def thinned(self, index: Index) -> Bead:
         """Return the bead with only these points, given by rising numbers that include the first
@@ -383,7 +414,7 @@ class Toolpath:
     def __post_init__(self) -> None:
         object.__setattr__(self, "frame", _frozen(self.frame, (4, 4), "frame"))
 
-    def __iter__(self) -> Any:
+    def __iter__(self) -> Iterator[tuple[int, int, Bead]]:
         """(layer index, bead index, bead) in the order of deposit."""
         for i, layer in enumerate(self.layers):
             for j, bead in enumerate(layer.beads):

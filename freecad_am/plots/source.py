@@ -85,9 +85,11 @@ class Source:
         beads = list(self.toolpath)
         local = spacing.local_distances(self.toolpath)
         selected = [
-            values for (_, _, bead), values in zip(beads, local, strict=True) if not bead.closing
+            values
+            for (_, _, bead), values in zip(beads, local, strict=True)
+            if not bead.role.closing
         ]
-        layers = [np.full(len(bead), layer) for layer, _, bead in beads if not bead.closing]
+        layers = [np.full(len(bead), layer) for layer, _, bead in beads if not bead.role.closing]
         values, layer = (
             np.concatenate([*selected, np.zeros(0)]),
             np.concatenate([*layers, np.zeros(0, np.int64)]),

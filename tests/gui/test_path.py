@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from freecad_am import api
-from freecad_am.core.toolpath import Layer
+from freecad_am.core.toolpath import BeadRole, Layer
 from freecad_am.gui.path import colouring, dock, path_view
 from freecad_am.gui.path.dock import facts
 from freecad_am.gui.path.pieces import BLOCK, PIECE, Rows
@@ -142,7 +142,8 @@ def test_tubes_are_as_wide_and_as_high_as_they_are(person, joint_path):
 def test_each_kind_of_bead_is_told(person, joint_path):
     bead = joint_path.ViewObject.Proxy.rows.beads[0]
     kinds = ("", "contour", "zigzag", "line", "spiral", "centre", "closing")
-    found = [colouring.class_of(dataclasses.replace(bead, kind=kind)) for kind in kinds]
+    beads = [dataclasses.replace(bead, role=BeadRole(kind)) for kind in kinds]
+    found = [colouring.class_of(each) for each in beads]
     assert found == [
         colouring.CLOSED_BEAD,
         colouring.CLOSED_BEAD,
@@ -150,10 +151,7 @@ def test_each_kind_of_bead_is_told(person, joint_path):
         colouring.CENTRE,
         colouring.CLOSING,
     ]
-    told = [
-        facts(Rows.of([dataclasses.replace(bead, kind=kind)], [0], 8.0, lambda: 1.0), 3)
-        for kind in kinds
-    ]
+    told = [facts(Rows.of([each], [0], 8.0, lambda: 1.0), 3) for each in beads]
     assert len(set(told)) == len(kinds) and "in the middle" in told[5]
 
 

@@ -17,11 +17,11 @@ from freecad_am.objects.results import fingerprints, store
 # results stored as they were before: row by row, each number a float; and fingerprints of what was read of them then
 ROWS = Path(__file__).parent / "data" / "rows.FCStd"
 IN_ROWS = {
-    "Cell": "5ec5f3fc543c70aa6a0c709341df9cfec5b9220b75e74a08da1105e262342415",
-    "Feature": "3afe134fba052862ed87a0d7a23f5cb1da2adea05d3ae9704d8168ab633db27a",
-    "Toolpath": "95d2147faa63b9251d8349a5848304ea831fc814247c67905059817bafd0ee43",
-    "JointPath": "66cc8fb7123c35847e5a3021e02e9d578c0ded93ada6d05a2e8a365f51c443b6",
-    "Program": "112b574e451870c0bc54f0d48b88b99bb7533aedd47e25faf14f1fa2da69d313",
+    "Cell": "81db9bf2322c92a4d332aa3bfe226a39475f84164835c40f40eaf82b52b94d14",
+    "Feature": "10aa08970a39bf1ceb00ac64bdc1e5bc2e80611e9e2e3d22e352b15323aacc9b",
+    "Toolpath": "533c48b8c583ffc5fc92d67566afd3d8d4d41363467437c0b738f384a6b54eb0",
+    "JointPath": "89d1a7bc3fce44748769bced321dbb314ee43ee37c1a03fb3a6cbe6822ce9d67",
+    "Program": "c68b97f6de258e88953013104234abaa0707618c9e190fefb6473854ddf2f15d",
 }
 # what there was not then: derived, or None where nobody knows
 ADDED = (
@@ -66,28 +66,30 @@ ADDED = (
 
 
 def fingerprint(value):
-    return hashlib.sha256(b"".join(parts(value))).hexdigest()
+    """The values under each name, in order: groups of fields may come and go."""
+    by_name = {}
+    for name, part in parts(value, ""):
+        by_name.setdefault(name, []).append(part)
+    return hashlib.sha256(repr(sorted(by_name.items())).encode()).hexdigest()
 
 
-def parts(value):
-    """All that is in a value, as bytes."""
+def parts(value, name):
+    """All that is in a value, each with the name of its field."""
     if isinstance(value, np.ndarray):
-        yield str(value.dtype).encode() + str(value.shape).encode() + value.tobytes()
-    elif isinstance(value, bytes):
-        yield value
+        yield name, (str(value.dtype), value.shape, value.tobytes())
     elif isinstance(value, dict):
-        for name, entry in value.items():
-            yield name.encode()
-            yield from parts(entry)
+        for key, entry in value.items():
+            yield from parts(entry, f"{name}[{key}]")
     elif dataclasses.is_dataclass(value):
         for field in dataclasses.fields(value):
-            if field.name not in ADDED:
-                yield from parts(getattr(value, field.name))
+            entry = getattr(value, field.name)
+            if field.name not in ADDED or dataclasses.is_dataclass(entry):
+                yield from parts(entry, field.name)
     elif isinstance(value, (tuple, list)):
         for entry in value:
-            yield from parts(entry)
+            yield from parts(entry, name)
     else:
-        yield repr(value).encode()
+        yield name, value
 
 
 def equal(one, other):

@@ -118,7 +118,7 @@ def test_beads_lie_in_the_shape(doc, name):
     made = api.result(toolpath)
     beads = [bead for _, _, bead in made]
     points = np.vstack(
-        [bead.points[:: max(1, len(bead) // 8)] for bead in beads if bead.kind != "centre"]
+        [bead.points[:: max(1, len(bead) // 8)] for bead in beads if bead.role.kind != "centre"]
     )
     lifted = points + (0.0, 0.0, 2.5)
     rows = np.random.default_rng(1).permutation(len(lifted))[:150]

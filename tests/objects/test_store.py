@@ -12,6 +12,8 @@ import pytest
 from freecad_am.core.issues import InputError, Issue
 from freecad_am.core.toolpath import (
     Bead,
+    BeadEnds,
+    BeadRole,
     Checks,
     Layer,
     MotionRules,
@@ -164,7 +166,8 @@ def test_a_class_that_is_renamed_and_changed_reads_what_was_stored_before(monkey
         ("layer", 1): lambda fields: {"strands": fields["beads"], "count": len(fields["beads"])}
     }
     monkeypatch.setattr(schemas, "UPGRADES", upgrades)
-    monkeypatch.setattr(schemas, "class_of", lambda name: {"layer": Stack, "bead": Bead}[name])
+    known = schemas.class_of
+    monkeypatch.setattr(schemas, "class_of", lambda name: Stack if name == "layer" else known(name))
     stacks = store.unpack(floats, text, "k", "x")
     assert [stack.count for stack in stacks] == [1, 3, 2]
     assert equal(stacks[0].strands, toolpath().layers[0].beads)
@@ -241,13 +244,9 @@ def sequenced_toolpath():
         width=np.full(4, 5.0),
         height=np.full(4, 2.0),
         wire_share=1.5,
-        kind="closing",
-        closing=True,
-        ring=2,
-        returns=True,
-        bead_class="hull",
+        role=BeadRole("closing", 2, True, True, "hull"),
+        ends=BeadEnds(1.0, 2.0, 3.0, 4.0, 5.0, 6.0),
         external=np.zeros((4, 2)),
-        ends=(1.0, 2.0, 3.0, 4.0, 5.0),
         phase=np.arange(4.0),
     )
     checks = Checks(0.5, (10.0, 0.1, 0.2), (1.0, 2.0, 3.0), np.array([[0.0, 1.5, 2.5]]), 0.25)

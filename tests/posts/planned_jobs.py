@@ -19,7 +19,7 @@ from freecad_am.core.parameters.program import NcParameters, ProgramParameters
 from freecad_am.core.planning.beads import steps
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.toolpath import Bead, Layer, MotionRules, Toolpath
+from freecad_am.core.toolpath import Bead, BeadEnds, Layer, MotionRules, Toolpath
 from freecad_am.posts import catalogue
 from tests.programs import build
 
@@ -215,7 +215,7 @@ def _bead(hub, side, layer):
         2.0 * math.pi * length / length[-1],
         np.full(len(points), SPEED),
         False,
-        ends=AT_ENDS[side],
+        ends=BeadEnds(*AT_ENDS[side]) if AT_ENDS[side] else None,
     )
 
 
@@ -252,6 +252,11 @@ def body(setup):
 
 
 @functools.cache
+def _with_ramps(bead, start=0.0, end=0.0):
+    ends = dataclasses.replace(bead.ends, start_ramp=start, end_ramp=end)
+    return dataclasses.replace(bead, ends=ends)
+
+
 def planned(name, lift=LIFT, retreat=0.0, ramps=()):
     """The cell, the beads and the motion of a set-up. Without a retract distance all beads are on one side, each on the one
     before: the straight way back to the next start leads through what was just laid."""
@@ -269,12 +274,7 @@ def planned(name, lift=LIFT, retreat=0.0, ramps=()):
     sides = range(SIDES if lift else 1)
     beads = [[_bead(setup.hub, side, k) for side in sides] for k in range(2)]
     layers = tuple(
-        Layer(
-            tuple(
-                dataclasses.replace(bead, ends=(*bead.ends, *ramps) if bead.ends else ())
-                for bead in some
-            )
-        )
+        Layer(tuple(bead if bead.ends is None else _with_ramps(bead, *ramps) for bead in some))
         for some in beads
     )
     toolpath = Toolpath(

@@ -15,6 +15,7 @@ from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.parameters.bead_classes import BeadStart
 from freecad_am.core.parameters.program import ProgramParameters, ScheduleParameters
 from freecad_am.core.planning import linear_approach
+from freecad_am.core.toolpath import BeadRole
 from freecad_am.objects.program import Job, posted
 from freecad_am.posts import catalogue
 from freecad_am.posts.kuka import post as kuka
@@ -185,7 +186,7 @@ def test_a_document_cuts_the_ways_onto_beads_and_passes():
         frame=np.eye(4), family="developable", chord_error=CHORD_ERROR, layers=layers, height=HEIGHT
     )
     paths = SimpleNamespace(
-        beads=[SimpleNamespace(bead=SimpleNamespace(returns=True), layer=9, index=9)]
+        beads=[SimpleNamespace(bead=SimpleNamespace(role=BeadRole(returns=True)), layer=9, index=9)]
     )
     path = SimpleNamespace(motion=motion, joint_path=paths)
     job = Job(lambda: path, lambda: toolpath, SETUPS[name].cell, (), LIT, ARC, "job")

@@ -115,7 +115,7 @@ def assemble(
 
 def _place(path: BeadPath) -> tuple[int, int, int]:
     """Layer, bead and class."""
-    return path.layer, path.index, number_of(path.bead.bead_class)
+    return path.layer, path.index, number_of(path.bead.role.bead_class)
 
 
 def _rapid(path: BeadPath, rapid: Way, onto: Leg | None, cell: Cell) -> _Rows:

@@ -317,9 +317,9 @@ def returning(toolpath: Toolpath, paths: Sequence[BeadPath]) -> frozenset[tuple[
 
     These are beads on layers of a rotary slicing solid, or the first beads of whole layers.
     """
-    if any(path.bead.returns for path in paths):
-        return frozenset((path.layer, path.index) for path in paths if path.bead.returns)
-    if any(bead.kind for _, _, bead in toolpath):
+    if any(path.bead.role.returns for path in paths):
+        return frozenset((path.layer, path.index) for path in paths if path.bead.role.returns)
+    if any(bead.role.kind for _, _, bead in toolpath):
         return frozenset()
     return frozenset((k, 0) for k, layer in enumerate(toolpath.layers) if k and not layer.first)
 

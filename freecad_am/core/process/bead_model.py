@@ -349,7 +349,8 @@ def check_speeds(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
         return toolpath
     worst, where, speed_range = 1.0 + ROUNDING, (0, 0), [float("inf"), 0.0]
     for layer, number, bead in toolpath:
-        at_ends = [speed for speed in bead.ends[1:4:2] if speed]
+        ends = bead.ends
+        at_ends = [speed for speed in (ends.start_speed, ends.end_speed) if speed] if ends else []
         low, high = (
             float(min(bead.speed[1:].min(), *at_ends, np.inf)),
             float(max(bead.speed[1:].max(), *at_ends, 0.0)),

@@ -20,7 +20,7 @@ from ..parameters.bead_classes import (
 )
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
-from ..toolpath import Toolpath
+from ..toolpath import BeadEnds, Toolpath
 
 LEANS = ("lead", "tilt")
 _OF_KIND = {"contour": CONTOUR, "connected": CONTOUR, "closing": CLOSING}  # of a bead of a filling
@@ -76,31 +76,27 @@ def set_bead_ends(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     layers = list(toolpath.layers)
     for number, layer in enumerate(toolpath.layers):
         for bead in layer.beads:
-            ends = of_class[bead.bead_class]
-            used, ramp_text = (
-                ends[0] + ends[2] + sum(ends[4:]) if ends else 0.0,
-                " with their ramps" if ends[4:] else "",
-            )
-            if used > bead.length:
+            ends = of_class[bead.role.bead_class]
+            if ends is not None and ends.length > bead.length:
                 raise InputError(
                     "PHASE_LENGTH",
-                    f"process.classes.{bead.bead_class}",
+                    f"process.classes.{bead.role.bead_class}",
                     "start and end take {:.4g} mm{}, but a bead of the class in layer {} is "
                     "{:.4g} mm long; shorten them for the class, or avoid such short beads",
-                    used,
-                    Word(ramp_text),
+                    ends.length,
+                    Word(" with their ramps" if ends.has_ramps else ""),
                     number,
                     bead.length,
                 )
         layers[number] = replace(
             layer,
-            beads=tuple(replace(bead, ends=of_class[bead.bead_class]) for bead in layer.beads),
+            beads=tuple(replace(bead, ends=of_class[bead.role.bead_class]) for bead in layer.beads),
         )
     return replace(toolpath, layers=tuple(layers))
 
 
-def _ends(process: ProcessParameters, name: str) -> tuple[float, ...]:
-    """`Bead.ends` of a class; nothing where no end differs."""
+def _ends(process: ProcessParameters, name: str) -> BeadEnds | None:
+    """`Bead.ends` of a class; None where no end differs."""
     for end, phase in ((START, process.start), (END, process.end)):
         if phase.ramp > 0.0 and phase.travel_speed is None:
             where = (
@@ -116,8 +112,15 @@ def _ends(process: ProcessParameters, name: str) -> tuple[float, ...]:
                 phase.ramp,
             )
     if not process.start.there and not process.end.there:
-        return ()
-    phases = [phase if phase.there else PhaseParameters() for phase in (process.start, process.end)]
-    ends = tuple(value for phase in phases for value in (phase.length, phase.travel_speed or 0.0))
-    ramps = tuple(phase.ramp for phase in phases)
-    return (*ends, *ramps) if any(ramps) else ends
+        return None
+    at_start, at_end = (
+        phase if phase.there else PhaseParameters() for phase in (process.start, process.end)
+    )
+    return BeadEnds(
+        at_start.length,
+        at_start.travel_speed or 0.0,
+        at_end.length,
+        at_end.travel_speed or 0.0,
+        at_start.ramp,
+        at_end.ramp,
+    )

@@ -104,7 +104,8 @@ def order_beads(beads: Sequence[RankedBead], order: str) -> Course:
     for ranked in sorted(beads, key=rank):
         solid = ranked.group, ranked.solid
         if reached.get(solid, ranked.layer) != ranked.layer:
-            ranked = ranked._replace(bead=dataclasses.replace(ranked.bead, returns=True))
+            role = dataclasses.replace(ranked.bead.role, returns=True)
+            ranked = ranked._replace(bead=dataclasses.replace(ranked.bead, role=role))
         reached[solid] = ranked.layer
         if not layers or layer_of(layers[-1][0]) != layer_of(ranked):
             layers.append([])

@@ -97,7 +97,7 @@ def taken_of(toolpath: Toolpath) -> list[Taken]:
         for phase, sum_ in _sums(
             bead, toolpath.bead_width * toolpath.layer_height, toolpath
         ).items():
-            key = bead.bead_class, phase
+            key = bead.role.bead_class, phase
             sums[key] = sums.get(key, np.zeros(3)) + sum_
             first_bead.setdefault(key, (layer, number))
     return [
@@ -124,12 +124,14 @@ def _sums(bead: Bead, usual: float, toolpath: Toolpath) -> dict[int, Array]:
             for phase in sorted(set(bead.phase[1:].astype(int)))
         }
     total = amounts.sum(axis=1)
-    if not bead.ends:
+    ends = bead.ends
+    if ends is None:
         return {MIDDLE: total}
-    start_length, slow, end_length, late = bead.ends[:4]
-    sums, size = {MIDDLE: total * (1.0 - (start_length + end_length) / length.sum())}, length.sum()
-    for long, (from_speed, to_speed) in zip(
-        bead.ends[4:], ((slow, float(bead.speed[1])), (float(bead.speed[-1]), late))
+    size = length.sum()
+    sums = {MIDDLE: total * (1.0 - (ends.start_length + ends.end_length) / size)}
+    for long, from_speed, to_speed in (
+        (ends.start_ramp, ends.start_speed, float(bead.speed[1])),
+        (ends.end_ramp, float(bead.speed[-1]), ends.end_speed),
     ):
         steps = ramp(long, from_speed, to_speed)
         if len(steps):
@@ -138,7 +140,10 @@ def _sums(bead: Bead, usual: float, toolpath: Toolpath) -> dict[int, Array]:
                 float((long / len(steps) / steps).sum()) - total[1] * long / size,
                 0.0,
             ]
-    for phase, long, speed in ((AT_START, start_length, slow), (AT_END, end_length, late)):
+    for phase, long, speed in (
+        (AT_START, ends.start_length, ends.start_speed),
+        (AT_END, ends.end_length, ends.end_speed),
+    ):
         if long:
             sums[phase] = np.array(
                 [total[0] * long / size, long / speed if speed else total[1] * long / size, long]
@@ -224,7 +229,7 @@ def _following(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     """The toolpath with a wire that follows the travel speed, if the process asks for it and beads have ramps. For stepped speeds
     a schedule gives the feed.
     """
-    ramped = any(bead.ends[4:] for _, _, bead in toolpath)
+    ramped = any(bead.ends is not None and bead.ends.has_ramps for _, _, bead in toolpath)
     if process.wire.feed_mode != "proportional" or not toolpath.wire_feed or not ramped:
         return toolpath
     share = toolpath.wire_feed / process.travel_speed

@@ -105,7 +105,7 @@ def deposit_motion(toolpath: Toolpath, axes: int = 0) -> Motion:
                 for _, _, b in beads
             ]
         ),
-        bead_class=np.repeat([number_of(bead.bead_class) for _, _, bead in beads], sizes),
+        bead_class=np.repeat([number_of(bead.role.bead_class) for _, _, bead in beads], sizes),
     )
 
 

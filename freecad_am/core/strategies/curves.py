@@ -87,9 +87,8 @@ def _classed(
     """The bead at a key (layer, number in the layer), with the settings of its class."""
     name = classes.wall_bead_class(key[0])
     class_settings = classes.leaning(build, process, name), process.for_class(name)
-    return replace(
-        _bead(curve, fixed, height, again, sum(key), *class_settings, label), bead_class=name
-    )
+    bead = _bead(curve, fixed, height, again, sum(key), *class_settings, label)
+    return replace(bead, role=BeadRole(bead_class=name))
 
 
 def _tangents(points: Array, directions: Array) -> Array:

@@ -122,9 +122,9 @@ def coloured(toolpath: Toolpath, kind: str, band: float) -> tuple[Array, Scale]:
 
 def class_of(bead: Bead) -> tuple[str, Colour]:
     """What a bead is, and its colour: by its kind in a filling, else by whether it closes."""
-    if bead.closing:
+    if bead.role.closing:
         return CLOSING
-    return _CLASSES.get(bead.kind, CLOSED_BEAD if bead.closed else OPEN_BEAD)
+    return _CLASSES.get(bead.role.kind, CLOSED_BEAD if bead.closed else OPEN_BEAD)
 
 
 def numbered(toolpath: Toolpath) -> list[int]:

@@ -220,7 +220,7 @@ def facts(rows: Rows, row: int) -> str:
 
 
 def _kind(bead: Bead) -> str:
-    if bead.closing:
+    if bead.role.closing:
         return tr("closes a gap")
     names = {
         "contour": tr("contour"),
@@ -230,7 +230,7 @@ def _kind(bead: Bead) -> str:
         "centre": tr("in the middle"),
         "closing": tr("closes a gap"),
     }
-    return names.get(bead.kind, tr("closed") if bead.closed else tr("open"))
+    return names.get(bead.role.kind, tr("closed") if bead.closed else tr("open"))
 
 
 NAME = "RoboticAM_PathDock"

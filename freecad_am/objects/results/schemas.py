@@ -24,9 +24,11 @@ class Schema(NamedTuple):
 
 
 SCHEMAS: dict[str, Schema] = {
-    "bead": Schema("core.toolpath:Bead"),
+    "bead": Schema("core.toolpath:Bead", 2),
     "bead_curve": Schema("core.geometry.curves.bead_curves:BeadCurve"),
+    "bead_ends": Schema("core.toolpath:BeadEnds"),
     "bead_path": Schema("core.planning.joint_path:BeadPath"),
+    "bead_role": Schema("core.toolpath:BeadRole"),
     "cell_obstacle": Schema("core.parameters.cell_records:Obstacle"),
     "cell_parameters": Schema("core.parameters.cell:CellParameters", 2),
     "clad_faces": Schema("core.geometry.walls.patch_wall:CladFaces"),
@@ -91,12 +93,23 @@ _FIELDS_OF_CHECKS = (
 )
 
 
+_FIELDS_OF_ROLE = ("kind", "ring", "closing", "returns", "bead_class")
 _FIELDS_OF_RULES = ("overlap", "retreat", "max_from_vertical")
 
 
 def _gather(fields: Fields, names: Sequence[str], schema: str) -> Any:
     """Take fields out and return the record of them, of version 1 of a schema."""
     return record(schema, 1, {name: fields.pop(name) for name in names if name in fields})
+
+
+def _divide_bead(fields: Fields) -> Fields:
+    """Return the fields of version 2 of a bead."""
+    fields = dict(fields)
+    ends = fields.pop("ends", ())
+    if ends:
+        fields["ends"] = class_of("bead_ends")(*ends)
+    fields["role"] = _gather(fields, _FIELDS_OF_ROLE, "bead_role")
+    return fields
 
 
 def _divide_toolpath(fields: Fields) -> Any:
@@ -113,6 +126,7 @@ def _divide_toolpath(fields: Fields) -> Any:
 
 # by name and version: turns the fields of that version into the next version's, or into a record
 UPGRADES: dict[tuple[str, int], Callable[[Fields], Any]] = {
+    ("bead", 1): _divide_bead,
     ("cell_parameters", 1): lambda fields: fields,  # texts, which the class turns into records
     ("nozzle_parameters", 1): lambda fields: fields,
     ("toolpath", 1): _divide_toolpath,

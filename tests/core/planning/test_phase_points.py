@@ -9,7 +9,7 @@ from freecad_am.core.issues import ERROR
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.toolpath import Bead, Layer, Toolpath
+from freecad_am.core.toolpath import Bead, BeadEnds, Layer, Toolpath
 from tests.core.planning.test_random_cells import LENGTH
 from tests.posts.planned_jobs import SETUPS
 
@@ -38,7 +38,8 @@ def planned(*ends):
     """The cell and the joint path of a straight bead with these ends."""
     up = np.broadcast_to([0.0, 0.0, 1.0], (2, 3))
     points = np.array([[-0.5 * LONG, 30.0, 0.0], [0.5 * LONG, 30.0, 0.0]])
-    bead = Bead(points, up, up, np.array([0.0, 6.0]), np.full(2, 20.0), False, ends=ends)
+    bead_ends = BeadEnds(*ends) if ends else None
+    bead = Bead(points, up, up, np.array([0.0, 6.0]), np.full(2, 20.0), False, ends=bead_ends)
     path = Toolpath((Layer((bead,)),), np.eye(4), 2.0, 0.5, family="surface")
     cell = cells.resolve(SETUPS["fanuc tool-on-robot"].cell, np.eye(4), "developable")
     return cell, plan_joints(path, cell, JointParameters(degree=0))

@@ -21,7 +21,7 @@ from freecad_am.core.process.deposit import support as pieces_of_beads
 from freecad_am.core.strategies import support
 from freecad_am.core.strategies.revolution import plan as revolution
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
-from freecad_am.core.toolpath import Bead, Layer, Toolpath
+from freecad_am.core.toolpath import Bead, BeadRole, Layer, Toolpath
 
 WIDTH, HEIGHT = 8.0, 2.0
 UP = np.array([0.0, 0.0, 1.0])
@@ -32,7 +32,9 @@ def bead(points, closed=False, build=UP, closing=False):
     n = len(points)
     along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     build = np.broadcast_to(build, (n, 3))
-    return Bead(points, build, build, along, np.full(n, 6.0), closed, closing=closing)
+    return Bead(
+        points, build, build, along, np.full(n, 6.0), closed, role=BeadRole(closing=closing)
+    )
 
 
 def rod(low, high, y=0.0, z=0.0):

@@ -14,7 +14,7 @@ from freecad_am.core.preflight import checks
 from freecad_am.core.process import wire
 from freecad_am.core.process.bead_model import check_speeds
 from freecad_am.core.process.wire import set_wire_feed
-from freecad_am.core.toolpath import Bead, Layer, Toolpath
+from freecad_am.core.toolpath import Bead, BeadEnds, BeadRole, Layer, SequencedFeature, Toolpath
 
 ENDS = np.array([[0.0, 0.0, 0.0], [100.0, 0.0, 0.0]])
 UP = np.broadcast_to([0.0, 0.0, 1.0], (2, 3))
@@ -80,7 +80,13 @@ SPEED_OF = {"contour": 9.0, "fill": 6.0}
 def path_of(phase=None, **more):
     """A bead of 100 mm of each class, at the speed of its class, with ends of 20 and 5 mm where asked for."""
     beads = [
-        replace(BEAD, bead_class=name, speed=np.full(2, SPEED_OF[name]), ends=phase or (), **more)
+        replace(
+            BEAD,
+            role=BeadRole(bead_class=name),
+            speed=np.full(2, SPEED_OF[name]),
+            ends=None if phase is None else BeadEnds(*phase),
+            **more,
+        )
         for name in SPEED_OF
     ]
     return replace(PATH, layers=(Layer((beads[1],)), Layer(tuple(beads))))
@@ -108,7 +114,7 @@ def test_classes_at_speeds_of_their_own_are_held_against_the_wire():
         and promise.how.endswith("feed of contour")
     )
     near = replace(process("auto"), classes="contour: travel_speed 6.5")
-    bead = replace(BEAD, bead_class="contour", speed=np.full(2, 6.5))
+    bead = replace(BEAD, role=BeadRole(bead_class="contour"), speed=np.full(2, 6.5))
     made = set_wire_feed(replace(PATH, layers=(Layer((bead,)),)), near, None)
     assert made.issues == () and checks.wire_feed(made, near).worst == pytest.approx(
         100.0 * (1.0 - 6.0 / 6.5)
@@ -152,7 +158,7 @@ def test_starts_and_ends_at_speeds_of_their_own_are_held_against_the_wire(planne
                             at,
                             np.array([3.0, 3.0, bead.speed[0], 12.0]),
                             False,
-                            bead_class=bead.bead_class,
+                            role=bead.role,
                             ends=bead.ends,
                             phase=np.array([1.0, 1.0, 0.0, 2.0]),
                         )
@@ -189,7 +195,8 @@ def test_beads_of_other_widths_and_heights_at_speeds_that_follow_balance():
     assert checks.wire_feed(path, ProcessParameters()).worst < 1e-9
     one = replace(path, layer_height=2.0, wire_feed=2.0 * path.wire_feed)
     slow = replace(bead, speed=np.full(2, 7.5))
-    two = replace(path, layers=(Layer((BEAD,)), Layer((slow,), feature=1)), features=(one, path))
+    features = (SequencedFeature("", one), SequencedFeature("", path))
+    two = replace(path, layers=(Layer((BEAD,)), Layer((slow,), feature=1)), features=features)
     assert tuple(checks.wire_feed(two, ProcessParameters()).place) == (
         1,
         0,

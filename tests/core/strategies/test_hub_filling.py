@@ -75,7 +75,9 @@ def test_equal_solids_are_filled_once_and_are_as_filled_alone(hub, fill, monkeyp
         theirs = [bead for _, _, bead in alone]
         assert len(mine) == len(theirs)
         for a, b in zip(mine, theirs):
-            assert (a.kind, a.ring) == (b.kind, b.ring) and abs(a.length - b.length) < 1e-4
+            assert (a.role.kind, a.role.ring) == (b.role.kind, b.role.ring) and abs(
+                a.length - b.length
+            ) < 1e-4
             assert np.linalg.norm(a.points[0] - b.points[0]) < 1e-4
     planned(hub, (0.1,), fill=fill, fill_angle=0.3)
     assert len(calls) == 5 * layers, "another filling is not the same"
@@ -94,7 +96,9 @@ def test_equal_solids_are_filled_once_and_are_as_filled_alone(hub, fill, monkeyp
 def test_the_outermost_bead_ends_at_the_border_as_wide_as_it_counts(width, counts, inset):
     """A block that is 40 mm high on a cylinder: its outermost contours lie half a bead inside of it above and below."""
     path = planned("cylinder", (0.0,), width=width, fill_width=counts)
-    outer = [bead.points for _, _, bead in path if bead.ring == 0 and bead.kind == "contour"]
+    outer = [
+        bead.points for _, _, bead in path if bead.role.ring == 0 and bead.role.kind == "contour"
+    ]
     assert len(outer) == len(path.layers)
     assert max(np.ptp(points[:, 2]) for points in outer) == pytest.approx(40.0 - 2.0 * inset)
 
@@ -107,13 +111,15 @@ def test_beads_carry_their_kind_and_ring_through_documents():
         ("spiral", {"spiral", "closing", "centre"}),
     ):
         path = planned("cylinder", (0.0,), fill=fill)
-        assert {bead.kind for _, _, bead in path} <= kinds
+        assert {bead.role.kind for _, _, bead in path} <= kinds
         again = unpack(*pack(path, "key"), "key", "toolpath")
-        assert [(b.kind, b.ring) for _, _, b in again] == [(b.kind, b.ring) for _, _, b in path]
+        assert [(b.role.kind, b.role.ring) for _, _, b in again] == [
+            (b.role.kind, b.role.ring) for _, _, b in path
+        ]
         floats, text = pack(path, "key")
         old = re.sub(r',"kind":"[a-z]*","ring":\d+', "", text)
         assert old != text and {
-            bead.kind for _, _, bead in unpack(floats, old, "key", "toolpath")
+            bead.role.kind for _, _, bead in unpack(floats, old, "key", "toolpath")
         } == {""}
 
 
@@ -176,7 +182,9 @@ def test_patterns_that_end_are_others_round_the_hub_and_that_is_told(hub, fill, 
     assert len(round_it) == len(same) and all(
         (one.points == two.points).all() for one, two in zip(round_it, same)
     )
-    assert fill in {bead.kind for bead in aside} and fill not in {bead.kind for bead in round_it}
+    assert fill in {bead.role.kind for bead in aside} and fill not in {
+        bead.role.kind for bead in round_it
+    }
 
 
 def test_beads_wider_apart_than_they_are_wide_are_refused():
@@ -250,9 +258,12 @@ def test_less_than_the_whole_between_solid_layers(hub):
         share[1:3] < 0.55
     ).all()  # farther out the flat top comes nearer
     for layer in part.layers[:3]:
-        assert sorted({bead.ring for bead in layer.beads if bead.kind == "contour"}) == [0, 1]
+        assert sorted({bead.role.ring for bead in layer.beads if bead.role.kind == "contour"}) == [
+            0,
+            1,
+        ]
     alone = planned(hub, (0.3,), 36.0, fill="grid", **{**given, "walls": "inf"})
-    assert {bead.kind for _, _, bead in alone} <= {"contour", "centre"}
+    assert {bead.role.kind for _, _, bead in alone} <= {"contour", "centre"}
     assert not [issue for issue in part.issues if issue.code == "OPEN_GAP"]
 
 
@@ -353,7 +364,7 @@ def test_connected_contours_start_once_and_narrow_places_run_faster(hub):
     )
     assert [len(layer.beads) for layer in path.layers[:4]] == [2] * min(4, len(path.layers))
     assert all(
-        bead.closed and bead.kind == "connected"
+        bead.closed and bead.role.kind == "connected"
         for layer in path.layers[:4]
         for bead in layer.beads
     )

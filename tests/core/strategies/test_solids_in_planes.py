@@ -167,7 +167,9 @@ def test_plane_layers_are_as_far_apart_as_their_planes(fill, way):
     made = planned(box((0, 0, 0), (40, 30, 12)), fill=fill, direction=way, layer_height=2.0)
     values = np.concatenate(spacing.between_layers(made))
     np.testing.assert_allclose(values, 2.0, atol=1e-9)
-    assert len(values) == sum(len(bead) for layer, _, bead in made if layer and not bead.closing)
+    assert len(values) == sum(
+        len(bead) for layer, _, bead in made if layer and not bead.role.closing
+    )
     local = spacing.local_distances(made)
     for (layer, _, bead), one in zip(made, local, strict=True):
         assert len(one) == len(bead) and (
@@ -391,7 +393,7 @@ def test_islands_are_finished_one_after_the_other():
     for layer in made.layers:
         island = [round(float(bead.points[:, 0].mean() - 12.5) / 40.0) for bead in layer.beads]
         assert len(layer.beads) > 3 and sum(a != b for a, b in zip(island, island[1:])) == 2
-        rings = [bead.ring for bead, at in zip(layer.beads, island) if at == island[0]]
+        rings = [bead.role.ring for bead, at in zip(layer.beads, island) if at == island[0]]
         assert rings == sorted(rings, reverse=True)
 
 

@@ -139,9 +139,11 @@ def made(name):
 def test_layers_are_a_height_apart_and_cover_the_wall(name):
     wall, height, toolpath = made(name)
     for below, layer in zip(toolpath.layers, toolpath.layers[1:]):  # chords are off by 0.0003 mm
-        tree = cKDTree(dense([bead for bead in below.beads if not bead.closing]))
+        tree = cKDTree(dense([bead for bead in below.beads if not bead.role.closing]))
         for bead in layer.beads:
-            assert bead.closing or tree.query(bead.points)[0] == pytest.approx(height, abs=1e-3)
+            assert bead.role.closing or tree.query(bead.points)[0] == pytest.approx(
+                height, abs=1e-3
+            )
     assert codes(toolpath)["SPACING"].level == "note"
     points = samples(wall, 2)
     off = cKDTree(dense([bead for _, _, bead in toolpath])).query(points)[0]
@@ -184,7 +186,7 @@ def test_directions_are_tangent_to_the_wall_normal_to_the_bead_and_continuous(na
     for below, layer in zip(toolpath.layers, toolpath.layers[1:]):
         tree = cKDTree(np.vstack([bead.points for bead in below.beads]))
         for bead in layer.beads:
-            if not bead.closing:  # away from the layer below
+            if not bead.role.closing:  # away from the layer below
                 foot = tree.data[tree.query(bead.points)[1]]
                 assert ((bead.points - foot) * bead.build).sum(axis=1).min() > 0.0
     most = np.radians(15.0)
@@ -204,7 +206,7 @@ def test_pieces_alternate_so_that_links_are_short():
         [
             np.linalg.norm(after.points[0] - before.points[-1])
             for before, after in zip(beads, beads[1:])
-            if not before.closing and not after.closing
+            if not before.role.closing and not after.role.closing
         ]
     )
     assert (links < 1.01 * height).sum() >= len(
@@ -213,7 +215,7 @@ def test_pieces_alternate_so_that_links_are_short():
     assert links.max() < 40.0  # the sheet is 60 mm wide
     as_found = planned(wall, height)
     for _, _, bead in as_found:
-        assert bead.closing or (bead.points[-1] - bead.points[0])[0] > 0.0  # all the same way
+        assert bead.role.closing or (bead.points[-1] - bead.points[0])[0] > 0.0  # all the same way
 
 
 def test_seams_follow_each_other_at_the_angle_asked_for():
@@ -257,7 +259,7 @@ def test_whole_layers_stop_below_the_first_that_is_cut():
     assert [layer.beads[0].closed for layer in whole.layers] == [True] * 10
     assert sum(bead.closed for _, _, bead in trim) == 10
     for _, _, bead in trim:
-        if not bead.closed and not bead.closing:  # flush with the end, in the plane X = -60
+        if not bead.closed and not bead.role.closing:  # flush with the end, in the plane X = -60
             assert bead.points[[0, -1], 0] == pytest.approx(-60.0, abs=1e-6)
     assert "REMAINDER" in codes(whole) and "REMAINDER" not in codes(trim)
     straight = planned(tube(FLOOR, 20.0, 1.5), 5.0, strategy={"end": "whole"})
@@ -341,7 +343,7 @@ def test_a_bend_of_one_surface_has_by_fronts_the_layers_that_its_parameter_gives
     by_parameter = tubes.plan(
         one, SurfaceParameters(layer_height=8.0, chord_error=0.001), build, ProcessParameters()
     )
-    layers = [[bead for bead in layer.beads if not bead.closing] for layer in toolpath.layers]
+    layers = [[bead for bead in layer.beads if not bead.role.closing] for layer in toolpath.layers]
     assert [len(layer) for layer in layers] == [len(layer.beads) for layer in by_parameter.layers]
     for below, above, other in zip(layers, layers[1:], by_parameter.layers[1:]):
         points = np.vstack([bead.points for bead in above])

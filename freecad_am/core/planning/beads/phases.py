@@ -17,7 +17,7 @@ from ...geometry.ramps import MIN_STEP, ramp
 from ...issues import ERROR, Issue, Text
 from ...kinematics.cell import Cell
 from ...motion import AT_END, AT_START, MIDDLE
-from ...toolpath import Bead
+from ...toolpath import Bead, BeadEnds
 from ...types import Array, Index
 from ..joint_path import BeadPath
 
@@ -61,10 +61,9 @@ def phased(cell: Cell, path: BeadPath, condition_at: Condition) -> tuple[BeadPat
     issues : list of Issue
         An error if the phases are longer than the bead, such as a piece of a divided bead.
     """
-    if not path.bead.ends or not path.reachable:
+    if path.bead.ends is None or not path.reachable:
         return path, []
-    start_length, _, end_length, _ = path.bead.ends[:4]
-    used = start_length + end_length + sum(path.bead.ends[4:])
+    used = path.bead.ends.length
     along = np.r_[0.0, np.cumsum(lengths(np.diff(path.bead.points, axis=0)))]
     if used > along[-1] + END_MM:
         return path, [
@@ -81,7 +80,7 @@ def phased(cell: Cell, path: BeadPath, condition_at: Condition) -> tuple[BeadPat
                 path.index,
             )
         ]
-    stretches = _stretches(path.bead, float(along[-1]))
+    stretches = _stretches(path.bead, path.bead.ends, float(along[-1]))
     borders = _borders(stretches, along)
     if len(borders):
         path = _insert_points(cell, path, along, borders, condition_at)
@@ -119,20 +118,20 @@ def _borders(stretches: Sequence[Stretch], along: Array) -> Array:
     return np.sort(existing[len(along) :])
 
 
-def _stretches(bead: Bead, length: float) -> list[Stretch]:
+def _stretches(bead: Bead, ends: BeadEnds, length: float) -> list[Stretch]:
     """Return the stretches of a bead with another speed. Steps of ramps have no phase: the other
     settings of bead ends do not apply there.
     """
-    start_length, slow, end_length, late = bead.ends[:4]
-    up, down = bead.ends[4:] or (0.0, 0.0)
-    rising, falling = ramp(up, slow, float(bead.speed[1])), ramp(down, float(bead.speed[-1]), late)
+    rising = ramp(ends.start_ramp, ends.start_speed, float(bead.speed[1]))
+    falling = ramp(ends.end_ramp, float(bead.speed[-1]), ends.end_speed)
+    end_begin = length - ends.end_length
     stretches = [
-        Stretch(0.0, start_length, AT_START, slow),
-        Stretch(length - end_length, length, AT_END, late),
+        Stretch(0.0, ends.start_length, AT_START, ends.start_speed),
+        Stretch(end_begin, length, AT_END, ends.end_speed),
     ]
     for begin, size, speeds in (
-        (start_length, up, rising),
-        (length - end_length - down, down, falling),
+        (ends.start_length, ends.start_ramp, rising),
+        (end_begin - ends.end_ramp, ends.end_ramp, falling),
     ):
         borders = begin + np.linspace(0.0, size, len(speeds) + 1)
         stretches += [

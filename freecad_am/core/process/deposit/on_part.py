@@ -34,7 +34,7 @@ def over_layers(toolpath: Toolpath) -> tuple[Array, ...]:
     toolpath = toolpath.deposited
     heights = []
     for below, layer in zip(toolpath.layers, toolpath.layers[1:], strict=False):
-        points = [bead.points for bead in layer.beads if not bead.closing]
+        points = [bead.points for bead in layer.beads if not bead.role.closing]
         if layer.first or not points:
             continue
         positions, build = _sample_chords(below, STEP * toolpath.layer_height)

@@ -78,7 +78,7 @@ def cut_beads(toolpath: Toolpath, share: float) -> Pieces:
         np.array([layer for layer, _, _ in beads])[bead],
         bead,
         start_row - (np.cumsum(size) - size)[bead],
-        np.array([bead_.closing for _, _, bead_ in beads])[bead],
+        np.array([bead_.role.closing for _, _, bead_ in beads])[bead],
     )
 
 

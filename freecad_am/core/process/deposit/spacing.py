@@ -41,10 +41,10 @@ def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
             np.full(count, above - below)
             for below, above, layer in zip(heights, heights[1:], toolpath.layers[1:])
             if not layer.first
-            and (count := sum(len(bead) for bead in layer.beads if not bead.closing))
+            and (count := sum(len(bead) for bead in layer.beads if not bead.role.closing))
         )
     above = [
-        [] if layer.first else [bead.points for bead in layer.beads if not bead.closing]
+        [] if layer.first else [bead.points for bead in layer.beads if not bead.role.closing]
         for layer in toolpath.layers[1:]
     ]
     return tuple(

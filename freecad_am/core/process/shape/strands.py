@@ -155,7 +155,7 @@ def sections(bead: Bead, toolpath: Toolpath, process: ProcessParameters) -> Arra
     """mm2 (n - 1,) that the wire feeds for each mm of the segments of a bead; the counted section without a wire, or with a schedule
     of their own, whose feed is not known here.
     """
-    schedule = process.for_class(bead.bead_class).schedule
+    schedule = process.for_class(bead.role.bead_class).schedule
     if schedule == process.schedule and bead.wire_share is not None:
         return np.full(len(bead) - 1, process.wire.section * bead.wire_share)
     if schedule == process.schedule and toolpath.wire_feed:

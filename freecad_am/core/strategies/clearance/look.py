@@ -97,7 +97,7 @@ def space_of(
     build_obstacles = deposit.build_deposit if often else deposit.in_parts
     obstacles = build_obstacles(points, build, toolpath.widths, heights, starts, foot=nozzle_.foot)
     # a bead that closes a gap overlaps those about the gap, of layers below too
-    own_start = np.where(np.repeat([bead.closing for bead in beads], counts), 0, own_start)
+    own_start = np.where(np.repeat([bead.role.closing for bead in beads], counts), 0, own_start)
     return Space(
         points, own_start, scene(bodies, points, nozzle_.reach, obstacles), nozzle_, max_tilt
     )

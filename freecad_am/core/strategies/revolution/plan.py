@@ -256,7 +256,7 @@ def _bead(
         azimuth,
         np.full(n, speed),
         wall.full,
-        bead_class=name,
+        role=BeadRole(bead_class=name),
     )
 
 

@@ -130,9 +130,7 @@ def bead_of(
         TURN * arc / arc[-1],
         np.full(len(arc), process.travel_speed),
         curve.closed,
-        kind=curve.kind,
-        ring=curve.ring,
-        bead_class=name,
+        role=BeadRole(curve.kind, curve.ring, bead_class=name),
     )
     if share is not None:
         share = np.interp(fractions(flat), fractions(line), share)

@@ -87,10 +87,10 @@ def _speeds(
 ) -> list[Issue]:
     """At which speeds one wire feed makes beads as wide as their room and as high as their layer, where these are others
     than usual; at the bead that departs most from its travel speed."""
-    classes = {bead.bead_class for layer in layers for bead in layer.beads}
+    classes = {bead.role.bead_class for layer in layers for bead in layer.beads}
     usual = {name: process.for_class(name).travel_speed for name in classes}
     deviations = [
-        (float(np.abs(bead.speed[1:] / usual[bead.bead_class] - 1.0).max()), i, j)
+        (float(np.abs(bead.speed[1:] / usual[bead.role.bead_class] - 1.0).max()), i, j)
         for i, layer in enumerate(layers)
         for j, bead in enumerate(layer.beads)
     ]
@@ -99,7 +99,7 @@ def _speeds(
         return []
     beads = [layers[i].beads[j] for _, i, j in varied]
     speed = np.concatenate([bead.speed[1:] for bead in beads])
-    usual_speeds = {usual[bead.bead_class] for bead in beads}
+    usual_speeds = {usual[bead.role.bead_class] for bead in beads}
     instead = Text(" instead of {:.4g} mm/s", usual_speeds.pop()) if len(usual_speeds) == 1 else ""
     wide = [bead.width for bead in beads if bead.width is not None]
     high = [bead.height for bead in beads if bead.height is not None]

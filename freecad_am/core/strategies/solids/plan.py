@@ -280,7 +280,7 @@ def plan(
                 ]
             else:
                 ranked += [
-                    RankedBead(stack.group, stack.solid, layer.number, bead.ring, bead)
+                    RankedBead(stack.group, stack.solid, layer.number, bead.role.ring, bead)
                     for bead in beads
                 ]
     if not ranked:

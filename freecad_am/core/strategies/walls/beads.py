@@ -24,7 +24,7 @@ from ...slicing.wall_directions import (
     local_directions,
     project_onto_plane,
 )
-from ...toolpath import Bead
+from ...toolpath import Bead, BeadRole
 from ...types import Array
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -231,10 +231,8 @@ class BeadSettings(NamedTuple):
             TURN * length / length[-1],
             speed,
             trace.closed,
-            None,
-            trace.tangents,
-            closing,
-            bead_class=bead_class,
+            tangents=trace.tangents,
+            role=BeadRole(closing=closing, bead_class=bead_class),
         ), directions_
 
 
