@@ -27,8 +27,8 @@ from freecad_am.core.planning import redundancy_curve as spin_curve
 from freecad_am.core.planning import redundancy_map as spin_map
 from freecad_am.core.planning.points import TURN, gather
 from freecad_am.core.planning.task import Task
-from freecad_am.kdl import KdlArm
 from freecad_am.core.toolpath import MotionRules
+from freecad_am.kdl import KdlArm
 
 PART_ON_ROBOT = {}
 TOOL_ON_ROBOT = {"setup": "tool-on-robot", "deposition_point": (900.0, 0.0, -100.0, 0.0, 0.0, 0.0)}

@@ -15,8 +15,8 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.kdl import KdlArm, available
 from freecad_am.core.toolpath import Bead, Layer, MotionRules, Toolpath
+from freecad_am.kdl import KdlArm, available
 
 MACHINES = ["table-xyzac", "table-xyzbc", "head-table-xyzbc"]
 
