@@ -16,7 +16,7 @@ from ..parameters.process import ProcessParameters
 from ..parameters.strategy import CurvesParameters
 from ..process import classes
 from ..slicing.wall_directions import lean_tool
-from ..toolpath import Bead, Layer, Toolpath
+from ..toolpath import Bead, BeadRole, Layer, MotionRules, Toolpath
 from ..types import Array
 from .progress import Progress, silent
 

@@ -68,6 +68,7 @@ SCHEMAS: dict[str, Schema] = {
     "program": Schema("objects.program:Written"),
     "revolved_wall": Schema("core.geometry.curves.profile:RevolvedWall"),
     "roundness": Schema("core.inspection.figures:Round"),
+    "sequenced_feature": Schema("core.toolpath:SequencedFeature"),
     "solid_group": Schema("core.geometry.on_hub:Group"),
     "solid_mesh": Schema("core.geometry.mesh.solid:SolidMesh"),
     "solids_on_hub": Schema("core.geometry.on_hub:SolidsOnHub"),

@@ -20,7 +20,7 @@ from ...parameters.process import ProcessParameters
 from ...parameters.strategy import RevolutionParameters
 from ...process import classes, order
 from ...slicing import meridian_levels
-from ...toolpath import Bead, Layer, Toolpath
+from ...toolpath import Bead, BeadRole, Layer, MotionRules, Toolpath
 from ...types import Array, Index
 from .. import size
 from ..clearance.look import SEAM
@@ -294,7 +294,7 @@ def spiral_layers(
         parameter,
         np.full(len(s), process.for_class(WALL).travel_speed),
         False,
-        bead_class=WALL,
+        role=BeadRole(bead_class=WALL),
     )
     ends = _over_itself(turns, end, pitch, wall.meridian.closed_top)
     return (Layer((bead,)),), [*issues, *ends]

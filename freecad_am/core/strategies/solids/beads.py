@@ -31,7 +31,7 @@ from ...parameters.process import ProcessParameters
 from ...process import classes
 from ...process.bead_model import BeadModel
 from ...process.model_notes import at_speed, limit_acceleration, radii, segment_speeds
-from ...toolpath import Bead
+from ...toolpath import Bead, BeadRole
 from ...types import Array, Mask
 from .course import Course
 from .filling import bead_width

@@ -19,7 +19,7 @@ from ...slicing.curve_points import sample_within_chord
 from ...slicing.first_layer import interpolate_polyline
 from ...slicing.tubes import constant_distance, iso_parameter, smooth_spacing
 from ...slicing.tubes.smooth_spacing import WallLayer, local_distances
-from ...toolpath import Layer, Toolpath
+from ...toolpath import Layer, MotionRules, Toolpath
 from ...types import Array, Mask
 from .. import size
 from ..progress import Progress, silent
