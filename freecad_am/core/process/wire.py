@@ -290,7 +290,7 @@ def _at_other_speeds(process: ProcessParameters) -> bool:
 
 BUILT_IN = {"csw": "dai-2020.csv", "li-2025": "li-2025.csv"}
 MAX_FILE_MB = 16  # MB
-FOLDER = Path(__file__).resolve().parents[3] / "beads"
+FOLDER = Path(__file__).resolve().parents[2] / "beads"
 COLUMNS = ("radius_mm", "travel_speed_mm_min", "width_mm", "height_mm", "wire_feed_m_min")
 
 
