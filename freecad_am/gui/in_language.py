@@ -177,7 +177,7 @@ def names_first(text: str) -> bool:
 
 
 CONTEXT = "RoboticAM"
-FOLDER = Path(__file__).resolve().parents[3] / "resources" / "translations"
+FOLDER = Path(__file__).resolve().parents[2] / "resources" / "translations"
 
 
 def install() -> None:
