@@ -57,7 +57,13 @@ class WorkOffset:
     residual: Array
 
     def six(self) -> Array:
-        """x y z RX RY RZ of the pose, mm and deg (Bryant)."""
+        """Return the pose as six numbers.
+
+        Returns
+        -------
+        (6,) array
+            x y z in mm and RX RY RZ in degrees (Bryant angles).
+        """
         return np.concatenate([self.pose[:3, 3], np.degrees(frames.to_bryant(self.pose[:3, :3]))])
 
 
@@ -198,14 +204,33 @@ class Cell:
         return self.machine if self.external is None else self.external.robot
 
     def external_of(self, joints: Array) -> Array | None:
-        """Return the values (..., k) of the external axes among joints (..., axes); None without
-        external axes.
+        """Return the values of the external axes among joints.
+
+        Parameters
+        ----------
+        joints : (..., axes) array
+            Joints of robot and external axes, rad or mm.
+
+        Returns
+        -------
+        (..., k) array or None
+            None without external axes.
         """
         return None if self.external is None else joints[..., self.robot.chain.axes :]
 
     def links(self, joints: Array) -> Array:
-        """(..., axes + 1, 4, 4) the frames of the robot's links, base_link first, seen from where the machine's chain
-        begins, for joints (..., axes)."""
+        """Return the frames of the robot's links.
+
+        Parameters
+        ----------
+        joints : (..., axes) array
+            Joints of robot and external axes, rad or mm.
+
+        Returns
+        -------
+        (..., axes + 1, 4, 4) array
+            Frames seen from the start of the machine's chain, base_link first, mm.
+        """
         external = self.external_of(joints)
         if self.external is None or external is None:
             return self.machine.chain.links(joints)
@@ -216,8 +241,20 @@ class Cell:
         return moved
 
     def world(self, joints: Array) -> Array:
-        """(n, 4, 4) the world, which is the maker's base frame, seen from where the machine's chain begins, mm, for joints
-        (n, axes)."""
+        """Return the world frame, seen from the start of the chain.
+
+        The world is the manufacturer's base frame.
+
+        Parameters
+        ----------
+        joints : (n, axes) array
+            Joints of robot and external axes, rad or mm.
+
+        Returns
+        -------
+        (n, 4, 4) array
+            Poses, mm.
+        """
         if self.external is None:
             return np.broadcast_to(self.machine.base, (len(joints), 4, 4))
         values = np.array(joints[..., self.robot.chain.axes :])
@@ -229,8 +266,18 @@ class Cell:
         return base_frames
 
     def external_link_frames(self, joints: Array) -> Array:
-        """(n, links, 4, 4) the frames of the links `has_external`, seen from where the machine's chain begins, for joints
-        (n, axes)."""
+        """Return the frames of the links of external axes.
+
+        Parameters
+        ----------
+        joints : (n, axes) array
+            Joints of robot and external axes, rad or mm.
+
+        Returns
+        -------
+        (n, links, 4, 4) array
+            Frames of `external_links`, seen from the start of the machine's chain, mm.
+        """
         values = self.external_of(joints)
         if not self.external_links or self.external is None or values is None:
             return np.zeros((len(joints), 0, 4, 4))
@@ -254,13 +301,26 @@ class Cell:
 
     @property
     def carriers(self) -> tuple[Machine, ...]:
-        """What carries the part and moves it, from the floor on; the part hangs on the face, or the flange, of the last."""
+        """Return the machines that carry and move the part, from the floor on.
+
+        Returns
+        -------
+        tuple of Machine
+            The part is on the face, or the flange, of the last one; empty if it does
+            not move.
+        """
         if self.arrangement.carries_part:
             return (self.machine,)
         return () if self.external is None else self.external.carriers
 
     def in_part(self) -> tuple[Body, ...]:
-        """Return the obstacles in part coordinates; empty if the part moves in the world."""
+        """Return the obstacles in part coordinates.
+
+        Returns
+        -------
+        tuple of Body
+            Empty if the part moves in the world.
+        """
         if self.part_moves or not self.obstacles:
             return ()
         world = self.world(np.zeros((1, self.machine.chain.axes)))[0]
@@ -270,11 +330,21 @@ class Cell:
     def pose_frames(
         self, position: Array, tool: Array, external: Array | None = None
     ) -> PoseFrames:
-        """Return the constant factors of the flange poses of n points, in base_link, while the
-        rotation varies.
+        """Return the factors of flange poses that stay constant while the rotation varies.
 
-        position (n, 3) mm and tool (n, 3) unit vectors in part coordinates; external (n, k)
-        values of any external axes.
+        Parameters
+        ----------
+        position : (n, 3) array
+            Points in part coordinates, mm.
+        tool : (n, 3) array
+            Tool axes in part coordinates, unit vectors.
+        external : (n, k) array or None, optional
+            Values of the external axes; required in a cell that has some.
+
+        Returns
+        -------
+        PoseFrames
+            Factors in base_link.
         """
         to_platform = frames.inverse(self.mount)
         points = position @ to_platform[:3, :3].T + to_platform[:3, 3]
@@ -292,8 +362,17 @@ class Cell:
         return PoseFrames(stands, -1.0, (_TURNED @ frames.inverse(self.carried))[None])
 
     def to_carrier(self, position: Array) -> Array:
-        """Return points (n, 3) mm of the part as seen from the flange or the face that carries it;
-        there are `carriers`.
+        """Return points of the part in the frame of the flange or face that carries it.
+
+        Parameters
+        ----------
+        position : (n, 3) array
+            Points in part coordinates, mm.
+
+        Returns
+        -------
+        (n, 3) array
+            Points in the frame of the last of `carriers`, mm.
         """
         carrier_frame = (
             self.carried if self.arrangement.carries_part else self.station
@@ -301,8 +380,21 @@ class Cell:
         return np.asarray(position @ carrier_frame[:3, :3].T + carrier_frame[:3, 3])
 
     def to_flange(self, position: Array, tool: Array) -> tuple[Array, Array]:
-        """Return points (n, 3) and tool axes (n, 3) of the part as seen from the flange that carries
-        it.
+        """Return points and tool axes of the part in the frame of the flange that carries it.
+
+        Parameters
+        ----------
+        position : (n, 3) array
+            Points in part coordinates, mm.
+        tool : (n, 3) array
+            Tool axes in part coordinates.
+
+        Returns
+        -------
+        position : (n, 3) array
+            Points in the flange frame, mm.
+        tool : (n, 3) array
+            Tool axes in the flange frame.
         """
         flange_frame = self.carried @ frames.inverse(self.mount)
         return position @ flange_frame[:3, :3].T + flange_frame[:3, 3], tool @ flange_frame[
@@ -312,16 +404,42 @@ class Cell:
     def flange_poses(
         self, position: Array, tool: Array, phi: Array, joints: Array | None = None
     ) -> Array:
-        """(n, 4, 4) poses of the flange in base_link for n points with the rotation phi (n,) about the tool axis; `joints`
-        (n, axes) near there, whose external axes stay as they are."""
+        """Return flange poses for points and rotations.
+
+        Parameters
+        ----------
+        position : (n, 3) array
+            Points in part coordinates, mm.
+        tool : (n, 3) array
+            Tool axes in part coordinates, unit vectors.
+        phi : (n,) array
+            Rotations about the tool axes, rad.
+        joints : (n, axes) array or None, optional
+            Joints nearby, from which the external axes are taken.
+
+        Returns
+        -------
+        (n, 4, 4) array
+            Poses in base_link, mm.
+        """
         return self.pose_frames(
             position, tool, None if joints is None else self.external_of(joints)
         ).flange_poses(phi)
 
     def tip_in_part(self, flange: Array) -> tuple[Array, Array]:
-        """Where the nozzle is, seen from the part: its tip (n, 3) mm and tool axis (n, 3), part coordinates.
+        """Return tip and axis of the nozzle in part coordinates.
 
-        flange: (n, 4, 4) in base_link.
+        Parameters
+        ----------
+        flange : (n, 4, 4) array
+            Flange poses in base_link.
+
+        Returns
+        -------
+        tip : (n, 3) array
+            The tip, mm.
+        axis : (n, 3) array
+            The tool axis, unit vectors.
         """
         if self.torch_stands:
             platform = flange @ self.carried
@@ -332,8 +450,17 @@ class Cell:
         return in_part[:, :3, 3], in_part[:, :3, 2]
 
     def tip_at(self, joints: Array) -> Array:
-        """Return only the tip, (..., 3) mm in part coordinates, for joint values (..., axes), in a
-        third of the time.
+        """Return only the tip of the nozzle, in a third of the time of `tip_in_part`.
+
+        Parameters
+        ----------
+        joints : (..., axes) array
+            Joints, rad or mm.
+
+        Returns
+        -------
+        (..., 3) array
+            The tip in part coordinates, mm.
         """
         chain = self.machine.chain
         if self.torch_stands:
@@ -355,21 +482,62 @@ class Cell:
         return self.arrangement.carries_part
 
     def deposition_point(self, flange: Array) -> Array:
-        """(n, 3) mm, the point of deposit in base_link for the flange poses (n, 4, 4)."""
+        """Return the point of deposit for flange poses.
+
+        Parameters
+        ----------
+        flange : (n, 4, 4) array
+            Flange poses in base_link.
+
+        Returns
+        -------
+        (n, 3) array
+            Points in base_link, mm.
+        """
         if self.torch_stands:
             return np.broadcast_to(self.station[:3, 3], (len(flange), 3))
         tip: Array = (flange @ self.carried)[:, :3, 3]
         return tip
 
     def rotation_axis(self, flange: Array) -> Array:
-        """(n, 3) angular velocity of the flange in base_link per unit of phi, about the deposition point."""
+        """Return the angular velocity of the flange per unit of phi.
+
+        Parameters
+        ----------
+        flange : (n, 4, 4) array
+            Flange poses in base_link.
+
+        Returns
+        -------
+        (n, 3) array
+            Unit vectors in base_link; the rotation is about the deposition point.
+        """
         if self.torch_stands:
             return np.broadcast_to(self.station[:3, 2], (len(flange), 3))
         axis: Array = (flange @ self.carried)[:, :3, 2]
         return axis
 
     def phi_of_rz(self, tool: Array, rz: Array) -> tuple[Array, Array]:
-        """The rotation phi (n,) that the paper's RZ (n,) amounts to, and d phi / d RZ (n,) (eqs. 14 and 15)."""
+        """Return the rotation phi for the RZ of the paper.
+
+        Parameters
+        ----------
+        tool : (n, 3) array
+            Tool axes in part coordinates, unit vectors.
+        rz : (n,) array
+            RZ, rad.
+
+        Returns
+        -------
+        phi : (n,) array
+            Rotation about the tool axes, rad.
+        rate : (n,) array
+            d phi / d RZ.
+
+        References
+        ----------
+        Chalvin 2020, eqs. 14 and 15.
+        """
         t = tool @ self.mount[:3, :3]
         cos, sin = np.cos(rz), np.sin(rz)
         sx = t[:, 1] * cos + t[:, 0] * sin
@@ -384,7 +552,20 @@ class Cell:
         return np.arctan2(first_row[1], first_row[0]), t[:, 2] / np.maximum(cx * cx, 1e-300)
 
     def rz_of_phi(self, tool: Array, phi: Array) -> Array:
-        """The paper's RZ (n,) rad of the rotations phi (n,) about the tool axes (n, 3) in part coordinates."""
+        """Return the RZ of the paper for rotations phi.
+
+        Parameters
+        ----------
+        tool : (n, 3) array
+            Tool axes in part coordinates, unit vectors.
+        phi : (n,) array
+            Rotation about the tool axes, rad.
+
+        Returns
+        -------
+        (n,) array
+            RZ in -pi to pi, rad.
+        """
         t = tool @ self.mount[:3, :3]
         upright = frames.smallest_rotation(t, UP)
         first_row = np.cos(phi)[:, None] * upright[:, 0] - np.sin(phi)[:, None] * upright[:, 1]
@@ -394,8 +575,21 @@ class Cell:
 
 
 def mounted(parameters: CellParameters, feature_frame: Array, family: str) -> Array:
-    """Return the frame (4, 4) on the platform, in part coordinates: the feature's own frame (4,
-    4), or the part file's frame.
+    """Return the frame that sits on the platform.
+
+    Parameters
+    ----------
+    parameters : CellParameters
+        The cell, with `mount`.
+    feature_frame : (4, 4) array
+        The feature's own frame in part coordinates.
+    family : str
+        Kind of the feature; it decides for the mount 'auto'.
+
+    Returns
+    -------
+    (4, 4) array
+        The feature's frame, or the identity for the frame of the part file.
     """
     mount = parameters.mount if parameters.mount != "auto" else KINDS[family].mount
     return np.array(feature_frame) if mount == ON_FEATURE else np.eye(4)
@@ -407,13 +601,31 @@ def resolve(
     family: str = DEFAULT_KIND,
     folders: Sequence[str] = (),
 ) -> Cell:
-    """The cell of a job: machine file read, frames put together.
+    """Return the cell of a job: the machine file read, the frames combined.
 
-    feature_frame: (4, 4) the feature's own frame in part coordinates; it sits on the platform when `mount` is
-    'feature' (the default for parts of revolution), else the frame of the part file does.
+    Parameters
+    ----------
+    parameters : CellParameters
+        The cell as the job describes it.
+    feature_frame : (4, 4) array
+        The feature's own frame in part coordinates; it sits on the platform when `mount` is
+        'feature' (the default for parts of revolution), else the frame of the part file
+        does.
+    family : str, optional
+        Kind of the feature.
+    folders : sequence of str, optional
+        Folders with user machines.
 
-    Raises InputError UNKNOWN_MACHINE, BAD_MACHINE, UNKNOWN_LIMITS, NOT_YET (set-ups to come), WRONG_SETUP (a robot as a
-    table or the other way), NO_CLOSED_FORM.
+    Returns
+    -------
+    Cell
+        The cell.
+
+    Raises
+    ------
+    InputError
+        UNKNOWN_MACHINE, BAD_MACHINE, UNKNOWN_LIMITS, NOT_YET for set-ups to come,
+        WRONG_SETUP for a robot as a table or the reverse, NO_CLOSED_FORM.
     """
     arrangement = planned_of(parameters.setup)
     machine = machines.load(parameters.machine, tuple(folders))

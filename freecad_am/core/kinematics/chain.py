@@ -78,7 +78,18 @@ class Chain:
         return len(self.directions)
 
     def forward(self, q: ArrayLike) -> Array:
-        """The flange poses (..., 4, 4) in base_link for joint values `q` (..., axes), rad and mm."""
+        """Return the flange poses for joint values.
+
+        Parameters
+        ----------
+        q : (..., axes) array
+            Joint values, rad or mm.
+
+        Returns
+        -------
+        (..., 4, 4) array
+            Poses in base_link, mm.
+        """
         angles = np.asarray(q, float)
         by_joint = self._by_joint(angles)
         flange = _upright(by_joint.shape[1])
@@ -102,8 +113,19 @@ class Chain:
         )
 
     def axes_at(self, q: ArrayLike) -> tuple[Array, Array]:
-        """Return only the directions and origins of `frames`, each (axes, 3, n), for joint values
-        `q` (n, axes).
+        """Return only the directions and origins of `frames`.
+
+        Parameters
+        ----------
+        q : (n, axes) array
+            Joint values, rad or mm.
+
+        Returns
+        -------
+        directions : (axes, 3, n) array
+            Unit vectors in base_link.
+        origins : (axes, 3, n) array
+            A point on each axis in base_link, mm.
         """
         return self._axes(self._by_joint(np.asarray(q, float)), None)
 
@@ -123,20 +145,53 @@ class Chain:
         return directions, origins
 
     def point_from_flange(self, q: ArrayLike, point: Array) -> Array:
-        """Return a `point` (3,) of base_link as seen from the flange, (..., 3) mm, for joint values
-        `q` (..., axes), rad and mm.
+        """Return a fixed point as seen from the flange.
+
+        Parameters
+        ----------
+        q : (..., axes) array
+            Joint values, rad or mm.
+        point : (3,) array
+            The point in base_link, mm.
+
+        Returns
+        -------
+        (..., 3) array
+            The point in the flange frame, mm.
         """
         return self._transform_point(q, point, range(self.axes), frames.inverse(self._links), -1.0)
 
     def point_position(self, q: ArrayLike, point: Array) -> Array:
-        """Return a `point` (3,) of the flange in base_link, (..., 3) mm, for joint values `q` (...,
-        axes), rad and mm.
+        """Return where a point of the flange is.
+
+        Parameters
+        ----------
+        q : (..., axes) array
+            Joint values, rad or mm.
+        point : (3,) array
+            The point in the flange frame, mm.
+
+        Returns
+        -------
+        (..., 3) array
+            The point in base_link, mm.
         """
         return self._transform_point(q, point, range(self.axes)[::-1], self._links[::-1], 1.0)
 
     def links(self, q: ArrayLike) -> Array:
-        """The frames (..., axes + 1, 4, 4) of the links in base_link for joint values `q` (..., axes), rad and mm: base_link
-        itself, then each joint's frame, along the chain, as the joint has moved it."""
+        """Return the frames of the links.
+
+        Parameters
+        ----------
+        q : (..., axes) array
+            Joint values, rad or mm.
+
+        Returns
+        -------
+        (..., axes + 1, 4, 4) array
+            Frames in base_link, mm: base_link itself, then each joint's frame along the
+            chain, as the joint has moved it.
+        """
         angles = np.asarray(q, float)
         result = np.empty((*angles.shape[:-1], self.axes + 1, 4, 4))
         result[..., 0, :, :] = np.eye(4)

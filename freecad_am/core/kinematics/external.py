@@ -81,13 +81,33 @@ class ExternalAxes:
         return self.to_robot.axes
 
     def base(self, values: Array) -> Array:
-        """Return the robot's base_link (n, 4, 4) seen from the frame under the part, mm, for values
-        (n, k) rad and mm.
+        """Return the robot's base_link seen from the frame under the part.
+
+        Parameters
+        ----------
+        values : (n, k) array
+            Values of the external axes, rad or mm.
+
+        Returns
+        -------
+        (n, 4, 4) array
+            Poses, mm.
         """
         return self.to_robot.forward(values)
 
     def links(self, values: Array) -> list[Array]:
-        """(n, axes + 1, 4, 4) the frames of each mechanism's links in the world, its base first, for values (n, k)."""
+        """Return the frames of each mechanism's links in the world.
+
+        Parameters
+        ----------
+        values : (n, k) array
+            Values of the external axes, rad or mm.
+
+        Returns
+        -------
+        list of (n, axes + 1, 4, 4) array
+            The base first, mm.
+        """
         link_frames: list[Array] = []
         for mechanism in self.mechanisms:
             start = mechanism.frame
@@ -101,8 +121,19 @@ class ExternalAxes:
         return link_frames
 
     def upright(self, directions: Array, values: Array) -> Array:
-        """Return unit vectors (n, 3), given in the frame under the part (n, 3), in the world, for
-        values (n, k) rad and mm.
+        """Turn directions of the frame under the part into the world.
+
+        Parameters
+        ----------
+        directions : (n, 3) array
+            Unit vectors in the frame under the part.
+        values : (n, k) array
+            Values of the external axes, rad or mm.
+
+        Returns
+        -------
+        (n, 3) array
+            Unit vectors in the world.
         """
         turned = directions @ self.at_zero.T
         for axis, angle in list(zip(self.turning, values.T[self.turned], strict=True))[::-1]:
@@ -117,11 +148,36 @@ def coupled(
     up: Sequence[float],
     folders: Sequence[str] = (),
 ) -> tuple[Machine, Limits, ExternalAxes]:
-    """Couple a robot with its external axes; returns the machine, its limits, and the axes.
+    """Couple a robot with its external axes.
 
-    Joint values are the robot's and then the mechanisms' in the order of `named`; `up` (3,)
-    is against gravity. Raises InputError NOT_YET for cells that cannot be planned,
-    UNKNOWN_MACHINE, BAD_MACHINE.
+    Joint values are the robot's and then the mechanisms' in the order of `named`.
+
+    Parameters
+    ----------
+    robot : Machine
+        The robot.
+    limits : Limits
+        Its limits.
+    named : sequence of ExternalMechanism
+        The mechanisms as the cell lists them.
+    up : (3,) sequence of float
+        Direction against gravity in the world.
+    folders : sequence of str, optional
+        Folders with user machines.
+
+    Returns
+    -------
+    machine : Machine
+        Robot and mechanisms as one machine.
+    limits : Limits
+        Limits of all axes.
+    external : ExternalAxes
+        The external axes.
+
+    Raises
+    ------
+    InputError
+        NOT_YET for cells that cannot be planned, UNKNOWN_MACHINE, BAD_MACHINE.
     """
     loaded = [(named_axis, load(named_axis.machine, folders)) for named_axis in named]
     _check_names(robot, loaded)
@@ -276,7 +332,18 @@ def load(name: str, folders: Sequence[str] = ()) -> Machine:
 
 
 def upward(up: Sequence[float]) -> Array:
-    """(3,) the unit vector along three numbers."""
+    """Normalise a direction.
+
+    Parameters
+    ----------
+    up : sequence of float
+        Three numbers, not all 0.
+
+    Returns
+    -------
+    (3,) array
+        Unit vector.
+    """
     vector = np.array(up, float)
     return np.asarray(vector / np.linalg.norm(vector))
 
@@ -383,7 +450,20 @@ def _limits(robot: Limits, machines_beside: Sequence[Machine]) -> Limits:
 
 
 def tilt_from(directions: Array, up: Array) -> Array:
-    """(n,) rad, the angles of unit vectors (n, 3) to a unit vector (3,)."""
+    """Return the angles of unit vectors to a direction.
+
+    Parameters
+    ----------
+    directions : (n, 3) array
+        Unit vectors.
+    up : (3,) array
+        Unit vector.
+
+    Returns
+    -------
+    (n,) array
+        Angles from 0 to pi, rad.
+    """
     angle: Array = np.arctan2(np.linalg.norm(np.cross(directions, up), axis=1), directions @ up)
     return np.asarray(np.minimum(angle, math.pi))
 
@@ -391,11 +471,26 @@ def tilt_from(directions: Array, up: Array) -> Array:
 def positioners(
     robot: Machine, mass: float, radius: float, folders: Sequence[str] = ()
 ) -> list[Machine]:
-    """Return positioners with one or two revolute axes that carry a part of a mass, kg, as far
-    as their files say.
+    """Return the known positioners with one or two revolute axes for a part, the best suited first.
 
-    The order: those with a table as wide as the part, `radius` mm about its axis; those with
-    known speeds; those of the robot's manufacturer; those with the lowest rating.
+    The order: tables as wide as the part; known speeds; the robot's manufacturer; the lowest
+    rating.
+
+    Parameters
+    ----------
+    robot : Machine
+        The robot.
+    mass : float
+        Mass of the part, kg.
+    radius : float
+        Extent of the part about its axis, mm.
+    folders : sequence of str, optional
+        Folders with user machines.
+
+    Returns
+    -------
+    list of Machine
+        Mechanisms whose files state enough payload, or none.
     """
     candidates = [
         machine

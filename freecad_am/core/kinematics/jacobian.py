@@ -21,10 +21,22 @@ BATCH_SIZE = 4096  # poses: limits the memory of intermediate arrays
 
 
 def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
-    """The geometric Jacobians (n, 6, axes): rows velocity (mm) and angular velocity per rad, or mm, of each joint.
+    """Return the geometric Jacobians of a point of the last link.
 
-    Joint angles `q` (n, axes) rad; `point` (n, 3) or (3,) in mm is the point of the last link whose velocity is
-    meant, given where it is now. Point and result in base_link.
+    Parameters
+    ----------
+    chain : Chain
+        The chain.
+    q : (n, axes) array
+        Joint values, rad or mm.
+    point : (n, 3) or (3,) array
+        The current position of the point in base_link, mm.
+
+    Returns
+    -------
+    (n, 6, axes) array
+        Rows: velocity in mm and angular velocity in rad, per rad or mm of each joint, in
+        base_link.
     """
     angles = np.asarray(q, float)
     count = len(angles)
@@ -44,9 +56,24 @@ def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
 
 
 def condition(jacobians: ArrayLike, length: float) -> Array:
-    """sigma_min / sigma_max (n,) of Jacobians (n, 6, axes) with translation rows divided by `length` mm.
+    """Return the ratio of the smallest to the largest singular value.
 
-    Through the eigenvalues of J J^T: accurate to about 1e-15 divided by the condition itself.
+    Parameters
+    ----------
+    jacobians : (n, 6, axes) array
+        Jacobians in mm and rad.
+    length : float
+        Characteristic length that divides the rows of translation, mm.
+
+    Returns
+    -------
+    (n,) array
+        sigma_min / sigma_max.
+
+    Notes
+    -----
+    Computed from the eigenvalues of J J^T: accurate to about 1e-15 divided by the condition
+    itself.
     """
 
     def compute_batch(scaled: Array) -> Array:
@@ -59,23 +86,54 @@ def condition(jacobians: ArrayLike, length: float) -> Array:
 
 
 def condition_bound(jacobians: ArrayLike, length: float) -> Array:
-    """A lower bound (n,) of `condition` at a fraction of its cost: 1 / (|J|_F |J^-1|_F), for (n, 6, 6).
+    """Return a lower bound of `condition` at a fraction of its cost.
 
-    The condition is at most 6 times the bound, for arms of the usual proportions 1 to 2.5 times. 0 where the last
-    three axes have no common inverse: at the wrist's singularity.
+    Parameters
+    ----------
+    jacobians : (n, 6, 6) array
+        Jacobians in mm and rad.
+    length : float
+        Characteristic length that divides the rows of translation, mm.
+
+    Returns
+    -------
+    (n,) array
+        1 / (norm(J) norm(J^-1)) with Frobenius norms; 0 where the last three axes have no
+        common inverse, at the wrist's singularity.
+
+    Notes
+    -----
+    The condition is at most 6 times the bound, for arms of the usual proportions 1 to 2.5
+    times.
     """
     return _in_pieces(_frobenius, jacobians, length)
 
 
 def condition_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Array:
-    """Return the derivative (n,) of `condition` when the joints move with `rates` (n, 6), rad
-    per unit of the parameter.
+    """Return the derivative of `condition` while the joints move.
 
-    The point moves with the last link; if the rates leave it in place, as the rotation about
-    the tool axis does, a point fixed in the base frame gives the same. Computed from the
-    singular vectors and the derivative of the columns: joint j turns the columns after it,
-    and moves the point of the columns before it. NaN where sigma_min is 0; where it is a
-    double value the derivative is one-sided and not unique.
+    The point moves with the last link. If the rates leave it in place, as the rotation about
+    the tool axis does, a point fixed in the base frame gives the same.
+
+    Parameters
+    ----------
+    jacobians : (n, 6, 6) array
+        Jacobians in mm and rad.
+    rates : (n, 6) array
+        Joint rates, rad per unit of the parameter.
+    length : float
+        Characteristic length that divides the rows of translation, mm.
+
+    Returns
+    -------
+    (n,) array
+        Derivative by the parameter; NaN where sigma_min is 0. For a double singular value
+        it is one-sided and not unique.
+
+    Notes
+    -----
+    Computed from the singular vectors and the derivative of the columns: joint j turns the
+    columns after it, and moves the point of the columns before it.
     """
     rates = np.asarray(rates, float).T
 
@@ -99,7 +157,24 @@ def condition_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Arr
 
 
 def manipulability(jacobians: ArrayLike, length: float) -> Array:
-    """sqrt(det(J J^T)) (n,) of Jacobians (n, 6, 6) with translation rows divided by `length` mm; Yoshikawa 1985."""
+    """Return the manipulability of Jacobians.
+
+    Parameters
+    ----------
+    jacobians : (n, 6, 6) array
+        Jacobians in mm and rad.
+    length : float
+        Characteristic length that divides the rows of translation, mm.
+
+    Returns
+    -------
+    (n,) array
+        sqrt(det(J J^T)).
+
+    References
+    ----------
+    Yoshikawa 1985.
+    """
 
     def compute_batch(scaled: Array) -> Array:
         result: Array = np.abs(np.linalg.det(scaled.transpose(2, 0, 1)))
@@ -109,9 +184,25 @@ def manipulability(jacobians: ArrayLike, length: float) -> Array:
 
 
 def manipulability_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Array:
-    """The derivative (n,) of `manipulability` when the joints move with `rates` (n, 6), rad per unit of the parameter.
+    """Return the derivative of `manipulability` while the joints move.
 
-    Jacobi's formula, d det J = det J tr(J^-1 dJ). NaN where J is singular, and so the manipulability has a kink.
+    Parameters
+    ----------
+    jacobians : (n, 6, 6) array
+        Jacobians in mm and rad.
+    rates : (n, 6) array
+        Joint rates, rad per unit of the parameter.
+    length : float
+        Characteristic length that divides the rows of translation, mm.
+
+    Returns
+    -------
+    (n,) array
+        Derivative by the parameter; NaN where J is singular.
+
+    Notes
+    -----
+    Jacobi's formula, d det J = det J tr(J^-1 dJ).
     """
     rates = np.asarray(rates, float).T
 

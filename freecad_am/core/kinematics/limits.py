@@ -28,13 +28,32 @@ class PoseFrames:
         return PoseFrames(left_frames, self.sign, right)
 
     def flange_poses(self, phi: Array) -> Array:
-        """Return flange poses (..., n, 4, 4) for rotations phi (..., n)."""
+        """Return flange poses for rotations.
+
+        Parameters
+        ----------
+        phi : (..., n) array
+            Rotations about the tool axis, rad.
+
+        Returns
+        -------
+        (..., n, 4, 4) array
+            Poses, mm, contiguous.
+        """
         return np.ascontiguousarray(self.by_entry(phi))
 
     def by_entry(self, phi: Array) -> Array:
-        """Return the same poses; for carried parts each entry of all poses is contiguous in memory.
+        """Return the same poses, in the memory order that is fastest to compute.
 
-        Filling and reading entry by entry is faster.
+        Parameters
+        ----------
+        phi : (..., n) array
+            Rotations about the tool axis, rad.
+
+        Returns
+        -------
+        (..., n, 4, 4) array
+            Poses, mm; for carried parts each entry is contiguous over the poses.
         """
         cos, sin = np.cos(phi), self.sign * np.sin(phi)
         if len(self.left) == 1:
@@ -116,9 +135,18 @@ class Limits:
         return without
 
     def margin(self, q: ArrayLike) -> Array:
-        """The distance (..., axes + m) of joint vectors `q` (..., axes) to the nearer end of every limit, rad.
+        """Return the distance of joint vectors to the nearer end of every limit.
 
-        Negative outside, infinite for an endless axis, NaN where q is.
+        Parameters
+        ----------
+        q : (..., axes) array
+            Joints, rad or mm.
+
+        Returns
+        -------
+        (..., axes + m) array
+            Distances, rad or mm; negative outside, infinite for an endless axis, NaN
+            where q is.
         """
         angles = np.asarray(q, float)
         result = np.empty(angles.shape[:-1] + (self.axes + len(self.coupled_lower),))
@@ -130,7 +158,18 @@ class Limits:
         return result
 
     def shares(self, q: Array) -> Array:
-        """`margins` (..., axes + m) of joint vectors `q` (..., axes), of each axis and then of each coupled limit."""
+        """Return the margins to every limit as shares of half the range.
+
+        Parameters
+        ----------
+        q : (..., axes) array
+            Joints, rad or mm.
+
+        Returns
+        -------
+        (..., axes + m) array
+            `margins` of each axis and then of each coupled limit.
+        """
         return np.concatenate(
             [
                 margins(q, self.lower, self.upper),
@@ -140,10 +179,20 @@ class Limits:
         )
 
     def smallest_share(self, q: Array) -> Array:
-        """Return the smallest (n,) of the `shares` of each joint vector (n, axes).
+        """Return the smallest of the `shares` of each joint vector.
 
         Computed limit by limit, without an array as large as all shares: allocating memory
         dominates the time.
+
+        Parameters
+        ----------
+        q : (n, axes) array
+            Joints, rad or mm.
+
+        Returns
+        -------
+        (n,) array
+            1 in the middle of all ranges, 0 at a limit, less beyond.
         """
         smallest = np.full(len(q), np.inf)
         for axis, (low, high) in enumerate(zip(self.lower, self.upper, strict=True)):
@@ -169,10 +218,20 @@ class Limits:
 
 
 def margins(joints: Array, lower: Array, upper: Array) -> Array:
-    """(..., a) share of half the range that is left to the nearer limit: 1 in the middle, 0 at a limit, less beyond it.
+    """Return the share of half the range that is left to the nearer limit.
 
-    joints: (..., a) rad or mm; the share is NaN where these are. lower, upper: (a,), infinite where an axis is endless;
-    there the share is 1.
+    Parameters
+    ----------
+    joints : (..., a) array
+        Joints, rad or mm.
+    lower, upper : (a,) array
+        Limits, infinite where an axis is endless.
+
+    Returns
+    -------
+    (..., a) array
+        1 in the middle and for endless axes, 0 at a limit, less beyond; NaN where the
+        joints are.
     """
     share = np.empty_like(joints)
     for axis, (low, high) in enumerate(

@@ -52,10 +52,28 @@ def cell_of(
     setup: str = OF_ROBOTS[0].setup,
     tool: Pose | None = None,
 ) -> CellParameters:
-    """Return the parameters of a cell with a machine, '' for the default one.
+    """Return the parameters of a cell with a machine.
 
-    A robot has the requested set-up; tool: pose of the tip on its flange, if known. Raises
-    InputError for an unknown machine.
+    Parameters
+    ----------
+    machine : str
+        Id or file of the machine, '' for the default one.
+    folders : sequence of str, optional
+        Folders with user machines.
+    setup : str, optional
+        Requested set-up of a robot.
+    tool : Pose or None, optional
+        Pose of the tip on the robot's flange; None if unknown.
+
+    Returns
+    -------
+    CellParameters
+        The parameters, proposed for a robot.
+
+    Raises
+    ------
+    InputError
+        For an unknown machine.
     """
     cell_parameters = CellParameters(machine=machine or CellParameters().machine)
     usual = machines.load(cell_parameters.machine, tuple(folders)).arrangements[0]
@@ -68,8 +86,28 @@ def cell_of(
 def proposed(
     parameters: CellParameters, folders: Sequence[str] = (), own_branch: bool = False
 ) -> CellParameters:
-    """The cell with the deposition point or the platform, on whole mm, and the branch that serve best, its own one with
-    `own_branch`; as it is where none serves, and where the part is on a positioner. Errors as `cell.resolve`."""
+    """Return the cell with the best deposition point, or platform, and branch.
+
+    Parameters
+    ----------
+    parameters : CellParameters
+        The cell; the default one has a known answer.
+    folders : sequence of str, optional
+        Folders with user machines.
+    own_branch : bool, optional
+        Whether to keep the branch of the cell.
+
+    Returns
+    -------
+    CellParameters
+        The cell, on whole mm; unchanged if no position serves or the part is on a
+        positioner.
+
+    Raises
+    ------
+    InputError
+        As `cell.resolve`.
+    """
     if parameters == CellParameters() and not own_branch:
         return replace(parameters, deposition_point=USUAL_POINT, branch=USUAL_BRANCH)
     return search_cell(parameters, folders, own_branch)
@@ -78,7 +116,27 @@ def proposed(
 def search_cell(
     parameters: CellParameters, folders: Sequence[str] = (), own_branch: bool = False
 ) -> CellParameters:
-    """Search the parameters for `proposed`."""
+    """Search the best deposition point, or platform, and branch for `proposed`.
+
+    Parameters
+    ----------
+    parameters : CellParameters
+        The cell.
+    folders : sequence of str, optional
+        Folders with user machines.
+    own_branch : bool, optional
+        Whether to keep the branch of the cell.
+
+    Returns
+    -------
+    CellParameters
+        The cell; unchanged if no position serves.
+
+    Raises
+    ------
+    InputError
+        As `cell.resolve`.
+    """
     machine = machines.load(parameters.machine, tuple(folders))
     arrangement = arrangement_of(parameters.setup)
     if parameters.external or machine.arm is None or not (arrangement.free and arrangement.planned):

@@ -137,8 +137,27 @@ def _halves(mesh: Piece) -> list[tuple[Piece, Piece]]:
 
 
 def cut(points: Array, triangles: Integers, height: float, above: bool, axis: int = 2) -> Piece:
-    """Return the part of triangles (m, 3) of points (n, 3) above, or below, a height along an
-    axis: points and triangles.
+    """Return the part of triangles above or below a height.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Corners, mm.
+    triangles : (m, 3) int array
+        Indices of corners.
+    height : float
+        Height of the cut, mm.
+    above : bool
+        Whether the part above is kept.
+    axis : int, optional
+        Axis of the height, 0 to 2.
+
+    Returns
+    -------
+    points : (k, 3) array
+        The corners and the crossings of edges with the height.
+    triangles : (l, 3) int array
+        The remaining triangles.
     """
     side = (points[:, axis] - height) * (1.0 if above else -1.0)
     inside = side[triangles] >= 0.0

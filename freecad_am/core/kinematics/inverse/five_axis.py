@@ -58,7 +58,14 @@ class FiveAxis:
 
     @property
     def pole(self) -> Array:
-        """Unit vector (3,) on the flange along the turning axis next to it: a tool there, or against it, leaves it free."""
+        """Return the axis of the turning joint next to the flange.
+
+        Returns
+        -------
+        (3,) array
+            Unit vector in the flange frame; tools along it, or against it, leave this
+            joint free.
+        """
         _, second, source, _ = self._pair(np.eye(3), np.array([0.0, 0.0, 1.0]))
         return np.asarray(source @ second)
 
@@ -68,9 +75,25 @@ class FiveAxis:
         return rotary_pair.solve_turns(first_axis, second_axis, source, target)
 
     def inverse(self, points: Array, tools: Array, station: Array) -> Solutions:
-        """Axis values that hold points (n, 3) mm and tool directions (n, 3), given on the flange, at the torch.
+        """Return axis values that hold points and tool directions at the torch.
 
-        station: (4, 4) the torch's tip in base_link, its Z pointing into the torch.
+        Parameters
+        ----------
+        points : (n, 3) array
+            Points in the flange frame, mm.
+        tools : (n, 3) array
+            Tool directions in the flange frame, unit vectors.
+        station : (4, 4) array
+            The torch's tip in base_link, its Z pointing into the torch.
+
+        Returns
+        -------
+        Solutions
+            Axis values in both branches.
+
+        References
+        ----------
+        Dai 2020, section 3.
         """
         turns = self.turns(tools, station[:3, 2])
         turned = np.stack([turns.first_turn, turns.second_turn], axis=-1)
@@ -80,23 +103,70 @@ class FiveAxis:
     def locked(
         self, axis: int, angle: Array | float, tools: Array, torch: Array
     ) -> rotary_pair.Locked:
-        """Solve with four axes: the revolute axis `axis` (0 or 1) has a given angle, the other
-        brings the tools as near as possible.
+        """Solve with four axes: one revolute axis has a given angle.
+
+        The other revolute axis brings the tools as near as possible to the torch.
+
+        Parameters
+        ----------
+        axis : int
+            Index of the locked axis, 0 or 1.
+        angle : float or (n,) array
+            Its angle, rad.
+        tools : (n, 3) array
+            Tool directions in the flange frame, unit vectors.
+        torch : (3,) array
+            Direction into the torch in base_link.
+
+        Returns
+        -------
+        rotary_pair.Locked
+            Angle of the other axis and residual.
         """
         first_axis, second_axis, source, target = self._pair(tools, torch)
         lock = rotary_pair.lock_first if axis == 0 else rotary_pair.lock_second
         return lock(first_axis, second_axis, angle, source, target)
 
     def best_lock(self, axis: int, tools: Array, torch: Array, low: float, high: float) -> float:
-        """Where between low and high, rad, the turning axis `axis` (0 or 1) leaves the smallest largest residual."""
+        """Return the lock angle with the smallest maximum residual.
+
+        Parameters
+        ----------
+        axis : int
+            Index of the locked axis, 0 or 1.
+        tools : (n, 3) array
+            Tool directions in the flange frame, unit vectors.
+        torch : (3,) array
+            Direction into the torch in base_link.
+        low, high : float
+            Range of the angle, rad.
+
+        Returns
+        -------
+        float
+            The angle, rad.
+        """
         first_axis, second_axis, source, target = self._pair(tools, torch)
         return rotary_pair.minimise_residual(
             first_axis, second_axis, axis, source, target, low, high
         )
 
     def place_points(self, turned: Array, points: Array, station: Array) -> Array:
-        """Return axis values (n, 5), with the revolute axes at angles (n, 2), that bring points (n,
-        3) to the torch's tip.
+        """Complete revolute angles by the prismatic axes that bring points to the torch's tip.
+
+        Parameters
+        ----------
+        turned : (n, 2) array
+            Angles of the revolute axes, rad; NaN gives a row of NaN.
+        points : (n, 3) array
+            Points in the flange frame, mm.
+        station : (4, 4) array
+            The torch's tip in base_link.
+
+        Returns
+        -------
+        (n, 5) array
+            Values of all axes, rad or mm.
         """
         axes = np.zeros((len(points), 5))
         axes[:, self.turning] = turned

@@ -39,8 +39,21 @@ PLANE_SHARE = 1e-13  # of the length of the stretched arm
 
 
 def exact(curves: Curves, zeros: Zeros) -> tuple[Zeros, Array]:
-    """Return zeros, exact next to axis 1, and sine and cosine (2, k) of their planes; NaN where
-    the point determines the plane.
+    """Replace zeros next to axis 1 by exact ones.
+
+    Parameters
+    ----------
+    curves : Curves
+        Geometry of n poses.
+    zeros : Zeros
+        The k zeros found by the search.
+
+    Returns
+    -------
+    zeros : Zeros
+        The zeros.
+    plane : (2, k) array
+        Sine and cosine of the arm's plane; NaN where the point determines the plane.
     """
     length = curves.upper + curves.fore
     row, angle = _passes(curves, length)
@@ -253,11 +266,18 @@ class OffsetWristArm:
         return self.upper + self.fore
 
     def inverse(self, poses: ArrayLike) -> Array:
-        """Return joint angles (16, n, 6) of all solutions for flange poses (n, 4, 4), in [-pi, pi]
-        rad.
+        """Return joint angles of all solutions for flange poses.
 
-        The first eight are one of each configuration, the least singular one; then the remaining
-        solutions. NaN where there are no more.
+        Parameters
+        ----------
+        poses : (n, 4, 4) array
+            Flange poses in base_link, mm.
+
+        Returns
+        -------
+        (16, n, 6) array
+            Angles in -pi to pi, rad. The first eight are the least singular solution of
+            each configuration; then the remaining ones. NaN where there are no more.
         """
         return self.solutions(poses)[0]
 
@@ -267,8 +287,19 @@ class OffsetWristArm:
         return result
 
     def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
-        """Return all solutions of `inverse`, and the configuration (16, n) whose words each has, -1
-        without a solution.
+        """Return all solutions of `inverse` with their configurations.
+
+        Parameters
+        ----------
+        poses : (n, 4, 4) array
+            Flange poses in base_link, mm.
+
+        Returns
+        -------
+        angles : (16, n, 6) array
+            Angles in -pi to pi, rad.
+        words : (16, n) int array
+            The configuration of each solution, -1 without a solution.
         """
         targets = np.asarray(poses, float)
         result = np.full((MAX_SOLUTIONS, len(targets), 6), np.nan)

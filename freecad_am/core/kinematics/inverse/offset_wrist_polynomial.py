@@ -392,8 +392,23 @@ SEARCH_LEVEL = 1  # level of the search from which steps are divided: samples of
 
 
 def zeros_without_digits(curves: Curves, pose: Index, low: Array, high: Array) -> Zeros:
-    """Return all zeros that samples of spans (k,) show, on either side of axis 1 and with either
-    elbow, unordered.
+    """Return all zeros that samples of spans show, unordered.
+
+    Both sides of axis 1 and both elbows are searched.
+
+    Parameters
+    ----------
+    curves : Curves
+        Geometry of n poses.
+    pose : (k,) int array
+        Pose of each span.
+    low, high : (k,) array
+        Ends of the spans, angles of axis 6 in rad.
+
+    Returns
+    -------
+    Zeros
+        The zeros.
     """
     pose, low, high = _merge_spans(pose, low, high)
     span = np.repeat(np.arange(len(pose)), 4)

@@ -68,10 +68,25 @@ def zeros(curves: Curves) -> Zeros:
 def find_zeros_along(
     curves: Curves, loops: Loops, t: Array, level: int, alike: bool = False
 ) -> Zeros:
-    """Return the zeros between samples t (k, s) along loops; the first and last samples serve
-    for adjacent extremes.
+    """Return the zeros between samples along loops.
 
-    level: how often steps between samples were divided. alike: all rows of t are equal.
+    Parameters
+    ----------
+    curves : Curves
+        Geometry of n poses.
+    loops : Loops
+        The k loops.
+    t : (k, s) array
+        Samples along each loop; the first and last serve for adjacent extremes.
+    level : int
+        How often steps between samples were divided.
+    alike : bool, optional
+        Whether all rows of t are equal.
+
+    Returns
+    -------
+    Zeros
+        The zeros, each once.
     """
     loop, low, high = _steps(curves, loops, np.arange(len(loops.pose)), t, level, alike)
     zero_loops = loops.select(loop)
@@ -104,7 +119,26 @@ def _once(zeros: Zeros) -> Index:
 
 
 def values(curves: Curves, pose: Index, angle: Array, side: Array, elbow: Array) -> Array:
-    """The function (k,) at angles of axis 6 with an elbow 1 or -1."""
+    """Return the function whose zeros are solutions.
+
+    Parameters
+    ----------
+    curves : Curves
+        Geometry of n poses.
+    pose : (k,) int array
+        Numbers of the poses.
+    angle : (k,) array
+        Angles of axis 6, rad.
+    side : (k,) array
+        1 in front of axis 1, -1 behind it.
+    elbow : (k,) array
+        1 for the elbow on the left, else -1.
+
+    Returns
+    -------
+    (k,) array
+        The values.
+    """
     return geometry(curves, pose, angle, side, _bent(curves, pose, angle, side, elbow)).value
 
 

@@ -28,7 +28,22 @@ HINT = 1e-150
 
 
 def solve(arm: OpwArm, poses: ArrayLike, branches: tuple[int, ...]) -> Array:
-    """The joint angles (branches, n, 6) of flange poses (n, 4, 4); see `OpwArm.inverse`."""
+    """Return the joint angles of selected branches.
+
+    Parameters
+    ----------
+    arm : OpwArm
+        The arm.
+    poses : (n, 4, 4) array
+        Flange poses in base_link, mm.
+    branches : tuple of int
+        Indices of the branches.
+
+    Returns
+    -------
+    (branches, n, 6) array
+        Angles in -pi to pi, rad; NaN out of reach, see `OpwArm.inverse`.
+    """
     poses = np.asarray(poses, float)
     count = len(poses)
     by_component = np.moveaxis(poses[:, :3, :], 0, -1)
@@ -283,7 +298,18 @@ def branch_index(words: Sequence[str]) -> int:
 
 
 def branch_name(index: int) -> tuple[str, str, str]:
-    """The three words of a branch: shoulder, elbow, wrist."""
+    """Return the three words of a branch.
+
+    Parameters
+    ----------
+    index : int
+        Index of the branch, 4 back + 2 down + flip.
+
+    Returns
+    -------
+    tuple[str, str, str]
+        Shoulder, elbow and wrist.
+    """
     return BRANCHES[index]
 
 
@@ -327,7 +353,18 @@ class OpwArm:
         return math.hypot(self.a2, self.c3)
 
     def forward(self, q: ArrayLike) -> Array:
-        """The flange poses (..., 4, 4) for joint angles `q` (..., 6)."""
+        """Return the flange poses for joint angles.
+
+        Parameters
+        ----------
+        q : (..., 6) array
+            Serial angles, rad.
+
+        Returns
+        -------
+        (..., 4, 4) array
+            Poses in base_link, mm.
+        """
         angles = np.asarray(q, float)
         turned = np.moveaxis(angles * np.array(self.signs, float) - np.array(self.offsets), -1, 0)
         (s1, s2, _, s4, s5, s6), (c1, c2, _, c4, c5, c6) = np.sin(turned), np.cos(turned)
@@ -355,13 +392,22 @@ class OpwArm:
         return result
 
     def inverse(self, poses: ArrayLike) -> Array:
-        """Return joint angles (8, n, 6) of all branches for flange poses (n, 4, 4), in [-pi, pi]
-        rad.
+        """Return joint angles of all branches for flange poses.
 
-        The first index follows `branch_name`. All six angles of a branch that does not reach a
-        pose are NaN. At the singularity of the wrist (stretched) axis 4 takes the angle of opw
-        zero and axis 6 the rest; with the wrist centre on axis 1, axis 1 takes it. Forward
+        At the singularity of the wrist (stretched) axis 4 takes the angle of opw zero and
+        axis 6 the rest; with the wrist centre on axis 1, axis 1 takes it. Forward
         kinematics reproduces the pose to about 1e-9 mm.
+
+        Parameters
+        ----------
+        poses : (n, 4, 4) array
+            Flange poses in base_link, mm.
+
+        Returns
+        -------
+        (8, n, 6) array
+            Angles in -pi to pi, rad. The first index follows `branch_name`. All six
+            angles of a branch that does not reach a pose are NaN.
         """
         return solve(self, poses, tuple(range(8)))
 

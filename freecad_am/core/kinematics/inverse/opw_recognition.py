@@ -31,10 +31,22 @@ OTHER_GEOMETRY = "correct its geometry, or choose another machine"
 
 
 def rooted(chain: Chain) -> tuple[Chain, Array]:
-    """The chain of a robot seen from a base_link whose Z is axis 1, and the pose (4, 4) of the base_link before in it.
+    """Return the chain of a robot seen from a base_link whose Z is axis 1.
 
-    A base_link that has its Z on axis 1 already, up or down it, stays; any other one is turned by the smallest rotation, and
-    moved to the foot of its origin on the axis.
+    A base_link that has its Z on axis 1 already, up or down, stays. Any other one is turned by
+    the smallest rotation and moved to the foot of its origin on the axis.
+
+    Parameters
+    ----------
+    chain : Chain
+        The chain.
+
+    Returns
+    -------
+    chain : Chain
+        The chain from the new base_link.
+    base : (4, 4) array
+        The previous base_link in the new one.
     """
     at_rest = chain.frames(np.zeros(chain.axes))
     axis, origin = at_rest.directions[0], at_rest.origins[0]
@@ -276,7 +288,22 @@ def clean(value: float) -> float:
 
 
 def refused(reason: str, remedy: str = "", where: str = "geometry") -> InputError:
-    """The error of a machine that cannot be planned for, and what to do about it."""
+    """Build the error for a machine that cannot be planned.
+
+    Parameters
+    ----------
+    reason : str
+        Why its kinematics are unsuitable.
+    remedy : str, optional
+        Advice; empty for the usual one.
+    where : str, optional
+        Key of the machine file.
+
+    Returns
+    -------
+    InputError
+        Error NO_CLOSED_FORM.
+    """
     return InputError(
         "NO_CLOSED_FORM",
         where,

@@ -68,12 +68,21 @@ class ParallelAxesArm:
         return self.upper + self.fore
 
     def inverse(self, poses: ArrayLike) -> Array:
-        """Return joint angles (8, n, 6) in all configurations for flange poses (n, 4, 4), in [-pi,
-        pi] rad.
+        """Return joint angles in all configurations for flange poses.
 
-        All six are NaN in a configuration that does not reach. Where axis 6 is parallel to axis
-        4, axes 4 and 6 share their turn such that the elbow is square, or as near as possible;
-        where axis 1 is free it takes theta 0.
+        Where axis 6 is parallel to axis 4, axes 4 and 6 share their turn such that the
+        elbow is square, or as near as possible; where axis 1 is free it takes theta 0.
+
+        Parameters
+        ----------
+        poses : (n, 4, 4) array
+            Flange poses in base_link, mm.
+
+        Returns
+        -------
+        (8, n, 6) array
+            Angles in -pi to pi, rad. All six are NaN in a configuration that does not
+            reach.
         """
         return self._solved(poses, tuple(range(8)))
 

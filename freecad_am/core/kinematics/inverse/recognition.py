@@ -61,10 +61,18 @@ class CalibratedArm:
         return self.nominal.reach
 
     def inverse(self, poses: ArrayLike) -> Array:
-        """Return joint angles (8, n, 6) in all configurations for flange poses (n, 4, 4), in [-pi,
-        pi]; NaN if out of reach.
+        """Return joint angles in all configurations for flange poses.
 
-        Arms with ambiguous words have as many solutions as the closed form.
+        Parameters
+        ----------
+        poses : (n, 4, 4) array
+            Flange poses in base_link, mm.
+
+        Returns
+        -------
+        (8 or 16, n, 6) array
+            Angles in -pi to pi, rad; as many solutions as the closed form has, NaN out
+            of reach.
         """
         return self.solutions(poses)[0]
 
@@ -74,7 +82,20 @@ class CalibratedArm:
         return self._solve_words(targets, branch)
 
     def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
-        """All of `inverse`, and the configuration (8, n) of each, -1 where it does not reach."""
+        """Return all solutions of `inverse` with their configurations.
+
+        Parameters
+        ----------
+        poses : (n, 4, 4) array
+            Flange poses in base_link, mm.
+
+        Returns
+        -------
+        angles : (8 or 16, n, 6) array
+            Angles in -pi to pi, rad.
+        words : (8 or 16, n) int array
+            The configuration of each solution, -1 without a solution.
+        """
         targets = np.ascontiguousarray(poses, float)
         if not self.nominal.followed:
             solved = np.stack([self._solve_words(targets, words) for words in range(WORDS)])

@@ -39,8 +39,25 @@ class Turns(NamedTuple):
 
 
 def solve_turns(first_axis: Array, second_axis: Array, source: Array, target: Array) -> Turns:
-    """Return the turns about unit axes (3,) that take unit vectors source (n, 3) to target (n,
-    3) or (3,): solution 1.
+    """Return the turns about two axes that take directions to others.
+
+    Parameters
+    ----------
+    first_axis, second_axis : (3,) array
+        Unit axes with all angles at zero; the second is nearer to the source.
+    source : (n, 3) array
+        Unit vectors to turn.
+    target : (n, 3) or (3,) array
+        Unit vectors to reach.
+
+    Returns
+    -------
+    Turns
+        Angles in both branches.
+
+    References
+    ----------
+    Dai 2020, section 3.2, solution 1.
     """
     target = np.broadcast_to(target, source.shape)
     across = np.cross(first_axis, second_axis)
@@ -89,8 +106,23 @@ class Locked(NamedTuple):
 def lock_first(
     first_axis: Array, second_axis: Array, angle: Array | float, source: Array, target: Array
 ) -> Locked:
-    """Solve with four axes: the first axis has a given angle (rad, one or (n,)); the second
-    turns the source as near as possible.
+    """Solve with four axes: the first axis has a given angle.
+
+    Parameters
+    ----------
+    first_axis, second_axis : (3,) array
+        Unit axes.
+    angle : float or (n,) array
+        Angle of the first axis, rad.
+    source : (n, 3) array
+        Unit vectors to turn.
+    target : (n, 3) or (3,) array
+        Unit vectors to reach.
+
+    Returns
+    -------
+    Locked
+        Angle of the second axis and residual.
     """
     target = np.broadcast_to(target, source.shape)
     turned = frames.rotation_about(first_axis, -np.broadcast_to(angle, len(source)))
@@ -100,7 +132,24 @@ def lock_first(
 def lock_second(
     first_axis: Array, second_axis: Array, angle: Array | float, source: Array, target: Array
 ) -> Locked:
-    """Solve with four axes: the second axis has a given angle; the first turns."""
+    """Solve with four axes: the second axis has a given angle.
+
+    Parameters
+    ----------
+    first_axis, second_axis : (3,) array
+        Unit axes.
+    angle : float or (n,) array
+        Angle of the second axis, rad.
+    source : (n, 3) array
+        Unit vectors to turn.
+    target : (n, 3) or (3,) array
+        Unit vectors to reach.
+
+    Returns
+    -------
+    Locked
+        Angle of the first axis and residual.
+    """
     target = np.broadcast_to(target, source.shape)
     turned = frames.rotation_about(second_axis, np.broadcast_to(angle, len(source)))
     return nearest(first_axis, np.einsum("nij,nj->ni", turned, source), target)
@@ -115,12 +164,31 @@ def minimise_residual(
     low: float,
     high: float,
 ) -> float:
-    """Return the angle between low and high, rad, of the axis `locked` (0 first, 1 second) with
-    the smallest largest residual.
+    """Return the angle of a locked axis with the smallest maximum residual.
 
-    The other axis meets all of a direction except its angle to itself, so the residual is the
-    difference of these angles: of source and Rot(first, -angle) target to the second axis, or
-    of Rot(second, angle) source and target to the first.
+    Parameters
+    ----------
+    first_axis, second_axis : (3,) array
+        Unit axes.
+    locked : int
+        The locked axis, 0 or 1.
+    source : (n, 3) array
+        Unit vectors to turn.
+    target : (n, 3) or (3,) array
+        Unit vectors to reach.
+    low, high : float
+        Range of the angle, rad.
+
+    Returns
+    -------
+    float
+        The angle, rad.
+
+    Notes
+    -----
+    The other axis compensates a direction except for its angle to that axis. The residual is
+    therefore the difference of these angles: of source and Rot(first, -angle) target to the
+    second axis, or of Rot(second, angle) source and target to the first.
     """
     target = np.broadcast_to(target, source.shape)
 
@@ -159,7 +227,22 @@ def _heights(vectors: Array, axis: Array, other_axis: Array, angles: Array) -> A
 
 
 def nearest(axis: Array, source: Array, target: Array) -> Locked:
-    """The turn about one axis that takes unit vectors source (n, 3) as near to target (n, 3) or (3,) as it can."""
+    """Return the turn about one axis that takes directions as near as possible to others.
+
+    Parameters
+    ----------
+    axis : (3,) array
+        Unit axis.
+    source : (n, 3) array
+        Unit vectors to turn.
+    target : (n, 3) or (3,) array
+        Unit vectors to reach.
+
+    Returns
+    -------
+    Locked
+        Angle, 0 where a vector is along the axis, and residual.
+    """
     target = np.broadcast_to(target, source.shape)
     free = _on(source, axis) | _on(target, axis)
     angle = np.where(free, 0.0, _angle(axis, source, target))

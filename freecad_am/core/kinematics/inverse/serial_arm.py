@@ -24,30 +24,81 @@ class SerialArm(Protocol):
 
     @property
     def shoulder(self) -> tuple[float, float]:
-        """Distances of axis 2 ahead of axis 1 and above base_link, mm."""
+        """Return where axis 2 is.
+
+        Returns
+        -------
+        ahead : float
+            Distance ahead of axis 1, mm.
+        above : float
+            Height above base_link, mm.
+        """
 
     @property
     def reach(self) -> float:
         """From axis 2 to the wrist of the stretched arm, mm."""
 
     def inverse(self, poses: ArrayLike) -> Array:
-        """Return joint angles (configurations, n, 6) for flange poses (n, 4, 4) in [-pi, pi]; NaN if
-        out of reach.
+        """Return joint angles of all solutions for flange poses.
 
-        The first eight follow the words; further ones, of arms that are `followed`, repeat the
-        words of one of these.
+        Parameters
+        ----------
+        poses : (n, 4, 4) array
+            Flange poses in base_link, mm.
+
+        Returns
+        -------
+        (configurations, n, 6) array
+            Angles in -pi to pi, rad; NaN out of reach. The first eight follow the
+            words; further ones, for arms that are `followed`, repeat the words of one
+            of the first.
         """
 
     def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
-        """Joint angles (n, 6) of one configuration of words; else as `inverse`."""
+        """Return joint angles of one configuration.
+
+        Parameters
+        ----------
+        poses : (n, 4, 4) array
+            Flange poses in base_link, mm.
+        branch : int
+            Index of the configuration.
+
+        Returns
+        -------
+        (n, 6) array
+            Angles in -pi to pi, rad; NaN out of reach.
+        """
 
     def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
-        """Return all solutions of `inverse`, and the configuration (configurations, n) whose words
-        each has, -1 without a solution.
+        """Return all solutions of `inverse` with their configurations.
+
+        Parameters
+        ----------
+        poses : (n, 4, 4) array
+            Flange poses in base_link, mm.
+
+        Returns
+        -------
+        angles : (configurations, n, 6) array
+            Angles in -pi to pi, rad.
+        words : (configurations, n) int array
+            The configuration of each solution, -1 without a solution.
         """
 
     def branch_of(self, q: ArrayLike) -> Index:
         """The configuration (...) of joint angles `q` (..., 6)."""
 
     def bend(self, q: ArrayLike) -> Array:
-        """(...) how far angles `q` (..., 6) are from where wrist or elbow is stretched: 0 there, 1 square to it."""
+        """Return how far the arm is from a stretched elbow or wrist.
+
+        Parameters
+        ----------
+        q : (..., 6) array
+            Serial angles, rad.
+
+        Returns
+        -------
+        (...) array
+            0 where stretched, 1 at a right angle.
+        """

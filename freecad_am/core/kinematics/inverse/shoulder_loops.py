@@ -67,12 +67,48 @@ class Plane(NamedTuple):
 
 
 def geometry(curves: Curves, pose: Index, angle: Array, side: Array, bent: Array) -> Spot:
-    """The arm at angles of axis 6 (k,), on a side, with sine and cosine (2, k) of the elbow's bend."""
+    """Return the arm at angles of axis 6.
+
+    Parameters
+    ----------
+    curves : Curves
+        Geometry of n poses.
+    pose : (k,) int array
+        Numbers of the poses.
+    angle : (k,) array
+        Angles of axis 6, rad.
+    side : (k,) array
+        1 in front of axis 1, -1 behind it.
+    bent : (2, k) array
+        Sine and cosine of the elbow's bend.
+
+    Returns
+    -------
+    Spot
+        Arm and function value.
+    """
     return spot_of(curves, plane_of(curves, pose, angle, side), bent)
 
 
 def plane_of(curves: Curves, pose: Index, angle: Array, side: Array) -> Plane:
-    """Return the arm at angles of axis 6 (k,) without its elbow."""
+    """Return the arm at angles of axis 6 without its elbow.
+
+    Parameters
+    ----------
+    curves : Curves
+        Geometry of n poses.
+    pose : (k,) int array
+        Numbers of the poses.
+    angle : (k,) array
+        Angles of axis 6, rad.
+    side : (k,) array
+        1 in front of axis 1, -1 behind it.
+
+    Returns
+    -------
+    Plane
+        Plane of the arm and point in it.
+    """
     cos, sin = np.cos(angle), np.sin(angle)
     x, y, above = (
         harmonics[0][pose] + cos * harmonics[1][pose] + sin * harmonics[2][pose]
@@ -88,7 +124,22 @@ def plane_of(curves: Curves, pose: Index, angle: Array, side: Array) -> Plane:
 
 
 def spot_of(curves: Curves, plane: Plane, bent: Array | tuple[Array, Array]) -> Spot:
-    """The arm in its plane with sine and cosine (2, k) of the elbow's bend."""
+    """Complete the arm in its plane by the elbow.
+
+    Parameters
+    ----------
+    curves : Curves
+        Geometry of n poses.
+    plane : Plane
+        The arm without its elbow.
+    bent : (2, k) array
+        Sine and cosine of the elbow's bend.
+
+    Returns
+    -------
+    Spot
+        Arm and function value.
+    """
     sine, cosine, ahead, above, five = plane
     # the forearm from the point: turned from the way to the shoulder by sine and cosine of the triangle
     squared = ahead * ahead + above * above + TINY
@@ -111,8 +162,28 @@ SHORTEST_RAD = 1e-12
 
 
 def spans(curves: Curves, side: float) -> tuple[Index, Array, Array, Mask, Mask, Index]:
-    """Angles of axis 6 at which the arm reaches its point on a side, 1 in front of axis 1 or -1: the pose, begin and end of
-    each span (k,) rad, whether it begins stretched and whether it ends folded, and the poses that reach it at all angles."""
+    """Return the spans of axis 6 in which the arm reaches its point on one side.
+
+    Parameters
+    ----------
+    curves : Curves
+        Geometry of n poses.
+    side : float
+        1 in front of axis 1, -1 behind it.
+
+    Returns
+    -------
+    pose : (k,) int array
+        Pose of each span.
+    begin, end : (k,) array
+        Its ends, rad.
+    stretched : (k,) bool array
+        Whether the arm is stretched at the beginning, else folded.
+    folded : (k,) bool array
+        Whether the arm is folded at the end, else stretched.
+    full_circles : (m,) int array
+        Poses that are reached at all angles.
+    """
     lengths: Array = np.array(
         [(curves.upper + curves.fore) ** 2, (curves.upper - curves.fore) ** 2]
     )
@@ -148,7 +219,24 @@ def spans(curves: Curves, side: float) -> tuple[Index, Array, Array, Mask, Mask,
 
 
 def squared_distance(curves: Curves, pose: Index, angle: Array, side: float | Array) -> Array:
-    """The squared distance (...) of the point from axis 2, in the arm's plane."""
+    """Return the squared distance of the point from axis 2, in the arm's plane.
+
+    Parameters
+    ----------
+    curves : Curves
+        Geometry of n poses.
+    pose : (...) int array
+        Numbers of the poses.
+    angle : (...) array
+        Angles of axis 6, rad.
+    side : float or (...) array
+        1 in front of axis 1, -1 behind it.
+
+    Returns
+    -------
+    (...) array
+        Squared distances, mm2.
+    """
     x, y, above = (
         harmonics[0][pose] + np.cos(angle) * harmonics[1][pose] + np.sin(angle) * harmonics[2][pose]
         for harmonics in curves.point.transpose(1, 0, 2)
@@ -186,8 +274,26 @@ def _length_difference(
 
 
 def difference(curves: Curves, pose: Index, angle: Array, half: Array, side: Array) -> Array:
-    """By how much the squared distance (k,) at an angle differs from that twice `half` further on, without the loss of
-    digits of a difference."""
+    """Return the change of the squared distance between two angles without loss of digits.
+
+    Parameters
+    ----------
+    curves : Curves
+        Geometry of n poses.
+    pose : (k,) int array
+        Numbers of the poses.
+    angle : (k,) array
+        First angle of axis 6, rad.
+    half : (k,) array
+        Half the step to the second angle, rad.
+    side : (k,) array
+        1 in front of axis 1, -1 behind it.
+
+    Returns
+    -------
+    (k,) array
+        Squared distance at the second angle less that at the first, mm2.
+    """
     far_angle = angle + 2.0 * half
     constant, cos, sin = (curves.point[harmonic][:, pose] for harmonic in range(3))
     # of cosine and sine between both angles
@@ -336,7 +442,26 @@ def loops_of(curves: Curves) -> Loops:
 
 
 def whole_turns(curves: Curves, pose: Index, side: Array, elbow: Array) -> tuple[Loops, Array]:
-    """Loops (k,) as if the arm reached all of a turn, and the angles of axis 6 at which they begin."""
+    """Return loops over a whole turn of axis 6.
+
+    Parameters
+    ----------
+    curves : Curves
+        Geometry of n poses.
+    pose : (k,) int array
+        Numbers of the poses.
+    side : (k,) array
+        1 in front of axis 1, -1 behind it.
+    elbow : (k,) array
+        1 for the elbow on the left, else -1.
+
+    Returns
+    -------
+    loops : Loops
+        Loops as if the arm reached its point everywhere.
+    begin : (k,) array
+        Angles of axis 6 at which they begin, rad.
+    """
     none = np.zeros(len(pose))
     mean, swing, out = (
         (none,) * 3 if curves.ahead else (column[pose] for column in _distances(curves))
@@ -384,8 +509,25 @@ def _offset_loops(curves: Curves) -> Loops:
 
 
 def angle_along(curves: Curves, loops: Loops, t: Array) -> tuple[Array, Array]:
-    """The angle of axis 6 (k,) at t along loops, and sine and cosine (2, k) of the elbow's bend, exact to its last digits
-    where the arm is stretched or folded."""
+    """Return the angle of axis 6 and the elbow's bend along loops.
+
+    Parameters
+    ----------
+    curves : Curves
+        Geometry of n poses.
+    loops : Loops
+        The k loops.
+    t : (k,) array
+        Parameter along the loops, rad.
+
+    Returns
+    -------
+    angle : (k,) array
+        Angle of axis 6, rad.
+    bent : (2, k) array
+        Sine and cosine of the elbow's bend, exact to the last digits where the arm is
+        stretched or folded.
+    """
     full_circle = loops.elbow != 0.0
     sine_half, cosine_half = np.sin(0.5 * t), np.cos(0.5 * t)
     course = sine_half * sine_half

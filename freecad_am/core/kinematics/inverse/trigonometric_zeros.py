@@ -70,13 +70,37 @@ class _Steps(NamedTuple):
 
 
 def angles(count: int) -> Array:
-    """`count` angles, evenly over a turn from 0 on."""
+    """Return angles spread evenly over a turn.
+
+    Parameters
+    ----------
+    count : int
+        Number of angles.
+
+    Returns
+    -------
+    (count,) array
+        From 0 on, rad.
+    """
     return np.arange(count) * (TURN / count)
 
 
 def harmonics(degree: int, angle: Array, derivative: int = 0) -> Array:
-    """Return rows (2 degree + 1, m) of 1, cosines and sines of 1 to `degree` times angles (m,),
-    or their derivative.
+    """Return 1, cosines and sines of multiples of angles, or their derivative.
+
+    Parameters
+    ----------
+    degree : int
+        Largest multiple.
+    angle : (m,) array
+        Angles, rad.
+    derivative : int, optional
+        Order of the derivative.
+
+    Returns
+    -------
+    (2 degree + 1, m) array
+        The constant, the cosines, the sines.
     """
     order = np.arange(degree + 1)[:, None]
     # a derivative turns by a quarter and multiplies

@@ -31,11 +31,26 @@ class LinkShape:
 
 
 def link_shapes(top: Node, joints: tuple[str, ...]) -> tuple[LinkShape | None, ...]:
-    """Return the shapes (axes + 1) of a machine file's links, base first, None for links without
-    a shape.
+    """Return the shape files of a machine's links.
 
-    Raises InputError 'BAD_MACHINE' for a wrong link, format or value. Whether the files exist
-    is checked when they are drawn: planning does not need them.
+    Whether the files exist is checked when they are drawn: planning does not need them.
+
+    Parameters
+    ----------
+    top : Node
+        Content of the machine file.
+    joints : tuple of str
+        Names of the joints.
+
+    Returns
+    -------
+    tuple[LinkShape or None, ...]
+        Shapes (axes + 1), base first; None for links without a shape.
+
+    Raises
+    ------
+    InputError
+        BAD_MACHINE for a wrong link, format or value.
     """
     links = (BASE, *joints)
     if not top.has("shapes"):
@@ -93,11 +108,26 @@ class Primitive(Solid):
 def link_bodies(
     top: Node, joints: tuple[str, ...], shapes: tuple[LinkShape | None, ...]
 ) -> tuple[Pieces, ...]:
-    """Return the bodies (axes + 1) of a machine file's links, base first, each in the frame of
-    its link.
+    """Return the bodies of a machine's links.
 
-    From `bodies`, otherwise the file under `shapes` (axes + 1); empty without either. Raises
-    InputError 'BAD_MACHINE' for a wrong link or value.
+    Parameters
+    ----------
+    top : Node
+        Content of the machine file.
+    joints : tuple of str
+        Names of the joints.
+    shapes : tuple[LinkShape or None, ...]
+        Shape files (axes + 1), used if the file has no `bodies`.
+
+    Returns
+    -------
+    tuple of Pieces
+        Bodies (axes + 1), base first, each in the frame of its link; empty without either.
+
+    Raises
+    ------
+    InputError
+        BAD_MACHINE for a wrong link or value.
     """
     links = (BASE, *joints)
     if not top.has("bodies"):

@@ -74,11 +74,30 @@ def arm_collisions(
     moment: Index,
     true_shapes: Sequence[bool] = (),
 ) -> list[Collision]:
-    """Return the objects that the links are in with joints (k, axes), with `moment` (k,) points
-    of the deposit present.
+    """Return the objects that the links of the arm penetrate.
 
-    One entry for each link and object, sure ones first. cylinders: for each link, base first.
-    true_shapes: whether a link has its true shape, none by default.
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+    cylinders : Cylinders
+        Cylinders for each link, base first.
+    bodies : sequence of Body
+        Bodies in part coordinates.
+    deposit : Obstacles or None
+        The deposit in part coordinates; None without one.
+    joints : (k, axes) array
+        Joints, rad or mm.
+    moment : (k,) int array
+        Number of points of the deposit present.
+    true_shapes : sequence of bool, optional
+        Whether each link has its true shape; none by default.
+
+    Returns
+    -------
+    list of Collision
+        One entry for each link and object: certain ones if any, else the doubtful ones,
+        deep ones first.
     """
     drawn = _contact(cell, cylinders, bodies, deposit, 1.0)
     touching = drawn.touches(joints, moment)

@@ -340,10 +340,19 @@ class ArmContact:
         return Touches(link, what)
 
     def link_frames(self, joints: Array) -> tuple[Array, dict[str, Array]]:
-        """Return the frames (k, links, 4, 4) of `links`, and the frames (k, 4, 4) of part, nozzle
-        and world, for joints (k, axes).
+        """Return the frames of links and objects, seen from the start of the machine's chain.
 
-        All are seen from the start of the machine's chain.
+        Parameters
+        ----------
+        joints : (k, axes) array
+            Joints, rad or mm.
+
+        Returns
+        -------
+        links : (k, links, 4, 4) array
+            Frames of `links`.
+        seen_from : dict
+            Frames (k, 4, 4) of part, nozzle, world and external links, by name.
         """
         links = self.cell.links(joints)
         carried = links[:, -1] @ (self.cell.robot.chain.flange @ self.cell.carried)
@@ -455,13 +464,27 @@ FIRST_ROWS = 8  # joint vectors tested first: their result excludes most of the 
 
 
 def min_distance(contact: ArmContact, joints: ArrayLike, moment: Index, reach: float) -> float:
-    """Return the smallest distance, mm, between links, or a carried part, and the objects tested
-    against them.
+    """Return the smallest distance between links, or a carried part, and the tested objects.
 
-    With joints (k, axes); a lower bound, at most `reach`, and 0 on contact, including own
-    links. NaN joints do not count. moment: (k,) number of points of the deposit present. The
-    nozzle, which deposits next to bodies, does not count; the contact's own clearance is
+    The nozzle, which deposits next to bodies, does not count; the contact's own clearance is
     subtracted.
+
+    Parameters
+    ----------
+    contact : ArmContact
+        The contact check.
+    joints : (k, axes) array
+        Joints, rad or mm; rows with NaN do not count.
+    moment : (k,) int array
+        Number of points of the deposit present.
+    reach : float
+        Largest distance of interest, mm.
+
+    Returns
+    -------
+    float
+        A lower bound of the distance, mm, at most `reach`; 0 on contact, also of links with
+        each other.
     """
     values = np.asarray(joints, float)
     finite = np.isfinite(values).all(axis=1)

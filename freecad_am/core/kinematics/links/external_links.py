@@ -85,8 +85,19 @@ def external_links(
 ) -> tuple[ExternalLink, ...]:
     """Return the links of all mechanisms whose files describe them.
 
-    read_shape: returns the triangles of a shape file in the frame of the link, None without
-    any. Mechanisms among `known_links` are not read again.
+    Parameters
+    ----------
+    external : ExternalAxes or None
+        The external axes; None without any.
+    read_shape : Read or None, optional
+        Returns the triangles of a shape file in the frame of the link, None without any.
+    known_links : sequence of ExternalLink, optional
+        Links that are not read again.
+
+    Returns
+    -------
+    tuple of ExternalLink
+        The links, mechanism by mechanism.
     """
     if external is None:
         return ()

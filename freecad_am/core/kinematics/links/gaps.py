@@ -54,7 +54,13 @@ class Gaps:
 
     @cached_property
     def pairs(self) -> tuple[Pair, ...]:
-        """All that can touch."""
+        """Return all pairs of links and objects that can touch.
+
+        Returns
+        -------
+        tuple of Pair
+            Links against groups of objects, then links against links.
+        """
         of_group = [
             Pair(link, group, (self._moving_joints(link), self._moved_group(group)))
             for group in self.contact.groups
@@ -80,11 +86,25 @@ class Gaps:
     def gaps_and_rates(
         self, joints: Array, rates: Array, moment: Index, is_requested: Mask
     ) -> tuple[Array, Array]:
-        """Return the gaps of all pairs (p, k), mm, and their rates, for joints (k, axes) with rates
-        (k, axes).
+        """Return the gaps of pairs and their rates while the joints move.
 
-        moment: (k,) number of points of the deposit present. `reach` and 0 for pairs not
-        requested (p, k), or farther away.
+        Parameters
+        ----------
+        joints : (k, axes) array
+            Joints, rad or mm.
+        rates : (k, axes) array
+            Their rates, per unit of a parameter.
+        moment : (k,) int array
+            Number of points of the deposit present.
+        is_requested : (p, k) bool array
+            Pairs to compute.
+
+        Returns
+        -------
+        gap : (p, k) array
+            Gaps, mm; `reach` for pairs not requested or farther away.
+        rate : (p, k) array
+            Their rates, mm per unit; 0 for such pairs.
         """
         links, seen_from = self.contact.link_frames(joints)
         axes = self.contact.cell.machine.chain.frames(joints)

@@ -61,7 +61,20 @@ def round_solid(cylinder: Cylinder, growth: float) -> Solid:
 
 
 def about_link(link: Sequence[Solid]) -> tuple[Array, float]:
-    """Return centre and radius of a ball around the solids of a link."""
+    """Return a ball around the solids of a link.
+
+    Parameters
+    ----------
+    link : sequence of Solid
+        The solids.
+
+    Returns
+    -------
+    centre : (3,) array
+        In the frame of the link, mm.
+    radius : float
+        0 without solids, mm.
+    """
     if not link:
         return np.zeros(3), 0.0
     centre, _ = ball(np.array([solid.centre for solid in link]))
@@ -71,7 +84,20 @@ def about_link(link: Sequence[Solid]) -> tuple[Array, float]:
 
 
 def ball(points: Array) -> tuple[Array, float]:
-    """Centre and radius of a ball about points (n, 3)."""
+    """Return a ball about points, centred in their bounding box.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points, mm.
+
+    Returns
+    -------
+    centre : (3,) array
+        Centre, mm.
+    radius : float
+        Radius, mm.
+    """
     centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
     return centre, float(np.linalg.norm(points - centre, axis=1).max())
 
@@ -99,18 +125,38 @@ class OwnLinks:
     def of(
         cls, chain: Chain, limits: Limits, cylinders: Sequence[Sequence[Cylinder]], clearance: float
     ) -> OwnLinks:
-        """Return the links of a robot with these cylinders, each (axes + 1) in the frame of its
-        link, to be kept clearance mm apart.
+        """Return the links of a robot, with the pairs to test.
 
-        The first limits are the robot's own.
+        Parameters
+        ----------
+        chain : Chain
+            The chain of the robot.
+        limits : Limits
+            Its limits; the first ones are the robot's own.
+        cylinders : sequence of sequence of Cylinder
+            Cylinders (axes + 1) in the frame of each link.
+        clearance : float
+            Distance to keep between links, mm.
+
+        Returns
+        -------
+        OwnLinks
+            The links.
         """
         return _find_pairs(_Asked(chain, limits, cylinders, clearance))
 
     def touches(self, links: Array) -> tuple[Index, Index]:
-        """Return the outer (k,) and the inner (k,) link of the touching pair nearest to the base;
-        NONE without contact.
+        """Return the touching pair of links nearest to the base.
 
-        links: frames (k, links, 4, 4), the robot's own first, from the base on.
+        Parameters
+        ----------
+        links : (k, links, 4, 4) array
+            Frames, the robot's own first, from the base on.
+
+        Returns
+        -------
+        outer, inner : (k,) int array
+            The two links; NONE without contact.
         """
         outer, inner = np.full((2, len(links)), NONE, dtype=np.int64)
         middles = self._middles(links)
@@ -131,8 +177,24 @@ class OwnLinks:
     ) -> bool:
         """Return whether two links touch with more than a share of the frames.
 
-        Most pairs are near in fewer frames, by their balls or the axes of their cylinders, so no
-        exact test is needed.
+        Most pairs are near in fewer frames, by their balls or the axes of their cylinders,
+        so no exact test is needed.
+
+        Parameters
+        ----------
+        pair : tuple[int, int]
+            The two links.
+        links : (k, links, 4, 4) array
+            Frames of all links.
+        middles : sequence of (k, 3) array
+            Middles of the balls of each link.
+        share : float
+            The share.
+
+        Returns
+        -------
+        bool
+            True if they touch more often.
         """
         max_count, rows = share * len(links), self._near(*pair, middles)
         for look in (self._close, self._touch):
@@ -231,10 +293,19 @@ def _find_pairs(query: _Asked) -> OwnLinks:
 
 
 def positions(limits: Limits, axes: int) -> Array:
-    """Return joints (k, axes) spread evenly over the limits of the first `axes` axes, always the
-    same.
+    """Return joints spread evenly over the limits of the first axes, always the same.
 
-    Continuous axes cover one turn.
+    Parameters
+    ----------
+    limits : Limits
+        The limits; continuous axes cover one turn.
+    axes : int
+        Number of axes.
+
+    Returns
+    -------
+    (k, axes) array
+        Joints within the coupled limits, rad.
     """
     continuous = limits.continuous[:axes]
     low = np.where(continuous, -np.pi, limits.lower[:axes])

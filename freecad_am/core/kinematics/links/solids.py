@@ -38,11 +38,26 @@ class Solid:
 def revolve(
     outline: ArrayLike, start: ArrayLike, end: ArrayLike, tone: str = BODY, sides: int = SIDES
 ) -> Solid:
-    """Return a solid of revolution whose axis runs from `start` to `end` (3,), mm.
+    """Return a solid of revolution.
 
-    outline: (k, 2) of (radius in mm, position on the axis: 0 at its start, 1 at its end),
-    along the outside from start to end. Each stretch has its own normals, so edges stay
-    sharp.
+    Each stretch of the outline has its own normals, so edges stay sharp.
+
+    Parameters
+    ----------
+    outline : (k, 2) array
+        Radius in mm and position on the axis, 0 at its start and 1 at its end; along the
+        outside from start to end.
+    start, end : (3,) array
+        Ends of the axis, mm.
+    tone : str, optional
+        Kind of surface.
+    sides : int, optional
+        Number of facets around.
+
+    Returns
+    -------
+    Solid
+        Triangles with normals.
     """
     shape, begin, stop = (
         np.asarray(outline, float),
@@ -78,7 +93,24 @@ def revolve(
 def cylinder(
     start: ArrayLike, end: ArrayLike, radius: float, tone: str = BODY, bevel: float = 0.12
 ) -> Solid:
-    """A cylinder with bevelled edges; bevel as a share of the radius, at most of half the length."""
+    """Return a cylinder with bevelled edges.
+
+    Parameters
+    ----------
+    start, end : (3,) array
+        Centres of its discs, mm.
+    radius : float
+        Radius, mm.
+    tone : str, optional
+        Kind of surface.
+    bevel : float, optional
+        Width of the bevel as a share of the radius; at most 0.4 of the length.
+
+    Returns
+    -------
+    Solid
+        Triangles with normals.
+    """
     length = float(np.linalg.norm(np.asarray(end, float) - np.asarray(start, float)))
     cut = min(bevel * radius, 0.4 * length)
     rise = cut / length
@@ -96,7 +128,22 @@ def cylinder(
 def capsule(
     start: ArrayLike, end: ArrayLike, start_radius: float, end_radius: float, tone: str = BODY
 ) -> Solid:
-    """Return a tapered tube with round ends, of radii `start_radius` and `end_radius` mm."""
+    """Return a tapered tube with round ends.
+
+    Parameters
+    ----------
+    start, end : (3,) array
+        Centres of the round ends, mm.
+    start_radius, end_radius : float
+        Their radii, mm.
+    tone : str, optional
+        Kind of surface.
+
+    Returns
+    -------
+    Solid
+        Triangles with normals.
+    """
     begin, stop = np.asarray(start, float), np.asarray(end, float)
     length = float(np.linalg.norm(stop - begin))
     quarter = np.linspace(0.0, 0.5 * np.pi, 8)
@@ -118,8 +165,25 @@ def strut(
     thick: float,
     tone: str = BODY,
 ) -> Solid:
-    """Return a plate `thick` mm along the unit `axis`, as wide as two discs of radii
-    `start_radius` and `end_radius` mm at its ends.
+    """Return a plate as wide as two discs at its ends.
+
+    Parameters
+    ----------
+    start, end : (3,) array
+        Centres of the discs, mm.
+    axis : (3,) array
+        Unit normal of the plate.
+    start_radius, end_radius : float
+        Radii of the discs, mm.
+    thick : float
+        Thickness along `axis`, mm.
+    tone : str, optional
+        Kind of surface.
+
+    Returns
+    -------
+    Solid
+        Triangles with normals.
     """
     begin, stop, normal = (np.asarray(value, float) for value in (start, end, axis))
     chord = stop - begin
@@ -169,7 +233,24 @@ def box(
     size: tuple[float, float, float],
     tone: str = BODY,
 ) -> Solid:
-    """A box about its centre (3,) with edges along unit vectors x, y and x cross y, of `size` mm."""
+    """Return a box about its centre.
+
+    Parameters
+    ----------
+    centre : (3,) array
+        Centre, mm.
+    x, y : (3,) array
+        Unit vectors of two edges; the third is their cross product.
+    size : tuple[float, float, float]
+        Lengths of the edges, mm.
+    tone : str, optional
+        Kind of surface.
+
+    Returns
+    -------
+    Solid
+        Triangles with normals.
+    """
     axis_x, axis_y = np.asarray(x, float), np.asarray(y, float)
     axes = np.stack([axis_x, axis_y, np.cross(axis_x, axis_y)])
     points: list[Array] = []

@@ -49,10 +49,24 @@ def named(text: str) -> Named | None:
 
 
 def read(path: Path) -> tuple[Array, str]:
-    """Return the poses (6, 4, 4) of the joint frames in the previous links, mm, and the robot's
-    `hash`, empty if absent.
+    """Read the calibration of one robot.
 
-    Raises InputError UNKNOWN_MACHINE without the file, BAD_CALIBRATION naming line or key.
+    Parameters
+    ----------
+    path : Path
+        The YAML file that ur_calibration wrote.
+
+    Returns
+    -------
+    poses : (6, 4, 4) array
+        Poses of the joint frames in the previous links, mm.
+    hash : str
+        The robot's `hash`, empty if absent.
+
+    Raises
+    ------
+    InputError
+        UNKNOWN_MACHINE without the file, BAD_CALIBRATION naming line or key.
     """
     if not is_there(path):
         raise InputError(
@@ -79,8 +93,26 @@ def read(path: Path) -> tuple[Array, str]:
 def calibrated(chain: Chain, base: Array, poses: Array, path: Path) -> Chain:
     """Return the chain of a robot with the joint frames of its calibration.
 
-    base: (4, 4) the manufacturer's base frame in base_link. Raises InputError BAD_CALIBRATION
-    if they are far from the chain's, as for another robot.
+    Parameters
+    ----------
+    chain : Chain
+        The chain of the machine file.
+    base : (4, 4) array
+        The manufacturer's base frame in base_link.
+    poses : (6, 4, 4) array
+        The calibrated joint frames, mm.
+    path : Path
+        The calibration file, for messages.
+
+    Returns
+    -------
+    Chain
+        The calibrated chain.
+
+    Raises
+    ------
+    InputError
+        BAD_CALIBRATION if a joint is far from the chain's, as for another robot.
     """
     origins = poses.copy()
     origins[0] = base @ poses[0]

@@ -58,11 +58,32 @@ def select_machines(
     payload: float = 0.0,
     post: str | None = None,
 ) -> list[Entry]:
-    """Return the machines of a manufacturer with at least this reach and payload (mm, kg) whose
-    controllers read a post.
+    """Return the machines that meet requirements.
 
-    A machine whose file does not state a required figure is left out. Raises InputError USAGE
-    for an unknown manufacturer.
+    A machine whose file does not state a required figure is left out.
+
+    Parameters
+    ----------
+    entries : sequence of Entry
+        The known machines.
+    maker : str or None, optional
+        Manufacturer; None for any.
+    reach : float, optional
+        Smallest reach, mm; 0 for any.
+    payload : float, optional
+        Smallest payload, kg; 0 for any.
+    post : str or None, optional
+        Post that the controller has to read; None for any.
+
+    Returns
+    -------
+    list of Entry
+        The machines in the same order.
+
+    Raises
+    ------
+    InputError
+        USAGE for an unknown manufacturer.
     """
     if maker is not None and not any(entry.is_of(maker) for entry in entries):
         makers = ", ".join(sorted({entry.title.split()[0] for entry in entries}))

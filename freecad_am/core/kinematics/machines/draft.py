@@ -72,7 +72,13 @@ class Draft:
 
     @property
     def units(self) -> Array:
-        """What a degree, or a mm, of each axis (axes,) amounts to inside."""
+        """Return the internal value of one displayed unit of each axis.
+
+        Returns
+        -------
+        (axes,) array
+            rad per degree, or 1 per mm.
+        """
         return machines.unit_values(self.chain.sliding)
 
 
@@ -397,7 +403,20 @@ CONVENTIONS = {
 
 
 def rotation(convention: str, figures: Array) -> Array:
-    """The rotations (..., 3, 3) of figures (..., 3) deg, or (..., 4) of a quaternion of any length."""
+    """Return the rotations for displayed angles.
+
+    Parameters
+    ----------
+    convention : str
+        Convention of the controller.
+    figures : (..., 3) or (..., 4) array
+        Angles in degrees, or a quaternion of any length.
+
+    Returns
+    -------
+    (..., 3, 3) array
+        Rotation matrices.
+    """
     figures = np.asarray(figures, float)
     if convention == QUATERNION:
         return _from_quaternion(figures)
@@ -418,11 +437,23 @@ def rotation(convention: str, figures: Array) -> Array:
 
 
 def flange_poses(convention: str, figures: Array, base: Array, tool: Array) -> Array:
-    """Return the flange poses (n, 4, 4) in base_link for displayed poses (n, 6 or 7), mm and
-    deg.
+    """Return the flange poses for displayed tool poses.
 
-    These are poses of a `tool` (4, 4) on the flange, in the manufacturer's `base` frame (4,
-    4).
+    Parameters
+    ----------
+    convention : str
+        Convention of the controller.
+    figures : (n, 6) or (n, 7) array
+        Displayed poses, mm and degrees or quaternion.
+    base : (4, 4) array
+        The manufacturer's base frame in base_link.
+    tool : (4, 4) array
+        The tool in the flange frame.
+
+    Returns
+    -------
+    (n, 4, 4) array
+        Flange poses in base_link, mm.
     """
     figures = np.asarray(figures, float)
     poses = frames.pose(rotation(convention, figures[:, 3:]), figures[:, :3])
@@ -431,7 +462,20 @@ def flange_poses(convention: str, figures: Array, base: Array, tool: Array) -> A
 
 
 def figures_of(convention: str, poses: Array) -> Array:
-    """Poses (n, 4, 4) as a pendant shows them, (n, 6 or 7) mm and deg."""
+    """Return poses as a pendant displays them.
+
+    Parameters
+    ----------
+    convention : str
+        Convention of the controller.
+    poses : (n, 4, 4) array
+        Poses, mm.
+
+    Returns
+    -------
+    (n, 6) or (n, 7) array
+        mm and degrees, or quaternion.
+    """
     turned = np.asarray(poses, float)[:, :3, :3]
     if convention == QUATERNION:
         angles = _to_quaternion(turned)

@@ -106,7 +106,23 @@ class Node:
         return float(self.value)
 
     def numbers(self, length: int) -> Array:
-        """A list of finite numbers (length,)."""
+        """Return a list of finite numbers.
+
+        Parameters
+        ----------
+        length : int
+            Required length.
+
+        Returns
+        -------
+        (length,) array
+            The numbers.
+
+        Raises
+        ------
+        InputError
+            BAD_MACHINE for any other content.
+        """
         are_numbers = isinstance(self.value, list) and {type(value) for value in self.value} <= {
             int,
             float,
@@ -121,8 +137,22 @@ class Node:
         return np.array([item.number() for item in self.items(length)])
 
     def span(self, unit: float = math.radians(1.0)) -> tuple[float, float]:
-        """Return a range of two numbers times `unit`: angles in degrees become rad; null is
-        unlimited.
+        """Return a range of two numbers.
+
+        Parameters
+        ----------
+        unit : float, optional
+            Factor for both; the default converts degrees to rad.
+
+        Returns
+        -------
+        lower, upper : float
+            The range; infinite for null.
+
+        Raises
+        ------
+        InputError
+            BAD_MACHINE if the first number is not smaller.
         """
         if self.value is None:
             return -math.inf, math.inf
@@ -138,11 +168,38 @@ class Node:
         return lower * unit, upper * unit
 
     def matrix(self, rows: int, columns: int) -> Array:
-        """A list of lists of numbers (rows, columns)."""
+        """Return a list of lists of numbers.
+
+        Parameters
+        ----------
+        rows, columns : int
+            Required size.
+
+        Returns
+        -------
+        (rows, columns) array
+            The numbers.
+
+        Raises
+        ------
+        InputError
+            BAD_MACHINE for any other content.
+        """
         return np.array([row.numbers(columns) for row in self.items(rows)]).reshape(rows, columns)
 
     def pose(self) -> Array:
-        """A pose (4, 4) of `origin` in mm and `rpy` in degrees."""
+        """Return a pose from `origin` in mm and `rpy` in degrees.
+
+        Returns
+        -------
+        (4, 4) array
+            The pose, mm.
+
+        Raises
+        ------
+        InputError
+            BAD_MACHINE for any other content.
+        """
         return frames.from_rpy(self["origin"].numbers(3), np.radians(self["rpy"].numbers(3)))
 
 
@@ -194,8 +251,21 @@ MOST_ROUNDING = (0.5, 0.1)  # that may be claimed for a check pose, mm and deg
 
 
 def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
-    """Reject a file (InputError BAD_MACHINE) whose check poses, `node`, do not match its chain
-    and its closed form, if any.
+    """Reject a file whose check poses do not match its geometry.
+
+    Parameters
+    ----------
+    chain : Chain
+        The chain of the file.
+    opw : OpwArm or None
+        Its closed form; None without one.
+    node : Node
+        The check poses: at least three, one at all zeros.
+
+    Raises
+    ------
+    InputError
+        BAD_MACHINE for missing or wrong poses.
     """
     poses = [pose.only("q", "origin", "rotation", "within") for pose in node.items()]
     if len(poses) < 3:
@@ -293,7 +363,25 @@ def _warning(node: Node, top: Node) -> MachineWarning:
 
 
 def pulses_of(controller: Node, count: int) -> tuple[float, ...]:
-    """Return the pulses of each axis, empty if the file does not state them."""
+    """Return the pulses per degree of each axis.
+
+    Parameters
+    ----------
+    controller : Node
+        The controller of the machine file.
+    count : int
+        Number of axes.
+
+    Returns
+    -------
+    tuple of float
+        Negative where pulses count down; empty if the file does not state them.
+
+    Raises
+    ------
+    InputError
+        BAD_MACHINE for a 0.
+    """
     if not controller.has("pulses_per_degree"):
         return ()
     node = controller["pulses_per_degree"]
@@ -318,13 +406,45 @@ def speed_unit_of(node: Node) -> str:
 
 
 def name_of(joint: Node, numbered: str, has_name: bool) -> str:
-    """What messages and curves call an axis."""
+    """Return the name of an axis in messages and curves.
+
+    Parameters
+    ----------
+    joint : Node
+        The joint in the machine file; its `label` comes first.
+    numbered : str
+        Name of an axis without a label or name.
+    has_name : bool
+        Whether the joint's `name` is used before `numbered`.
+
+    Returns
+    -------
+    str
+        The name.
+    """
     if joint.has("label"):
         return joint["label"].text()
     return joint["name"].text() if has_name else numbered
 
 
 def unit_of(node: Node) -> Array:
+    """Return a unit vector.
+
+    Parameters
+    ----------
+    node : Node
+        Three numbers of the machine file.
+
+    Returns
+    -------
+    (3,) array
+        Unit vector.
+
+    Raises
+    ------
+    InputError
+        BAD_MACHINE if the length is not 1.
+    """
     axis = node.numbers(3)
     length = float(np.linalg.norm(axis))
     if abs(length - 1.0) > 1e-6:
@@ -340,6 +460,27 @@ def slides(joint: Node) -> bool:
 
 
 def maximum_of(joint: Node, key: str, what: str) -> float:
+    """Return the maximum of a joint's motion.
+
+    Parameters
+    ----------
+    joint : Node
+        The joint in the machine file.
+    key : str
+        Key of the value.
+    what : str
+        Kind of the value, for messages.
+
+    Returns
+    -------
+    float
+        Infinite if the file does not state it.
+
+    Raises
+    ------
+    InputError
+        BAD_MACHINE for a value that is not positive.
+    """
     if not joint.has(key):
         return math.inf
     maximum = joint[key].number()
@@ -361,8 +502,19 @@ def payload_of(top: Node) -> Payload:
 
 
 def recognise_arm(chain: Chain) -> tuple[SerialArm | None, str]:
-    """Return the inverse of a robot whose file has no `opw`, or the reason for having none;
-    `five_axis` handles five-axis machines.
+    """Return the inverse of a robot whose file has no `opw`.
+
+    Parameters
+    ----------
+    chain : Chain
+        The chain.
+
+    Returns
+    -------
+    arm : SerialArm or None
+        None for five-axis machines, which `five_axis` handles, and without a closed form.
+    reason : str
+        Why there is no inverse; empty otherwise.
     """
     if is_five_axis(chain.sliding):
         return None, ""
@@ -405,6 +557,29 @@ def opw_arm(node: Node, count: int) -> OpwArm:
 
 
 def limits_of(name: str, node: Node, axes: tuple[str, ...], units: Array) -> Limits:
+    """Return a set of limits of a machine file.
+
+    Parameters
+    ----------
+    name : str
+        Name of the set.
+    node : Node
+        Its content.
+    axes : tuple of str
+        Names of the axes.
+    units : (axes,) array
+        Internal value of one displayed unit, rad per degree or 1.
+
+    Returns
+    -------
+    Limits
+        The limits.
+
+    Raises
+    ------
+    InputError
+        BAD_MACHINE for wrong content.
+    """
     node.only("axes", "coupled", "source")
     count = len(axes)
     spans = np.array(

@@ -182,7 +182,13 @@ class Machine:
 
     @property
     def unit_values(self) -> Array:
-        """What one of the unit that each axis (axes,) is shown in amounts to inside: rad of a degree, or 1."""
+        """Return the internal value of one displayed unit of each axis.
+
+        Returns
+        -------
+        (axes,) array
+            rad per degree, or 1 per mm.
+        """
         return unit_values(self.chain.sliding)
 
     def limits(self, name: str) -> Limits:
@@ -199,28 +205,70 @@ class Machine:
         return self.limit_sets[name]
 
     def to_controller(self, q: ArrayLike) -> Array:
-        """What the controller shows (..., axes) for serial angles (..., axes), rad."""
+        """Return displayed values for serial joint values.
+
+        Parameters
+        ----------
+        q : (..., axes) array
+            Serial values, rad or mm.
+
+        Returns
+        -------
+        (..., axes) array
+            Displayed values, rad or mm.
+        """
         result: Array = np.asarray(q, float) @ self.controller_matrix.T + self.controller_offset
         return result
 
     def from_controller(self, displayed: ArrayLike) -> Array:
-        """Return the serial angles (..., axes) for displayed values (..., axes), rad."""
+        """Return serial joint values for displayed values.
+
+        Parameters
+        ----------
+        displayed : (..., axes) array
+            Displayed values, rad or mm.
+
+        Returns
+        -------
+        (..., axes) array
+            Serial values, rad or mm.
+        """
         back = np.linalg.inv(self.controller_matrix)
         result: Array = (np.asarray(displayed, float) - self.controller_offset) @ back.T
         return result
 
 
 def unit_values(sliding: Mask) -> Array:
-    """Return rad per degree for revolute axes (axes,), 1 for prismatic ones."""
+    """Return the internal value of one displayed unit of each axis.
+
+    Parameters
+    ----------
+    sliding : (axes,) bool array
+        Prismatic axes.
+
+    Returns
+    -------
+    (axes,) array
+        rad per degree, or 1 per mm.
+    """
     return np.where(sliding, 1.0, math.radians(1.0))
 
 
 def known(folders: Sequence[Path | str] = ()) -> list[tuple[str, str]]:
-    """Return id and title of every machine, built in and in the user's `folders`, in order of
-    id.
+    """Return all machines, built in and in the user's folders, in order of id.
 
     A file that is not a machine file is included with its error in place of a title: only
     `load` rejects it.
+
+    Parameters
+    ----------
+    folders : Sequence[Path or str], optional
+        Folders with user machines.
+
+    Returns
+    -------
+    list[tuple[str, str]]
+        Id and title of each machine.
     """
     return [(name, _title(path)) for name, path in sorted(_files(folders).items())]
 
@@ -424,8 +472,23 @@ def _calibrated(machine: Machine, path: Path) -> Machine:
 
 
 def machine_of_description(source: str, description: Description, arm: SerialArm | None) -> Machine:
-    """Return the machine of a URDF, with its limits and speeds; no post writes for its unknown
-    controller.
+    """Return the machine of a URDF, with its limits and speeds.
+
+    No post writes for its unknown controller.
+
+    Parameters
+    ----------
+    source : str
+        Name of the file.
+    description : Description
+        The chain and its data.
+    arm : SerialArm or None
+        Its inverse; None for a machine with rotary tables.
+
+    Returns
+    -------
+    Machine
+        The machine.
     """
     count = description.chain.axes
     none = np.zeros((0, count))

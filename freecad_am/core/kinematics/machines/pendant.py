@@ -73,8 +73,21 @@ SIGN, ZERO, SIGN_AND_ZERO, COUPLED, BASE, FLANGE = (
 
 
 def matrix(display: Shown, chain: Chain) -> tuple[Array, Array]:
-    """Return the values for a machine file: the matrix (axes, axes) and the offset (axes,), deg
-    or mm, of matrix q + offset.
+    """Return the display of joint values for a machine file.
+
+    Parameters
+    ----------
+    display : Shown
+        Signs, zeros and coupling.
+    chain : Chain
+        The chain.
+
+    Returns
+    -------
+    matrix : (axes, axes) array
+        Factor of the serial values.
+    offset : (axes,) array
+        Display at serial zero, degrees or mm.
     """
     mixed = np.eye(chain.axes)
     if display.coupling == HORIZONTAL:
@@ -83,8 +96,21 @@ def matrix(display: Shown, chain: Chain) -> tuple[Array, Array]:
 
 
 def serial(display: Shown, chain: Chain, values: Array) -> Array:
-    """Return the serial joint values (n, axes), rad and mm, for displayed values (n, axes), deg
-    and mm.
+    """Return serial joint values for displayed values.
+
+    Parameters
+    ----------
+    display : Shown
+        How the controller displays them.
+    chain : Chain
+        The chain.
+    values : (n, axes) array
+        Displayed values, degrees and mm.
+
+    Returns
+    -------
+    (n, axes) array
+        Serial values, rad and mm.
     """
     result: Array = _serial([display], chain, values)[0]
     return result
@@ -112,8 +138,23 @@ def _sense(chain: Chain) -> float:
 
 
 def deviations(chain: Chain, display: Shown, values: Array, poses: Array) -> list[Deviation]:
-    """Return the deviations of the flange poses (n, 4, 4) in base_link from the machine's at
-    displayed values (n, axes).
+    """Return the deviations of flange poses from the machine's at displayed values.
+
+    Parameters
+    ----------
+    chain : Chain
+        The chain.
+    display : Shown
+        How the controller displays joint values.
+    values : (n, axes) array
+        Displayed values, degrees and mm.
+    poses : (n, 4, 4) array
+        Flange poses in base_link, mm.
+
+    Returns
+    -------
+    list of Deviation
+        One deviation for each pose.
     """
     return [
         Deviation(*pair)
@@ -130,12 +171,27 @@ def fits(all_deviations: list[Deviation]) -> bool:
 
 
 def suspects(chain: Chain, display: Shown, values: Array, poses: Array) -> list[Suspect]:
-    """Return possible errors, the fewest changes first; each makes the machine meet all poses.
+    """Return possible errors with which the machine meets all poses, the fewest changes first.
 
-    Empty if the poses fit, or if no tested change explains them. Tested are signs, zeros off
-    by right angles, one zero off by any value, the coupling, another base frame, another
-    flange; if none of them explains the poses, the first of them together with another base
-    frame.
+    Tested are signs, zeros off by right angles, one zero off by any value, the coupling,
+    another base frame, another flange; if none of them explains the poses, the first ones
+    together with another base frame.
+
+    Parameters
+    ----------
+    chain : Chain
+        The chain.
+    display : Shown
+        How the controller displays joint values.
+    values : (n, axes) array
+        Displayed values, degrees and mm.
+    poses : (n, 4, 4) array
+        Flange poses in base_link, mm.
+
+    Returns
+    -------
+    list of Suspect
+        At most four; empty if the poses fit, or if no tested change explains them.
     """
     values, poses = np.asarray(values, float), np.asarray(poses, float)
     if not len(poses) or fits(deviations(chain, display, values, poses)):

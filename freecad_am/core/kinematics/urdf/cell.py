@@ -65,8 +65,12 @@ class UrdfCell:
         return self._reference(self.robot, self._tip((*self.track, *self.robot)))
 
     def external(self) -> tuple[ExternalMechanism, ...]:
-        """Return track and positioner at their poses in the world: the robot's base frame with the
-        track at zero.
+        """Return track and positioner at their poses in the world.
+
+        Returns
+        -------
+        tuple of ExternalMechanism
+            The world is the robot's base frame with the track at zero.
         """
         robot = self.machine()
         assert robot.base is not None  # named by _reference
@@ -208,11 +212,25 @@ class UrdfCell:
 
 
 def cell_values(cell_reference: Reference) -> tuple[str, tuple[ExternalMechanism, ...]]:
-    """Return the cell's text for its machine and its external axes, from a URDF that has them
-    all.
+    """Return machine and external axes from a URDF that has them all.
 
-    Raises InputError BAD_URDF if they cannot be identified, BAD_VALUE if links of one of them
-    are named.
+    Parameters
+    ----------
+    cell_reference : Reference
+        Reference to the file, without base and tip.
+
+    Returns
+    -------
+    machine : str
+        Text of the cell's machine.
+    external : tuple of ExternalMechanism
+        The external axes.
+
+    Raises
+    ------
+    InputError
+        UNKNOWN_MACHINE without the file, BAD_URDF if the mechanisms cannot be identified,
+        BAD_VALUE if links of one of them are named.
     """
     if cell_reference.base is not None or cell_reference.tip is not None:
         raise InputError(
@@ -233,8 +251,24 @@ def cell_values(cell_reference: Reference) -> tuple[str, tuple[ExternalMechanism
 
 
 def cell_values_of_machine(machine: object) -> tuple[str, tuple[ExternalMechanism, ...]]:
-    """Return the same values from the cell's machine. Raises InputError BAD_VALUE if that is not
-    a URDF.
+    """Return machine and external axes from the machine of a cell.
+
+    Parameters
+    ----------
+    machine : object
+        Value of the cell's machine.
+
+    Returns
+    -------
+    machine : str
+        Text of the cell's machine.
+    external : tuple of ExternalMechanism
+        The external axes.
+
+    Raises
+    ------
+    InputError
+        BAD_VALUE if the machine is not a URDF; otherwise as `cell_values`.
     """
     cell_reference = reference(machine) if isinstance(machine, str) else None
     if cell_reference is None:

@@ -62,7 +62,27 @@ class Element:
         return value
 
     def words(self, name: str, count: int, default: str) -> list[str]:
-        """Return the `count` words of an attribute, or of the default if it is missing."""
+        """Return the words of an attribute.
+
+        Parameters
+        ----------
+        name : str
+            Name of the attribute.
+        count : int
+            Required number of words.
+        default : str
+            Value of a missing attribute.
+
+        Returns
+        -------
+        list of str
+            The words.
+
+        Raises
+        ------
+        InputError
+            BAD_URDF for another number of words.
+        """
         words = self.attributes.get(name, default).split()
         if len(words) != count:
             raise self.bad(
@@ -83,7 +103,27 @@ class Element:
         )
 
     def numbers(self, name: str, count: int, default: str) -> Array:
-        """Return the finite numbers (count,) of an attribute."""
+        """Return the finite numbers of an attribute.
+
+        Parameters
+        ----------
+        name : str
+            Name of the attribute.
+        count : int
+            Required number of numbers.
+        default : str
+            Value of a missing attribute.
+
+        Returns
+        -------
+        (count,) array
+            The numbers.
+
+        Raises
+        ------
+        InputError
+            BAD_URDF for any other content.
+        """
         return np.array([self._float(word, name) for word in self.words(name, count, default)])
 
     def angle(self, name: str, default: str | None = None) -> float:
@@ -92,7 +132,14 @@ class Element:
         return unrounded(self.attributes.get(name, default or ""))
 
     def pose(self) -> Array:
-        """The pose (4, 4) of its <origin>, mm; the identity without one. Rounded right angles are right angles."""
+        """Return the pose of the <origin> of an element.
+
+        Returns
+        -------
+        (4, 4) array
+            The pose, mm; the identity without an origin. Rounded right angles are right
+            angles.
+        """
         origin = self.first("origin")
         if origin is None:
             return np.eye(4)

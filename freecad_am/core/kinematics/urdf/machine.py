@@ -33,10 +33,24 @@ NOT_LOOKED_AT = "nothing is kept clear of it"
 
 
 def collision(urdf: Urdf, base: str, tip: str, notes: list[str]) -> tuple[Pieces, ...]:
-    """Return the bodies (axes + 1) of the links between a base and a tip, base first, mm.
+    """Return the bodies of the links between a base and a tip.
 
-    Each is in the frame of the joint that moves it and includes all links fixed to it, but
-    not the load on the tip, which has its own joints. Unreadable geometry is noted.
+    Each body includes all links fixed to its link, but not the load on the tip, which has its
+    own joints.
+
+    Parameters
+    ----------
+    urdf : Urdf
+        The file.
+    base, tip : str
+        Names of the first and last link.
+    notes : list of str
+        Unreadable geometry is appended here.
+
+    Returns
+    -------
+    tuple of Pieces
+        Bodies (axes + 1), base first, each in the frame of the joint that moves it, mm.
     """
     chain = [tip, *urdf.above(tip)]
     chain = chain[: chain.index(base) + 1][::-1]
@@ -119,11 +133,25 @@ WHOLE_CELL = (
 
 
 def describe(machine_reference: Reference) -> tuple[Description, SerialArm | None]:
-    """Return the chain of a machine, grounded, with its inverse; None for a machine with three
-    prismatic and two revolute axes.
+    """Return the chain of a machine and its inverse.
 
-    Raises InputError: UNKNOWN_MACHINE without the file, BAD_URDF with file and line,
-    NO_CLOSED_FORM with the reason.
+    Parameters
+    ----------
+    machine_reference : Reference
+        Reference to the file and to base and tip.
+
+    Returns
+    -------
+    description : Description
+        The grounded chain.
+    arm : SerialArm or None
+        None for a machine with three prismatic and two revolute axes.
+
+    Raises
+    ------
+    InputError
+        UNKNOWN_MACHINE without the file, BAD_URDF with file and line, NO_CLOSED_FORM with
+        the reason.
     """
     robot, base, tip = _ends(machine_reference, "cell.machine")
     description = ground_description(robot.between(base, tip))
@@ -179,8 +207,24 @@ def chain_of(mechanism_reference: Reference) -> Description:
 
 
 def external_chain(robot: Urdf, base: str, tip: str) -> Description:
-    """Return the chain from one link to another, with the bodies of its links. Raises InputError
-    BAD_URDF.
+    """Return the chain from one link to another, with the bodies of its links.
+
+    Parameters
+    ----------
+    robot : Urdf
+        The file.
+    base, tip : str
+        Names of the first and last link.
+
+    Returns
+    -------
+    Description
+        The chain with notes on unreadable geometry.
+
+    Raises
+    ------
+    InputError
+        BAD_URDF for a wrong file.
     """
     description = robot.between(base, tip)
     notes: list[str] = []
@@ -247,10 +291,22 @@ def ground_description(description: Description) -> Description:
 
 
 def grounded_chain(chain: Chain) -> tuple[Chain, Array]:
-    """Return a chain seen from a base_link whose Z is axis 1, as `opw_recognition.rooted`
-    returns it.
+    """Return a chain seen from a base_link whose Z is axis 1.
 
-    Machines with rotary tables begin at the torch, and mechanisms at their foot.
+    Machines with rotary tables begin at the torch, and mechanisms at their foot: they stay
+    unchanged.
+
+    Parameters
+    ----------
+    chain : Chain
+        The chain.
+
+    Returns
+    -------
+    chain : Chain
+        The chain, as `opw_recognition.rooted` returns it.
+    base : (4, 4) array
+        The previous base_link in the new one.
     """
     return (
         (chain, np.eye(4))

@@ -296,7 +296,19 @@ class Urdf:
     def mesh_of(self, element: Element, otherwise: str, notes: list[str]) -> LinkShape | None:
         """Return the mesh of a <visual> or <collision>.
 
-        A mesh that cannot be used is noted, with the consequence.
+        Parameters
+        ----------
+        element : Element
+            The element.
+        otherwise : str
+            Consequence of a mesh that cannot be used, for the note.
+        notes : list of str
+            Notes are appended here.
+
+        Returns
+        -------
+        LinkShape or None
+            None without a mesh, or for one that cannot be used.
         """
         geometry = element.first("geometry")
         mesh = None if geometry is None else geometry.first("mesh")
