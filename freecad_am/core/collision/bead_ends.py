@@ -93,7 +93,20 @@ class Beads(NamedTuple):
 
     @classmethod
     def of(cls, beads: Sequence[Bead], width: float, height: float) -> Beads:
-        """Collect beads; width and height, mm, apply to beads without their own."""
+        """Collect the points of beads.
+
+        Parameters
+        ----------
+        beads : sequence of Bead
+            The beads in print order.
+        width, height : float
+            Size of beads without their own, mm.
+
+        Returns
+        -------
+        Beads
+            All points in order.
+        """
         points = np.concatenate([bead.points for bead in beads])
         counts = np.array([len(bead.points) for bead in beads])
         is_first = np.zeros(len(points), dtype=bool)
@@ -211,14 +224,33 @@ def _build_bead_ends(question: _Asked) -> BeadEnds:
 def standing_heights(
     deposit: Obstacles, size: Size, tip: Array, axis: Array, height: Array, moment: Index
 ) -> Array:
-    """Return the heights (k,) mm over the tips (k, 3), on points of beads, below which nozzles along
-    unit axes (k, 3) are exempt there.
+    """Return the heights below which nozzles on points of beads are exempt from contact.
 
-    The tip is in the bead of height (k,) mm whose end it is: up to that height the nozzle may have
-    deposit around. Where more of the nozzle is in the deposit of before the moment (k,) - a nozzle
-    that leans over its own bead, or a job that asks for no clearance - the height is as much: no
-    move off the point avoids that, and the check of the depositing nozzle covers it. CHORD is added,
-    as for any nozzle on rapids.
+    The tip is in the bead whose end it is: up to the bead's height the nozzle may have deposit
+    around. Where more of the nozzle is in the deposit (a nozzle that leans over its own bead,
+    or a job that asks for no clearance) the height is as much: no move off the point avoids
+    that, and the check of the depositing nozzle covers it. CHORD is added, as for any nozzle on
+    rapids.
+
+    Parameters
+    ----------
+    deposit : Obstacles
+        The deposit.
+    size : Size
+        Radius, slope and length of the nozzle.
+    tip : (k, 3) array
+        Tips in part coordinates, mm.
+    axis : (k, 3) array
+        Tool axes, unit vectors.
+    height : (k,) array
+        Heights of the beads, mm.
+    moment : (k,) int array
+        Moments before which deposit counts.
+
+    Returns
+    -------
+    (k,) array
+        Heights over the tips, mm, at most the length of the nozzle.
     """
     distinct, distinct_rows = np.unique(height, return_inverse=True)
     exempt = np.array([exempt_height(size.radius, size.slope, float(value)) for value in distinct])

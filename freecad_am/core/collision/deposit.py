@@ -37,17 +37,38 @@ def build_deposit(
     short: bool = False,
     like: Obstacles | None = None,
 ) -> Obstacles:
-    """Build the deposit of points (n, 3) in print order, with unit build directions (n, 3).
+    """Build the deposit of points in print order.
 
-    width, height: mm, one or (n,). starts: the first points of beads, by numbers or as a mask (n,).
-    moments: (n,) rising, the moment at which each point is printed; by default its number. grain:
-    mm, maximum length of joined pieces. foot: mm; pieces of the current layer are adjacent to the
-    tip within their width, or within this distance. short: whether pieces are short compared with
-    the queries. like: the deposit of the same points with other directions, which has the same
-    pieces with other corners.
+    A piece exists from the moment of the point at its end. If no bead has a width, or a height,
+    the pieces are lines.
 
-    A piece exists from the moment of the point at its end. If no bead has a width, or a height, the
-    pieces are lines.
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points in part coordinates, mm.
+    build : (n, 3) array
+        Build directions, unit vectors.
+    width, height : float or (n,) array
+        Size of the beads, mm.
+    starts : int or bool array
+        First points of beads, by numbers or as a mask (n,).
+    moments : (n,) int array or None, optional
+        Rising moments at which points are printed; None for their numbers.
+    grain : float, optional
+        Maximum length of joined pieces, mm.
+    foot : float, optional
+        Pieces of the current layer are adjacent to the tip within their width, or within
+        this distance, mm.
+    short : bool, optional
+        Whether pieces are short compared with the queries.
+    like : Obstacles or None, optional
+        The deposit of the same points with other directions, which has the same pieces with
+        other corners; None without one.
+
+    Returns
+    -------
+    Obstacles
+        The pieces as obstacles.
     """
     n = len(points)
     is_first = np.zeros(n, dtype=bool)
@@ -134,7 +155,26 @@ def _join_points(points: Array, is_first: Mask, grain: float) -> Index:
 def in_parts(
     points: Array, build: Array, width: Array, height: Array, starts: Index, **what: Any
 ) -> InParts:
-    """The deposit that `build_deposit` makes of the same, for few looks."""
+    """Return the deposit for few queries, built part by part on each query.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points in part coordinates, mm.
+    build : (n, 3) array
+        Build directions, unit vectors.
+    width, height : (n,) array
+        Size of the beads, mm.
+    starts : int array
+        First points of beads.
+    **what : Any
+        Further arguments of `build_deposit`.
+
+    Returns
+    -------
+    InParts
+        The deposit.
+    """
     return InParts(points, build, width, height, starts, what)
 
 
@@ -160,7 +200,26 @@ class InParts:
         moment: Index | None = None,
         layer_start: Index | None = None,
     ) -> Mask:
-        """Return the mask of `Obstacles.find_touching`."""
+        """Return whether solids meet the deposit, as `Obstacles.find_touching` does.
+
+        Parameters
+        ----------
+        solid : Frustum
+            The k solids.
+        tip : (k, 3) array
+            Tips in part coordinates, mm.
+        axis : (k, 3) array
+            Axes, unit vectors.
+        moment : (k,) int array or None, optional
+            Moments before which deposit counts; None for all deposit.
+        layer_start : (k,) int array or None, optional
+            Moments at which the current layers began.
+
+        Returns
+        -------
+        (k,) bool array
+            True on contact.
+        """
         hits, count = np.zeros(len(tip), dtype=bool), len(self.points)
         begins = np.zeros(count, dtype=bool)
         begins[self.starts] = True

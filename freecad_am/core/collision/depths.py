@@ -40,9 +40,34 @@ def measured(
     slack: float,
     excluded: Body | None = None,
 ) -> tuple[Array, Array, Array, float]:
-    """Depths, thickness and depths of faces as `PartDepths` has them, and the share of the part that is not in `excluded`.
+    """Return how deep a part is under a surface and how thick it is there.
 
-    part_mesh: its closed triangles, owner (m,) the number in `faces` of each. slack: mm that the surface may be off them.
+    Parameters
+    ----------
+    part_mesh : Body
+        Closed triangles of the part.
+    owner : (m,) int array
+        Number in `faces` of each triangle.
+    faces : sequence of str
+        Names of the faces.
+    surface : Surface
+        Evenly spread points of the surface with normals and areas, mm.
+    slack : float
+        Distance that the surface may be off the triangles, mm.
+    excluded : Body or None, optional
+        Body that does not count as part; None without one.
+
+    Returns
+    -------
+    depths : (k,) array
+        Bead width needed for each equal share of the part, mm, sorted; infinite for a share
+        under no bead.
+    thickness : (n,) array
+        Thickness at points of the surface, mm, sorted.
+    by_face : (faces,) array
+        Median depth of each face, mm.
+    share : float
+        Share of the part that is not in `excluded`.
     """
     inside = inside_of(part_mesh)
     ground = None if excluded is None else inside_of(excluded)

@@ -56,9 +56,27 @@ class Frustum:
         return Frustum(self.radius, self.slope, self.low[index], self.high)
 
     def near_box(self, offset: Array, axis: Array, half: Array, rounding: Array) -> Mask:
-        """False where boxes about points, of half sizes (3, k), with a rounding (k,) mm about them, surely miss the solid:
-        they are past one of its ends, or beyond the plane that touches its side nearest to the point. offset, axis: (3, k),
-        which takes half of the time that rows take."""
+        """Return whether boxes may meet the solid.
+
+        False means that a box is past one end of the solid, or beyond the plane that
+        touches its side nearest to the point. Columns take half of the time that rows take.
+
+        Parameters
+        ----------
+        offset : (3, k) array
+            Centres of the boxes from the tips, mm.
+        axis : (3, k) array
+            Tool axes, unit vectors.
+        half : (3, k) array
+            Half sizes of the boxes, mm.
+        rounding : (k,) array
+            Rounding about the boxes, mm.
+
+        Returns
+        -------
+        (k,) bool array
+            False for boxes that surely miss the solid.
+        """
         x = _column_sums(offset * axis)
         across: Array = offset - x * axis
         side = np.sqrt(_column_sums(across * across))
@@ -75,7 +93,20 @@ class Frustum:
         return may_meet
 
     def nearest(self, offset: Array, axis: Array) -> Array:
-        """The points (k, 3) of the solid nearest to points; these themselves where they are inside."""
+        """Return the points of the solid nearest to points.
+
+        Parameters
+        ----------
+        offset : (k, 3) array
+            Points from the tips, mm.
+        axis : (k, 3) array
+            Tool axes, unit vectors.
+
+        Returns
+        -------
+        (k, 3) array
+            Nearest points from the tips, mm; the points themselves where inside.
+        """
         x = dots(offset, axis)
         across = offset - x[:, None] * axis
         side = np.sqrt(dots(across, across))
@@ -107,12 +138,38 @@ class Frustum:
         return points
 
     def gap(self, offset: Array, axis: Array) -> Array:
-        """Distances (k,) mm of points from the solid, 0 inside."""
+        """Return the distances of points from the solid.
+
+        Parameters
+        ----------
+        offset : (k, 3) array
+            Points from the tips, mm.
+        axis : (k, 3) array
+            Tool axes, unit vectors.
+
+        Returns
+        -------
+        (k,) array
+            Distances, mm; 0 inside.
+        """
         gap: Array = lengths(self.nearest(offset, axis) - offset)
         return gap
 
     def farthest(self, direction: Array, axis: Array) -> Array:
-        """Return the points (k, 3) of the solid farthest along directions (k, 3)."""
+        """Return the points of the solid farthest along directions.
+
+        Parameters
+        ----------
+        direction : (k, 3) array
+            Directions of any length.
+        axis : (k, 3) array
+            Tool axes, unit vectors.
+
+        Returns
+        -------
+        (k, 3) array
+            Points from the tips, mm.
+        """
         rise = dots(direction, axis)
         across = direction - rise[:, None] * axis
         size = np.sqrt(dots(across, across))
@@ -130,7 +187,22 @@ class Frustum:
         return points
 
     def crossed(self, normal: Array, level: Array, axis: Array) -> Mask:
-        """Whether planes, unit normals (k, 3) and heights (k,) over the tip, cut the solid."""
+        """Return whether planes cut the solid.
+
+        Parameters
+        ----------
+        normal : (k, 3) array
+            Unit normals of the planes.
+        level : (k,) array
+            Distances of the planes from the tips along the normals, mm.
+        axis : (k, 3) array
+            Tool axes, unit vectors.
+
+        Returns
+        -------
+        (k,) bool array
+            True where a plane cuts it.
+        """
         rise = dots(normal, axis)
         lean = np.sqrt(np.maximum(1.0 - rise * rise, 0.0))
         low, high = self.low * rise, self.high * rise
@@ -157,7 +229,20 @@ class Frustum:
         return inside
 
     def meets_segments(self, start: Array, end: Array, axis: Array) -> Mask:
-        """Whether segments reach into the solid."""
+        """Return whether segments reach into the solid.
+
+        Parameters
+        ----------
+        start, end : (k, 3) array
+            Ends of the segments from the tips, mm.
+        axis : (k, 3) array
+            Tool axes, unit vectors.
+
+        Returns
+        -------
+        (k,) bool array
+            True where a segment reaches in by more than ROUNDING.
+        """
         x, rise = dots(start, axis), dots(end - start, axis)
         across = start - x[:, None] * axis
         along = end - start - rise[:, None] * axis
@@ -284,11 +369,29 @@ def select_pairs(
     axes: Array,
     layer_start: Index,
 ) -> Index:
-    """Return which pairs (k,) of a query and a node remain without the nodes that hold only lines below
-    the solid's lower end.
+    """Select the pairs of queries and nodes that need a test.
 
-    since: the earliest moment of each node. tips, axes: (3, queries). layer_start: the moment at
-    which the layer of each query began.
+    Nodes that hold only lines below the solid's lower end are left out.
+
+    Parameters
+    ----------
+    lines : Lines
+        Bounds of the lines of each node.
+    since : int array
+        Earliest moment of each node.
+    solid : Frustum
+        The solids of the queries.
+    query, node : (k,) int array
+        The pairs.
+    tips, axes : (3, queries) array
+        Tips (mm) and unit axes of the queries.
+    layer_start : (queries,) int array
+        Moment at which the layer of each query began.
+
+    Returns
+    -------
+    int array
+        Rows of the remaining pairs.
     """
     in_layer = np.flatnonzero(since.take(node) >= layer_start.take(query))
     if not len(in_layer):

@@ -27,8 +27,21 @@ class Slabs(NamedTuple):
 
 
 def build_slabs(corners: Array, radius: Array, size: int) -> Slabs:
-    """Build the boxes about groups of `size` pieces: hulls of four points (m, 4, 3), start before end,
-    and a rounding (m,) mm.
+    """Build oriented boxes about groups of pieces.
+
+    Parameters
+    ----------
+    corners : (m, 4, 3) array
+        Corners of the pieces, start before end, mm.
+    radius : (m,) array
+        Rounding about the pieces, mm.
+    size : int
+        Number of pieces in a group.
+
+    Returns
+    -------
+    Slabs
+        One box for each group.
     """
     starts = np.arange(0, len(corners), size)
     ends = np.minimum(starts + size, len(corners)) - 1
@@ -54,10 +67,28 @@ def build_slabs(corners: Array, radius: Array, size: int) -> Slabs:
 
 
 def select_close(slabs: Slabs, solid: Frustum, node: Index, tip: Array, axis: Array) -> Index:
-    """Return which pairs (k,) of a solid, its tip and axis (k, 3), and a box may meet.
+    """Return which pairs of a solid and a box may meet.
 
-    Where the solid is nearest to the centre a plane touches it; a box entirely beyond that plane
-    misses the solid.
+    Where the solid is nearest to the centre, a plane touches it; a box entirely beyond that
+    plane misses the solid.
+
+    Parameters
+    ----------
+    slabs : Slabs
+        The boxes.
+    solid : Frustum
+        The k solids.
+    node : (k,) int array
+        The box of each pair.
+    tip : (k, 3) array
+        Tips, mm.
+    axis : (k, 3) array
+        Unit axes.
+
+    Returns
+    -------
+    int array
+        Rows of the remaining pairs.
     """
     centre = slabs.centre.take(node, axis=0) - tip
     direction = solid.nearest(centre, axis) - centre
@@ -205,10 +236,25 @@ class Obstacles:
         moment: Index | None = None,
         layer_start: Index | None = None,
     ) -> Mask:
-        """Return whether (k,) solids with the tip (k, 3) and the unit axis (k, 3) meet an obstacle that
-        exists before the moment (k,).
+        """Return whether solids meet an obstacle.
 
-        layer_start: (k,) the moment at which the current layer began.
+        Parameters
+        ----------
+        solid : Frustum
+            The k solids.
+        tip : (k, 3) array
+            Tips, mm.
+        axis : (k, 3) array
+            Unit axes.
+        moment : (k,) int array or None, optional
+            Moments before which obstacles count; None for obstacles that always exist.
+        layer_start : (k,) int array or None, optional
+            Moments at which the current layers began; None without layers.
+
+        Returns
+        -------
+        (k,) bool array
+            True on contact.
         """
         hits = np.zeros(len(tip), dtype=bool)
         if not len(self.corners) or not np.any(solid.high > solid.low):
@@ -360,8 +406,27 @@ class Obstacles:
         moment: Index | None = None,
         reach: float = np.inf,
     ) -> Array:
-        """(k,) mm from solids to the nearest obstacle there before the moment (k,), 0 where they meet, at most `reach`; no
-        more than the true distance, and less by no more than what tolerances.CONVERGED says."""
+        """Return the distances from solids to the nearest obstacle.
+
+        Parameters
+        ----------
+        solid : Frustum
+            The k solids.
+        tip : (k, 3) array
+            Tips, mm.
+        axis : (k, 3) array
+            Unit axes.
+        moment : (k,) int array or None, optional
+            Moments before which obstacles count; None for obstacles that always exist.
+        reach : float, optional
+            Largest distance of interest, mm.
+
+        Returns
+        -------
+        (k,) array
+            Distances, mm; 0 on contact, at most `reach`. Never above the true distance,
+            and below by at most tolerances.CONVERGED.
+        """
         return self.nearest(solid, tip, axis, moment, reach)[0]
 
     def nearest(
@@ -372,8 +437,27 @@ class Obstacles:
         moment: Index | None = None,
         reach: float = np.inf,
     ) -> tuple[Array, Index]:
-        """Return the distances (k,) mm as `distance` does, and the numbers (k,) of the nearest obstacles in
-        their sorted order; NONE if no obstacle is within reach.
+        """Return the distances from solids to the nearest obstacle, and which one it is.
+
+        Parameters
+        ----------
+        solid : Frustum
+            The k solids.
+        tip : (k, 3) array
+            Tips, mm.
+        axis : (k, 3) array
+            Unit axes.
+        moment : (k,) int array or None, optional
+            Moments before which obstacles count; None for obstacles that always exist.
+        reach : float, optional
+            Largest distance of interest, mm.
+
+        Returns
+        -------
+        distance : (k,) array
+            Distances as `distance` returns them, mm.
+        obstacle : (k,) int array
+            Numbers in the sorted order; NONE without an obstacle in reach.
         """
         gaps, nearest_ids = np.full(len(tip), reach), np.full(len(tip), NONE, dtype=np.intp)
         for begin in range(0, len(tip) if len(self.corners) else 0, QUERIES // 8):

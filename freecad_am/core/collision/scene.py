@@ -44,11 +44,24 @@ class Bodies:
     solids: tuple[Inside, ...]
 
     def find_touching(self, solid: Frustum, tip: Array, axis: Array) -> Mask:
-        """Return whether (k,) solids with the tip (k, 3) and the unit axis (k, 3) meet a triangle or are
-        inside a closed body.
+        """Return whether solids meet a triangle or are inside a closed body.
 
-        A solid that meets no triangle of a closed body is entirely inside or outside: one point of its
-        axis decides.
+        A solid that meets no triangle of a closed body is entirely inside or outside: one
+        point of its axis decides.
+
+        Parameters
+        ----------
+        solid : Frustum
+            The k solids.
+        tip : (k, 3) array
+            Tips, mm.
+        axis : (k, 3) array
+            Unit axes.
+
+        Returns
+        -------
+        (k,) bool array
+            True on contact.
         """
         hits = self.triangles.find_touching(solid, tip, axis)
         rows = np.flatnonzero(~hits)
@@ -56,7 +69,24 @@ class Bodies:
         return hits
 
     def distance(self, solid: Frustum, tip: Array, axis: Array, reach: float) -> Array:
-        """(k,) mm from solids to the nearest body, 0 where they meet one or are inside it, at most `reach`."""
+        """Return the distances from solids to the nearest body.
+
+        Parameters
+        ----------
+        solid : Frustum
+            The k solids.
+        tip : (k, 3) array
+            Tips, mm.
+        axis : (k, 3) array
+            Unit axes.
+        reach : float
+            Largest distance of interest, mm.
+
+        Returns
+        -------
+        (k,) array
+            Distances, mm; 0 on contact or inside a body, at most `reach`.
+        """
         distances = self.triangles.distance(solid, tip, axis, reach=reach)
         rows = np.flatnonzero(distances > 0.0)
         distances[rows[self._inside(solid.rows(rows), tip[rows], axis[rows])]] = 0.0
@@ -78,11 +108,23 @@ class Bodies:
 def build_bodies(
     bodies: Sequence[Body], around: Array, reach: float, max_edge: float = PIECE
 ) -> Bodies:
-    """Return the triangles of bodies within `reach` (mm) of the box about the points `around` (n,
-    3).
+    """Return the triangles and insides of bodies near some points.
 
-    Closed bodies also have an inside; an open body only has its triangles. max_edge: mm, the
-    longest edge of a triangle after subdivision.
+    Parameters
+    ----------
+    bodies : sequence of Body
+        Bodies in part coordinates; an open body only has its triangles.
+    around : (n, 3) array
+        The points, mm.
+    reach : float
+        Distance from the box about the points, mm.
+    max_edge : float, optional
+        Longest edge of a triangle after subdivision, mm.
+
+    Returns
+    -------
+    Bodies
+        The bodies within reach.
     """
     if not bodies:
         return Bodies(Obstacles(np.zeros((0, 3, 3))), ())
@@ -190,12 +232,27 @@ class Nozzle:
 
 
 def exempt_height(radius: float, slope: float, bead_height: float, lean: float = 0.0) -> float:
-    """Height (mm) over the tip plane below which contact with deposit is exempt. lean: rad between tool
-    axis and build direction.
+    """Return the height below which contact with deposit is exempt.
 
-    The tip is in the bead that it prints, and adjacent beads overlap that bead by intention: up to
-    the bead's height they may be around the nozzle, also below the lower side of a leaning one. The
-    minimum is the height at which the nozzle's side is one tip diameter from the tip.
+    The tip is in the bead that it prints, and adjacent beads overlap that bead by intention: up
+    to the bead's height they may be around the nozzle, also below the lower side of a leaning
+    one. The minimum is the height at which the nozzle's side is one tip diameter from the tip.
+
+    Parameters
+    ----------
+    radius : float
+        Radius of the tip, mm.
+    slope : float
+        Tangent of the nozzle's half angle.
+    bead_height : float
+        Height of the bead, mm.
+    lean : float, optional
+        Angle between tool axis and build direction, rad.
+
+    Returns
+    -------
+    float
+        Height over the tip plane, mm.
     """
     upright = max(float(np.cos(lean) - slope * np.sin(lean)), LEAST_UPRIGHT)
     return max(side_height(radius, slope), (bead_height + radius * float(np.sin(lean))) / upright)
@@ -204,9 +261,27 @@ def exempt_height(radius: float, slope: float, bead_height: float, lean: float =
 def depositing(
     radius: float, slope: float, length: float, bead_height: float, lean: float = 0.0
 ) -> Nozzle:
-    """The nozzle while it deposits: radius of its tip and length mm, slope: tangent of its half angle,
-    the height mm of the highest bead, and its intended lean, rad. Bodies are exempt only as far as
-    the nozzle touches its support.
+    """Return the nozzle while it deposits.
+
+    Bodies are exempt only as far as the nozzle touches its support.
+
+    Parameters
+    ----------
+    radius : float
+        Radius of the tip, mm.
+    slope : float
+        Tangent of the nozzle's half angle.
+    length : float
+        Length of the nozzle, mm.
+    bead_height : float
+        Height of the highest bead, mm.
+    lean : float, optional
+        Intended angle between tool axis and build direction, rad.
+
+    Returns
+    -------
+    Nozzle
+        The nozzle as tested against bodies and deposit.
     """
     return Nozzle(
         Frustum(radius, slope, side_height(radius, slope) + ABOVE_FACES, length),
@@ -217,9 +292,23 @@ def depositing(
 def travelling(radius: float, slope: float, length: float, exempt: float | Array = 0.0) -> Nozzle:
     """Return the nozzle on a rapid.
 
-    exempt: mm above the tip that are exempt, one value or (k,) for k positions. On retract and
-    approach it is `exempt_height` at the deposit point less the distance of the tip from it, at
-    least 0.
+    Parameters
+    ----------
+    radius : float
+        Radius of the tip, mm.
+    slope : float
+        Tangent of the nozzle's half angle.
+    length : float
+        Length of the nozzle, mm.
+    exempt : float or (k,) array, optional
+        Height above the tip that is exempt, mm. On retract and approach it is
+        `exempt_height` at the deposit point less the distance of the tip from it, at least
+        0.
+
+    Returns
+    -------
+    Nozzle
+        The nozzle as tested against bodies and deposit.
     """
     return Nozzle(
         Frustum(max(radius - FACES, 0.0), slope, np.maximum(exempt, FACES), length),
@@ -244,11 +333,27 @@ class Scene:
         moment: Index | None = None,
         layer_start: Index | None = None,
     ) -> Mask:
-        """Return whether (k,) solids with the tip (k, 3) and the axis (k, 3), in part coordinates, meet a
-        body, or deposit that exists before the moment (k,); without moments, any deposit.
+        """Return whether solids meet a body or the deposit.
 
-        layer_start: (k,) the moment at which the current layer began. Its beads next to the tip, within
-        their width, count as the lines of their points: they may touch the nozzle.
+        Parameters
+        ----------
+        solid : Nozzle or Frustum
+            The k solids; a nozzle has different ones for bodies and deposit.
+        tip : (k, 3) array
+            Tips in part coordinates, mm.
+        axis : (k, 3) array
+            Unit axes in part coordinates.
+        moment : (k,) int array or None, optional
+            Moments before which deposit counts; None for all deposit.
+        layer_start : (k,) int array or None, optional
+            Moments at which the current layers began. Their beads next to the tip,
+            within their width, count as the lines of their points: they may touch the
+            nozzle.
+
+        Returns
+        -------
+        (k,) bool array
+            True on contact.
         """
         nozzle = solid if isinstance(solid, Nozzle) else Nozzle(solid, solid)
         hits = self.bodies.find_touching(nozzle.bodies, tip, axis)
@@ -272,11 +377,26 @@ class Scene:
         moment: Index | None = None,
         reach: float = 100.0,
     ) -> Array:
-        """Return the distances (k,) mm between solids and the nearest body or deposit, as `find_touching`
-        has them; 0 if they meet, at most `reach`.
+        """Return the distances between solids and the nearest body or deposit.
 
-        The value is never too large; it is too small by at most tolerances.CONVERGED, except where both
-        graze.
+        Parameters
+        ----------
+        solid : Nozzle or Frustum
+            The k solids; a nozzle has different ones for bodies and deposit.
+        tip : (k, 3) array
+            Tips in part coordinates, mm.
+        axis : (k, 3) array
+            Unit axes in part coordinates.
+        moment : (k,) int array or None, optional
+            Moments before which deposit counts; None for all deposit.
+        reach : float, optional
+            Largest distance of interest, mm.
+
+        Returns
+        -------
+        (k,) array
+            Distances, mm; 0 on contact, at most `reach`. Never too large; too small by
+            at most tolerances.CONVERGED, except where both graze.
         """
         nozzle = solid if isinstance(solid, Nozzle) else Nozzle(solid, solid)
         distances = self.bodies.distance(nozzle.bodies, tip, axis, reach)
@@ -291,11 +411,32 @@ class Scene:
     def nearest(
         self, solid: Frustum, tip: Array, axis: Array, moment: Index, reach: float
     ) -> tuple[Array, Array, Array]:
-        """Find the nearest obstacle present before the moment (k,) for each solid.
+        """Find the nearest obstacle of each solid.
 
-        Returns the distances (k,) mm, 0 for contact and at most `reach`; unit vectors (k, 3) from the
-        obstacle towards the solid; and the points (k, 3) of the solids. Vectors are zero if nothing is
-        within reach or they meet. A solid within a body counts by the body's triangles.
+        A solid within a body counts by the body's triangles.
+
+        Parameters
+        ----------
+        solid : Frustum
+            The k solids.
+        tip : (k, 3) array
+            Tips in part coordinates, mm.
+        axis : (k, 3) array
+            Unit axes in part coordinates.
+        moment : (k,) int array
+            Moments before which deposit counts.
+        reach : float
+            Largest distance of interest, mm.
+
+        Returns
+        -------
+        distance : (k,) array
+            Distances, mm; 0 on contact, at most `reach`.
+        normal : (k, 3) array
+            Unit vectors from the obstacle towards the solid; zero on contact or beyond
+            reach.
+        position : (k, 3) array
+            The nearest points of the solids, mm.
         """
         gap, normal, position = (
             np.full(len(tip), reach),
@@ -324,8 +465,24 @@ class Scene:
 def scene(
     bodies: Sequence[Body], around: Array, reach: float, deposit: Obstacles | InParts | None = None
 ) -> Scene:
-    """The scene of bodies, as far as they are no farther than `reach` mm from the box about the points around (n, 3), and a
-    deposit."""
+    """Return the scene of bodies near some points, and a deposit.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        Bodies in part coordinates.
+    around : (n, 3) array
+        The points, mm.
+    reach : float
+        Distance from the box about the points, mm.
+    deposit : Obstacles or InParts or None, optional
+        The deposit; None without one.
+
+    Returns
+    -------
+    Scene
+        The scene.
+    """
     return Scene(build_bodies(bodies, around, reach), deposit)
 
 

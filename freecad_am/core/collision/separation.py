@@ -64,9 +64,33 @@ def bounds(
     farther: Array | float = np.inf,
     start: Array | None = None,
 ) -> tuple[Array, Array]:
-    """Lower and upper bounds (k,) mm of the distance between solids about unit axes (k, 3) and the hulls of points
-    (k, c, 3), seen from the tips; they agree within CONVERGED, unless the distance is surely below `nearer`, or above
-    `farther`, both (k,) mm. 0 where the two meet. start: ways (k, 3) to begin with, `from_middles` by default."""
+    """Return lower and upper bounds of the distance between solids and hulls.
+
+    The bounds agree within CONVERGED, unless the distance is surely below `nearer` or above
+    `farther`.
+
+    Parameters
+    ----------
+    solid : Frustum
+        The k solids.
+    axis : (k, 3) array
+        Unit axes.
+    points : (k, c, 3) array or Hull
+        Corners of the hulls from the tips, mm.
+    nearer, farther : float or (k,) array, optional
+        Distances at which the search may stop, mm.
+    start : (k, 3) array or None, optional
+        Vectors from the hulls to the solids to begin with; None for `from_middles`.
+
+    Returns
+    -------
+    low, high : (k,) array
+        The bounds, mm; 0 where the two meet.
+
+    Notes
+    -----
+    The algorithm of Gilbert, Johnson and Keerthi on the Minkowski difference.
+    """
     count = len(points)
     low = np.zeros(count)
     nearer, farther = np.broadcast_to(nearer, count), np.broadcast_to(farther, count)
@@ -113,9 +137,25 @@ def bounds(
 def shortest_vectors(
     solid: Frustum, axis: Array, points: Array | Hull, middle: Array
 ) -> tuple[Array, Array]:
-    """Return the points (k, 3) of hulls of points (k, c, 3) nearest to solids about unit axes (k, 3),
-    and the vectors (k, 3) from there to the solids, both relative to the tips; zero for pairs that
-    meet. middle: (k, 3) a point of each hull.
+    """Return the shortest vectors from hulls to solids.
+
+    Parameters
+    ----------
+    solid : Frustum
+        The k solids.
+    axis : (k, 3) array
+        Unit axes.
+    points : (k, c, 3) array or Hull
+        Corners of the hulls from the tips, mm.
+    middle : (k, 3) array
+        A point of each hull.
+
+    Returns
+    -------
+    points : (k, 3) array
+        Points of the hulls, from the tips, mm.
+    vectors : (k, 3) array
+        Vectors from there to the solids; zero for pairs that meet.
     """
     vectors = np.concatenate([solid.nearest(middle, axis) - middle, middle], axis=1)
     rows = np.flatnonzero(dots(vectors[:, :3], vectors[:, :3]) > CONVERGED**2)
@@ -165,8 +205,26 @@ def _farthest(points: Array | Hull, direction: Array) -> Array:
 def find_overlaps(
     solid: Frustum, axis: Array, points: Array, radius: Array, start: Array | None = None
 ) -> Mask:
-    """(k,) whether hulls of points (k, c, 3) with a rounding of the radius (k,) mm about them reach into solids. start: as
-    for `bounds`."""
+    """Return whether rounded hulls reach into solids.
+
+    Parameters
+    ----------
+    solid : Frustum
+        The k solids.
+    axis : (k, 3) array
+        Unit axes.
+    points : (k, c, 3) array
+        Corners of the hulls from the tips, mm.
+    radius : (k,) array
+        Rounding about the hulls, mm.
+    start : (k, 3) array or None, optional
+        Vectors to begin with, as for `bounds`.
+
+    Returns
+    -------
+    (k,) bool array
+        True for pairs that overlap.
+    """
     deep = np.maximum(radius - CONVERGED, 0.0)
     _, high = bounds(solid, axis, points, deep, np.maximum(deep, CONVERGED), start)
     overlaps: Mask = (high < deep) | (high == 0.0)
@@ -176,9 +234,28 @@ def find_overlaps(
 def find_any_overlap(
     query: Index, solid: Frustum, axis: Array, points: Array, radius: Array
 ) -> Mask:
-    """Return the mask (k,) of `find_overlaps`, but test only as many hulls of one query (k,) as needed
-    to know whether any overlaps: the hull with the nearest middle first, the others only if it
-    does not, unless there are few.
+    """Return `find_overlaps` as far as needed to know whether any hull of a query overlaps.
+
+    The hull with the nearest middle is tested first, the others only if it does not overlap,
+    unless there are few.
+
+    Parameters
+    ----------
+    query : (k,) int array
+        Query of each pair.
+    solid : Frustum
+        The k solids.
+    axis : (k, 3) array
+        Unit axes.
+    points : (k, c, 3) array
+        Corners of the hulls from the tips, mm.
+    radius : (k,) array
+        Rounding about the hulls, mm.
+
+    Returns
+    -------
+    (k,) bool array
+        True for overlaps that were tested; at least one for each query with an overlap.
     """
     deep = np.maximum(radius - CONVERGED, 0.0)
     middle = middles(points)
@@ -215,7 +292,22 @@ def find_any_overlap(
 
 
 def from_middles(solid: Frustum, axis: Array, points: Array) -> Array:
-    """The ways (k, 3) from the middles of points (k, c, 3) to the nearest points of solids about unit axes (k, 3)."""
+    """Return the vectors from the middles of hulls to the nearest points of solids.
+
+    Parameters
+    ----------
+    solid : Frustum
+        The k solids.
+    axis : (k, 3) array
+        Unit axes.
+    points : (k, c, 3) array
+        Corners of the hulls from the tips, mm.
+
+    Returns
+    -------
+    (k, 3) array
+        Vectors, mm.
+    """
     middle = middles(points)
     vectors: Array = solid.nearest(middle, axis) - middle
     return vectors
@@ -238,7 +330,18 @@ def _from_corners(solid: Frustum, axis: Array, points: Array, vectors: Array) ->
 
 
 def from_origin(segment: Array) -> Array:
-    """Distances (k,) mm of segments (k, 2, 3) from the origin."""
+    """Return the distances of segments from the origin.
+
+    Parameters
+    ----------
+    segment : (k, 2, 3) array
+        Ends of the segments, mm.
+
+    Returns
+    -------
+    (k,) array
+        Distances, mm.
+    """
     start, along = segment[:, 0], segment[:, 1] - segment[:, 0]
     square = dots(along, along)
     share = np.clip(-dots(start, along) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
@@ -247,7 +350,20 @@ def from_origin(segment: Array) -> Array:
 
 
 def middles(points: Array) -> Array:
-    """(k, 3) the means of points (k, c, 3): column by column many times as fast as along an axis of so few."""
+    """Return the means of few points each.
+
+    Column by column this is many times as fast as along a short axis.
+
+    Parameters
+    ----------
+    points : (k, c, 3) array
+        The points, mm.
+
+    Returns
+    -------
+    (k, 3) array
+        Their means.
+    """
     middle = points[:, 0].copy()
     for column in range(1, points.shape[1]):
         middle += points[:, column]
@@ -256,7 +372,18 @@ def middles(points: Array) -> Array:
 
 
 def largest(values: Array) -> Array:
-    """(k,) the largest of values (k, c), column by column as well."""
+    """Return the largest of few values each.
+
+    Parameters
+    ----------
+    values : (k, c) array
+        The values.
+
+    Returns
+    -------
+    (k,) array
+        Their maxima.
+    """
     maxima: Array = values[:, 0]
     for column in range(1, values.shape[1]):
         maxima = np.maximum(maxima, values[:, column])
@@ -394,7 +521,20 @@ class _Pairs:
 
 
 def nearer(cylinders: PlacedCylinders, others_at: PlacedCylinders, gap: float) -> Mask:
-    """(k,) whether two cylinders are nearer to each other than `gap` mm, which is more than nothing, or meet."""
+    """Return whether two cylinders are nearer to each other than a gap.
+
+    Parameters
+    ----------
+    cylinders, others_at : PlacedCylinders
+        The cylinders in k places each.
+    gap : float
+        The gap, mm, more than 0.
+
+    Returns
+    -------
+    (k,) bool array
+        True for cylinders that are nearer or meet.
+    """
     distances = axes_apart(cylinders, others_at)
     are_nearer: Mask = distances < gap  # the axes themselves are in the cylinders
     doubtful = np.flatnonzero(~are_nearer & (distances < gap + cylinders.radius + others_at.radius))
@@ -422,7 +562,18 @@ def nearer(cylinders: PlacedCylinders, others_at: PlacedCylinders, gap: float) -
 
 
 def axes_apart(cylinders: PlacedCylinders, others_at: PlacedCylinders) -> Array:
-    """(k,) mm between the axes of cylinders, from end to end."""
+    """Return the distances between the axes of cylinders.
+
+    Parameters
+    ----------
+    cylinders, others_at : PlacedCylinders
+        The cylinders in k places each.
+
+    Returns
+    -------
+    (k,) array
+        Distances of the segments from end to end, mm.
+    """
     off = cylinders.start - others_at.start
     lean, first_offset, second_offset = (
         dots(cylinders.axis, others_at.axis),
@@ -446,8 +597,19 @@ def axes_apart(cylinders: PlacedCylinders, others_at: PlacedCylinders) -> Array:
 
 
 def nearest(cylinders: PlacedCylinders, others_at: PlacedCylinders) -> tuple[Array, Array]:
-    """Return the points (k, 3) of the second cylinders nearest to the first ones, and the vectors
-    (k, 3) from these points to the first cylinders; zero for pairs that meet.
+    """Return the shortest vectors between cylinders.
+
+    Parameters
+    ----------
+    cylinders, others_at : PlacedCylinders
+        The cylinders in k places each.
+
+    Returns
+    -------
+    points : (k, 3) array
+        Points of the second cylinders, mm.
+    vectors : (k, 3) array
+        Vectors from there to the first cylinders; zero for pairs that meet.
     """
     adjacent = _Pairs(
         PlacedCylinders(

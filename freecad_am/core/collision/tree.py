@@ -79,14 +79,38 @@ def sizes(count: int) -> list[int]:
 
 
 def each_with_each(queries: int, nodes: int) -> tuple[Index, Index]:
-    """Return all pairs of queries and nodes: np.repeat takes many times as long."""
+    """Return all pairs of queries and nodes.
+
+    Parameters
+    ----------
+    queries, nodes : int
+        Their numbers.
+
+    Returns
+    -------
+    query, node : (queries nodes,) int array
+        The pairs.
+    """
     query, node = np.empty((2, queries, nodes), dtype=np.intp)
     query[:], node[:] = np.arange(queries)[:, None], np.arange(nodes)
     return query.ravel(), node.ravel()
 
 
 def below(query: Index, node: Index, count: int) -> tuple[Index, Index]:
-    """Return queries and nodes of the next level down, which has `count` nodes."""
+    """Return the pairs of the next level down.
+
+    Parameters
+    ----------
+    query, node : (k,) int array
+        Pairs of this level.
+    count : int
+        Number of nodes of the next level.
+
+    Returns
+    -------
+    query, node : int array
+        Each query with the children of its nodes.
+    """
     node = (node[:, None] * BRANCH + np.arange(BRANCH)).ravel()
     repeated = np.empty((len(query), BRANCH), dtype=np.intp)  # np.repeat takes many times as long
     repeated[:] = query[:, None]
@@ -97,6 +121,17 @@ def below(query: Index, node: Index, count: int) -> tuple[Index, Index]:
 
 
 def parts(query: Index, node: Index) -> Iterator[tuple[Index, Index]]:
-    """Yield the pairs in blocks of PAIRS."""
+    """Yield pairs in blocks of PAIRS.
+
+    Parameters
+    ----------
+    query, node : (k,) int array
+        The pairs.
+
+    Yields
+    ------
+    query, node : int array
+        A block.
+    """
     for begin in range(0, len(query), PAIRS):
         yield query[begin : begin + PAIRS], node[begin : begin + PAIRS]

@@ -262,12 +262,30 @@ class _Solid:
 
 
 def centre_line(bodies: Sequence[Body], start: Array, direction: Array, depth: float) -> Nodes:
-    """Return points and directions of the line through the middles of a solid's sections normal
-    to it.
+    """Return the line through the middles of a solid's sections normal to it.
 
-    It begins where the solid is on the plane through a point `start` (3,) with the unit
-    normal `direction`; depth: mm above that plane of the first section. Raises InputError
-    GUIDE_NOT_FOUND.
+    It begins where the solid is on the base plane.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The solid; several cannot have a centre line.
+    start : (3,) array
+        A point of the base plane, mm.
+    direction : (3,) array
+        Unit normal of the base plane.
+    depth : float
+        Height of the first section above the plane, mm.
+
+    Returns
+    -------
+    Nodes
+        Points and directions.
+
+    Raises
+    ------
+    InputError
+        GUIDE_NOT_FOUND if the sections form no such line.
     """
     solid = _Solid(bodies)
     name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
@@ -406,12 +424,33 @@ def prepare_guided(
     label: str,
     issues: tuple[Issue, ...] = (),
 ) -> SolidsOnHub:
-    """Return the bodies along a guide of edges, by default their centre line, which a note then
-    reports.
+    """Return bodies along a guide of edges, by default their centre line.
 
-    edges: points and unit tangents (n, 3) of each. The guide begins at the end that is lower
-    along `strategy.direction`; the frame has its Z along the guide at the first layer. Raises
-    the InputErrors of `chain_edges` and `centre_line`.
+    The guide begins at the end that is lower along `strategy.direction`; the frame has its Z
+    along the guide at the first layer. A note reports a centre line.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The bodies.
+    edges : Sequence[tuple[Array, Array]] or None
+        Points and unit tangents (n, 3) of each edge; None for the centre line.
+    strategy : SolidParameters
+        Layer height, direction and chord error.
+    label : str
+        Name of the part, for messages.
+    issues : tuple of Issue, optional
+        Issues to attach.
+
+    Returns
+    -------
+    SolidsOnHub
+        The bodies on the guide.
+
+    Raises
+    ------
+    InputError
+        As `chain_edges` and `centre_line`.
     """
     standing = prepare_stack(bodies, strategy, label, issues)
     direction = standing.groups[0].base.frame[:3, 2]

@@ -37,20 +37,51 @@ class Chart:
     flat: Array
 
     def wrap(self, points: Array) -> Array:
-        """Return the points (n, 3) in the part of points (n, 2) of the picture; outside it the
-        nearest triangle is extended.
+        """Return the points in the part for points of the picture.
+
+        Parameters
+        ----------
+        points : (n, 2) array
+            Points of the picture, mm; outside it the nearest triangle is extended.
+
+        Returns
+        -------
+        (n, 3) array
+            Points in the part, mm.
         """
         return self.to_part(self.find(points))
 
     def to_part(self, location: Place) -> Array:
-        """Return the points (n, 3) in the part at locations in the picture."""
+        """Return the points in the part at locations in the picture.
+
+        Parameters
+        ----------
+        location : Place
+            Triangles and shares of n points.
+
+        Returns
+        -------
+        (n, 3) array
+            Points in the part, mm.
+        """
         wrapped: Array = np.einsum(
             "nk,nkc->nc", location.share, self.mesh.vertices[self.mesh.faces[location.triangle]]
         )
         return wrapped
 
     def heading(self, location: Place) -> Array:
-        """Return the direction (n, 3) in the part of the picture's x, not of unit length."""
+        """Return the direction in the part of the picture's x.
+
+        Parameters
+        ----------
+        location : Place
+            Triangles and shares of n points.
+
+        Returns
+        -------
+        (n, 3) array
+            Vectors, not of unit length.
+        """
         corners, flat = (
             values[self.mesh.faces[location.triangle]] for values in (self.mesh.vertices, self.flat)
         )
@@ -167,8 +198,19 @@ class Charted:
 
     @abstractmethod
     def in_part(self, location: Place) -> tuple[Array, Array]:
-        """Return the points (n, 3) in the part of beads at locations of the chart, and the unit
-        normals (n, 3) there.
+        """Return the points in the part of beads at locations of the chart.
+
+        Parameters
+        ----------
+        location : Place
+            Triangles and shares of n points.
+
+        Returns
+        -------
+        points : (n, 3) array
+            Points in the part, mm.
+        normals : (n, 3) array
+            Unit normals of the layer there.
         """
 
     @property
@@ -241,10 +283,21 @@ class Charted:
 
 
 def axes(normals: Array) -> tuple[Array, Array]:
-    """Return the part's X (n, 3) projected onto layers with unit normals (n, 3), and the
-    direction to its left.
+    """Return the part's X and Y projected onto layers.
 
     Where a normal is along X, the part's Y replaces X.
+
+    Parameters
+    ----------
+    normals : (n, 3) array
+        Unit normals.
+
+    Returns
+    -------
+    x : (n, 3) array
+        Unit vectors within the layer.
+    left : (n, 3) array
+        Unit vectors to their left.
     """
     steep: Array = np.abs(normals[:, :1]) < MIN_HORIZONTAL
     along = np.where(steep, np.eye(3)[0], np.eye(3)[1])

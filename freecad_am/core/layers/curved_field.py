@@ -70,11 +70,29 @@ REPORTED_DISTORTION = 0.05  # distortion of a piece above which it is reported
 
 
 def slices(solids: SolidsOnHub, group: Group, strategy: SolidParameters) -> Iterator[Slice]:
-    """Yield the layers of a group of solids, outwards from the base plane and the surroundings
-    they touch, or from start faces.
+    """Yield the curved layers of a group of solids, outwards from their start.
 
-    A layer in pieces gives several slices of one number. Raises InputError TOO_FINE,
-    NOT_STANDING, NOT_CONNECTED.
+    The start is the base plane and the surroundings they touch, or start faces. A layer in
+    pieces gives several slices of one number.
+
+    Parameters
+    ----------
+    solids : SolidsOnHub
+        All solids, with the surroundings.
+    group : Group
+        The group.
+    strategy : SolidParameters
+        Layer height, cut and chord error.
+
+    Yields
+    ------
+    Slice
+        The layers in order.
+
+    Raises
+    ------
+    InputError
+        TOO_FINE, NOT_STANDING, NOT_CONNECTED, NOT_FOR_FAMILY.
     """
     _refuse(strategy)
     base, bodies = group.base, group.bodies

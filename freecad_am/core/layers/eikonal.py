@@ -38,24 +38,54 @@ class Voxels:
         return inside
 
     def places(self, nodes: Index) -> Array:
-        """Return the positions (n, 3) mm of nodes (n,) of the flat grid."""
+        """Return the positions of nodes.
+
+        Parameters
+        ----------
+        nodes : (n,) int array
+            Numbers in the flat grid.
+
+        Returns
+        -------
+        (n, 3) array
+            Positions, mm.
+        """
         positions: Array = self.origin + self.step * np.stack(
             np.unravel_index(nodes, self.solid.shape), axis=1
         )
         return positions
 
     def strides(self) -> tuple[int, int, int]:
-        """By how much the number of a node grows with each of its coordinates."""
+        """Return by how much the number of a node grows with each coordinate.
+
+        Returns
+        -------
+        tuple[int, int, int]
+            Strides along x, y and z.
+        """
         _, ny, nz = self.solid.shape
         return ny * nz, nz, 1
 
 
 def voxels(vertices: Array, triangles: Index, step: float) -> Voxels:
-    """Return the grid of a closed mesh: vertices (n, 3) mm, triangles (m, 3) counter-clockwise
-    seen from outside.
+    """Return the grid of a closed mesh.
 
     A node is inside where the mesh winds around it at least once: overlapping bodies are one,
     cavities are left out.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        Vertices, mm.
+    triangles : (m, 3) int array
+        Counter-clockwise seen from outside.
+    step : float
+        Distance from node to node, mm.
+
+    Returns
+    -------
+    Voxels
+        The grid.
     """
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     origin = low - (MARGIN_NODES + OFFSET_SHARE) * step
@@ -150,8 +180,27 @@ def links(grid: Voxels) -> Links:
 
 
 def arrival(linked: Links, step: float, seeds: Index, values: Array) -> Array:
-    """Return the distances (n,) mm of nodes from the seeds (k,) with the values (k,); inf where
-    no path leads.
+    """Return the distances of nodes from seeds, through the solid.
+
+    Parameters
+    ----------
+    linked : Links
+        The n nodes inside and their neighbours.
+    step : float
+        Distance from node to node, mm.
+    seeds : (k,) int array
+        Nodes with known distances.
+    values : (k,) array
+        Their distances, mm.
+
+    Returns
+    -------
+    (n,) array
+        Distances, mm; infinite where no path leads.
+
+    Notes
+    -----
+    Solves norm(grad u) = 1 with Godunov's upwind scheme, then with second differences.
     """
     u = np.full(len(linked.nodes) + 1, np.inf)
     u[seeds] = values

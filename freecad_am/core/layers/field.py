@@ -60,11 +60,26 @@ def stacks(solids: SolidsOnHub, strategy: FilledParameters) -> Iterator[Stack]:
 
 
 def footprints(group: Group, chord_error: float) -> list[list[Array]]:
-    """Return where each solid of a group leaves its base: closed curves (k, 3) in part
-    coordinates, first point not repeated.
+    """Return where each solid of a group leaves its base.
 
-    On planes the cut is a chord error above the base. Raises InputError OPEN_MESH,
-    GUIDE_TIGHT.
+    On planes the cut is a chord error above the base.
+
+    Parameters
+    ----------
+    group : Group
+        The group.
+    chord_error : float
+        Chord error, mm.
+
+    Returns
+    -------
+    list of list of (k, 3) array
+        Closed curves of each solid in part coordinates, mm, first point not repeated.
+
+    Raises
+    ------
+    InputError
+        OPEN_MESH, GUIDE_TIGHT.
     """
     base, surface = group.base, group.base.surface
     if isinstance(surface, Developable):

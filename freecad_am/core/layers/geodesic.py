@@ -114,8 +114,19 @@ class Cubes:
         return Mesh(vertices, faces)
 
     def sample(self, points: Array) -> tuple[Array, Array]:
-        """Return values (n,) and slopes (n, 3) of the field at points (n, 3), from the eight nodes
-        around each; NaN if any is unknown.
+        """Return values and slopes of the field at points.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            Points, mm.
+
+        Returns
+        -------
+        value : (n,) array
+            Interpolated from the eight nodes around; NaN if any is unknown.
+        slope : (n, 3) array
+            Derivatives, per mm.
         """
         position = (points - self.origin) / self.step
         cell = np.clip(np.floor(position).astype(np.intp), 0, np.array(self.shape) - 2)
@@ -162,11 +173,23 @@ LAYERS = 2  # of nodes past the surface
 
 
 def extrapolate(grid: Voxels, linked: Links, values: Array) -> Array:
-    """Extend the field with values (n,) at the nodes inside by LAYERS of nodes, to (nx, ny, nz);
-    NaN elsewhere.
+    """Extend a field by LAYERS of nodes beyond the solid.
 
-    The value at a new node is the mean of the linear extrapolations from its known
-    neighbours.
+    The value at a new node is the mean of the linear extrapolations from its known neighbours.
+
+    Parameters
+    ----------
+    grid : Voxels
+        The grid.
+    linked : Links
+        The n nodes inside.
+    values : (n,) array
+        Their values; infinite where unknown.
+
+    Returns
+    -------
+    (nx, ny, nz) array
+        The field; NaN elsewhere.
     """
     field = np.full(grid.solid.size, np.nan)
     field[linked.nodes] = np.where(np.isfinite(values), values, np.nan)
@@ -201,10 +224,24 @@ def _add_layer(grid: Voxels, field: Array, is_known: Mask) -> tuple[Array, Mask]
 
 
 def gradients(linked: Links, values: Array, step: float) -> Array:
-    """Return the slope (n, 3) of values (n,) of the nodes inside.
+    """Return the slopes of values at the nodes inside.
 
-    By both neighbours along each axis, or the one that exists; without either, by the slopes
-    of the adjacent nodes; 0 if these have none either.
+    Both neighbours along each axis give the slope, or the one that exists; without either, the
+    slopes of the adjacent nodes; 0 if these have none either.
+
+    Parameters
+    ----------
+    linked : Links
+        The n nodes inside and their neighbours.
+    values : (n,) array
+        Values at the nodes, NaN where unknown.
+    step : float
+        Distance from node to node, mm.
+
+    Returns
+    -------
+    (n, 3) array
+        Slopes, per mm.
     """
     padded = np.append(values, np.nan)
     slopes = np.zeros((len(values), 3))
@@ -273,7 +310,20 @@ class GeodesicField:
             yield from self._flattened(component, inside[vertex_numbers], HALVINGS)
 
     def onto(self, points: Array, distance: float) -> Array:
-        """Points (n, 3) moved along the way through the solid to where u is the distance."""
+        """Move points along the path through the solid to a distance.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            Points, mm.
+        distance : float
+            Distance u from the start, mm.
+
+        Returns
+        -------
+        (n, 3) array
+            Points at which u is the distance, after three Newton steps.
+        """
         for _ in range(3):
             value, slope = self.cubes.sample(points)
             value, slope = _replace_nan(value, distance), _replace_nan(slope, 0.0)
@@ -282,7 +332,18 @@ class GeodesicField:
         return points
 
     def directions(self, points: Array) -> Array:
-        """Return unit build directions (n, 3): the smoothed direction of the fastest growth of u."""
+        """Return build directions: the smoothed direction of the fastest growth of u.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            Points, mm.
+
+        Returns
+        -------
+        (n, 3) array
+            Unit vectors.
+        """
         direction = np.stack(
             [_replace_nan(component.sample(points)[0], 0.0) for component in self.gradient], axis=1
         )
@@ -323,11 +384,28 @@ class _Half(NamedTuple):
 def field(
     solids: Sequence[SolidMesh], start: Array, step: float, through: bool = True
 ) -> GeodesicField:
-    """Return the distance through solids, which may touch or overlap, from triangles (k, 3, 3)
-    at their start.
+    """Return the distance through solids from their start.
 
-    step: mm of the grid. through=False: straight distance. Raises ValueError if no node of
-    the grid is near the start.
+    Parameters
+    ----------
+    solids : sequence of SolidMesh
+        The solids, which may touch or overlap.
+    start : (k, 3, 3) array
+        Triangles at the start, mm.
+    step : float
+        Distance from node to node, mm.
+    through : bool, optional
+        Whether the distance is measured through the solid; otherwise straight.
+
+    Returns
+    -------
+    GeodesicField
+        The field.
+
+    Raises
+    ------
+    ValueError
+        If no node of the grid is near the start.
     """
     searches = [Search(solid, 2.0 * step) for solid in solids]
     first_vertex = np.cumsum([0, *(len(solid.vertices) for solid in solids)])

@@ -48,7 +48,18 @@ class AlongLayer(Flat):
         return Wrapped(points, np.tile(self.pose[:3, 2], (len(flat), 1)), np.zeros(len(flat)))
 
     def heights(self, flat: Array) -> Array:
-        """Return the distance (n,) mm from this plane to the next at points (n, 2)."""
+        """Return the distance from this plane to the next.
+
+        Parameters
+        ----------
+        flat : (n, 2) array
+            Points of the plane, mm.
+
+        Returns
+        -------
+        (n,) array
+            Distances, mm.
+        """
         heights: Array = self.height + flat @ self.slope
         return heights
 
@@ -63,10 +74,22 @@ class AlongLayer(Flat):
 
 
 def between(guide: Guide, low: float, high: float, share: float = 0.5) -> AlongLayer:
-    """Return the layer on the plane at `low` mm along a guide, up to the plane at `high`.
+    """Return the layer between two planes along a guide.
 
-    Its height is measured where it is cut, a share of the distance up, along the normal
-    there.
+    Parameters
+    ----------
+    guide : Guide
+        The guide.
+    low, high : float
+        Positions of the planes along the guide, mm.
+    share : float, optional
+        Share of the distance at which the layer is cut; its height is measured along the
+        normal there.
+
+    Returns
+    -------
+    AlongLayer
+        The layer on the lower plane.
     """
     start, middle, top = (guide.frame(s) for s in (low, low + share * (high - low), high))
     height, slope = 0.0, np.zeros(2)
@@ -137,7 +160,23 @@ class AlongCuts(PlaneCuts):
 
 
 def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> list[Slice]:
-    """Return the layers of bodies on the planes 0, h, 2 h ... mm along the guide of the base.
+    """Return the layers of bodies on planes normal to a guide.
+
+    The planes are at 0, h, 2 h ... mm along the guide.
+
+    Parameters
+    ----------
+    base : Base
+        The base with the guide.
+    bodies : sequence of Body
+        The bodies.
+    strategy : SolidParameters
+        Layer height, cut, margin and band.
+
+    Returns
+    -------
+    list of Slice
+        The layers in order.
 
     Raises
     ------

@@ -26,11 +26,26 @@ Loops = TypeVar("Loops")
 def within_margin(
     below: Sequence[Loops], height: float, margin: float, moved: Callable[[Loops, float], Loops]
 ) -> list[tuple[float, Loops]]:
-    """Return the loops of the last layer, and of the layers below within the margin, moved up,
-    with the growth of each.
+    """Return the loops that a layer with margin is grown from.
 
-    Growing within a layer covers the margin around the part; a surface that ends below has
-    the margin above it.
+    Growing within a layer covers the margin around the part; a surface that ends below has the
+    margin above it.
+
+    Parameters
+    ----------
+    below : sequence of Loops
+        Loops of the layers so far, the last one is the layer itself.
+    height : float
+        Layer height, mm.
+    margin : float
+        Machining margin, mm.
+    moved : callable
+        Returns loops moved up by a distance, mm.
+
+    Returns
+    -------
+    list of (float, Loops)
+        Growth in mm and loops, the layer itself first.
     """
     last_layer = len(below) - 1
     lots = [(margin, below[last_layer])]
@@ -45,8 +60,23 @@ def within_margin(
 def sections(
     cuts: Sequence[Iterator[list[Array]]], strategy: SolidParameters
 ) -> Iterator[tuple[int, tuple[Region, ...], tuple[Issue, ...]]]:
-    """Yield the layers with regions, from the loops (n, 2) of several bodies: number, regions,
-    repairs.
+    """Yield the layers of several bodies that have regions.
+
+    Parameters
+    ----------
+    cuts : Sequence[Iterator[list[Array]]]
+        Loops (n, 2) of each layer, for each body.
+    strategy : SolidParameters
+        Layer height, margin and chord error.
+
+    Yields
+    ------
+    number : int
+        Number of the layer.
+    regions : tuple of Region
+        Its regions.
+    issues : tuple of Issue
+        Repairs.
     """
     below: list[list[Array]] = []
     for number, loops in enumerate(zip(*cuts)):
@@ -60,10 +90,27 @@ def sections(
 def regions_of(
     lots: Sequence[tuple[float, Sequence[Array]]], margin: float, chord_error: float, number: int
 ) -> tuple[tuple[Region, ...], tuple[Issue, ...]]:
-    """Return the regions of a layer from loops (n, 2) and their growth (mm), without slits
-    thinner than the chord error.
+    """Return the regions of a layer from loops and their growth.
 
-    Also returns the issues of repairs.
+    Slits thinner than the chord error are closed.
+
+    Parameters
+    ----------
+    lots : Sequence[tuple[float, Sequence[Array]]]
+        Growth in mm and loops (n, 2).
+    margin : float
+        Machining margin, mm.
+    chord_error : float
+        Chord error, mm.
+    number : int
+        Number of the layer, for issues.
+
+    Returns
+    -------
+    regions : tuple of Region
+        The regions.
+    issues : tuple of Issue
+        Repairs.
     """
     issues: tuple[Issue, ...] = ()
     borders: list[Array] = []

@@ -80,8 +80,26 @@ def pieces(sheet: PatchWall, strategy: CladdingParameters) -> list[Piece]:
 
 
 def slices(sheet: PatchWall, sheet_piece: Piece, strategy: CladdingParameters) -> Iterator[Slice]:
-    """Yield the layers of a piece outwards, each on a FaceLayer. Raises InputError FOLDED if
-    they reach over a hollow's middle.
+    """Yield the layers of a piece of faces, outwards.
+
+    Parameters
+    ----------
+    sheet : PatchWall
+        The faces.
+    sheet_piece : Piece
+        A piece that can be flattened.
+    strategy : CladdingParameters
+        Number of layers, layer height and chord error.
+
+    Yields
+    ------
+    Slice
+        The layers, each on a FaceLayer.
+
+    Raises
+    ------
+    InputError
+        FOLDED if layers reach over a hollow's middle.
     """
     mesh = sheet_piece.mesh
     for number in range(strategy.layers):

@@ -57,10 +57,21 @@ def flatten(mesh: Mesh) -> Flattened:
 
 
 def align_to_x(mesh: Mesh, flat: Array) -> Array:
-    """Return flat points (n, 2) moved about the origin and turned so that x runs as the part's X
-    does, as well as possible.
+    """Turn flat points so that x runs as the part's X does, as well as possible.
 
     Where the piece is normal to X, the part's Y replaces X.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The piece in the part.
+    flat : (n, 2) array
+        Its vertices on the plane, mm.
+
+    Returns
+    -------
+    (n, 2) array
+        The points about the origin, turned.
     """
     up = _area_vector(mesh)
     up /= max(float(np.linalg.norm(up)), 1e-300)
@@ -83,8 +94,20 @@ def align_to_x(mesh: Mesh, flat: Array) -> Array:
 
 
 def measure_stretch(mesh: Mesh, flat: Array) -> tuple[Array, Array]:
-    """Return the minimum and maximum stretch (m,) of each triangle by flattening; negative where
-    it is turned over.
+    """Return the stretch of each triangle by flattening.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The piece in the part, m triangles.
+    flat : (n, 2) array
+        Its vertices on the plane, mm.
+
+    Returns
+    -------
+    low, high : (m,) array
+        Smallest and largest ratio of lengths; the smallest is negative where a triangle is
+        turned over.
     """
     local = _corners(mesh)
     sides_in_part, sides_flat = _sides(local), _sides(flat[mesh.faces])
@@ -233,10 +256,21 @@ def stretch_of(flat: Flattened, weight: Array) -> float:
 
 
 def split_flattenable(mesh: Mesh, max_stretch: float, halvings: int = HALVINGS) -> Iterator[Mesh]:
-    """Yield connected pieces of a mesh that flattening stretches or squeezes by at most a share
-    `max_stretch`.
+    """Yield connected pieces of a mesh that can be flattened.
 
-    After HALVINGS a piece is returned as it is.
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    max_stretch : float
+        Largest share by which flattening may stretch or squeeze.
+    halvings : int, optional
+        How often a piece is halved; after that it is returned as it is.
+
+    Yields
+    ------
+    Mesh
+        The pieces.
     """
     for component in connected_components_of(mesh):
         if halvings == 0 or _is_flattenable(component, max_stretch):
@@ -266,10 +300,23 @@ def connected_components_of(mesh: Mesh) -> Iterator[Mesh]:
 def cut_mesh(
     mesh: Mesh, middle: Array, across: Array, where: Callable[[Array], Mask] | None = None
 ) -> Mesh:
-    """Cut the mesh by the plane through a point (3,) with a unit normal (3,).
+    """Cut a mesh by a plane.
 
-    With `where`(points (k, 3)) it stays connected at points of the cut for which that is
-    False.
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    middle : (3,) array
+        A point of the plane, mm.
+    across : (3,) array
+        Unit normal of the plane.
+    where : callable, optional
+        Returns for points (k, 3) of the cut whether it opens there; None for everywhere.
+
+    Returns
+    -------
+    Mesh
+        The mesh with double vertices along the cut.
     """
     value = (mesh.vertices - middle) @ across
     border = np.zeros(len(value), dtype=bool)

@@ -104,10 +104,28 @@ def count(top: float, strategy: SolidParameters) -> int:
 
 
 def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
-    """Yield the layers of bodies upwards, on the planes 0, h, 2 h ... mm above the base; layers
-    without regions are left out.
+    """Yield the layers of bodies upwards, on planes above the base.
 
-    Raises InputError TOO_LOW if no layer reaches into the bodies.
+    The planes are at 0, h, 2 h ... mm; layers without regions are left out.
+
+    Parameters
+    ----------
+    base : Base
+        The base.
+    bodies : sequence of Body
+        The bodies.
+    strategy : SolidParameters
+        Layer height, cut, margin and chord error.
+
+    Yields
+    ------
+    Slice
+        The layers in order.
+
+    Raises
+    ------
+    InputError
+        TOO_LOW if no layer reaches into the bodies.
     """
     cuts = [PlaneCuts(base.inside(body.vertices), body.triangles) for body in bodies]
     top = max(cut.top for cut in cuts)
@@ -140,7 +158,26 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Ite
 def cut_together(
     cuts: Sequence[PlaneCuts], layers: int, strategy: SolidParameters
 ) -> Iterator[tuple[int, tuple[Region, ...], tuple[Issue, ...]]]:
-    """Yield the first `layers` layers of bodies that have regions: number, regions, repairs."""
+    """Yield the layers of bodies that have regions.
+
+    Parameters
+    ----------
+    cuts : sequence of PlaneCuts
+        The bodies prepared for sections.
+    layers : int
+        Number of layers.
+    strategy : SolidParameters
+        Layer height, cut, margin and chord error.
+
+    Yields
+    ------
+    number : int
+        Number of the layer.
+    regions : tuple of Region
+        Its regions.
+    issues : tuple of Issue
+        Repairs.
+    """
     heights: Array = strategy.layer_height * (
         np.arange(layers, dtype=np.float64) + strategy.share_of_cut
     )
@@ -191,10 +228,25 @@ def group_of(solids: SolidsOnHub) -> Group | None:
 
 
 def slabs(group: Group, layer_height: float, points: Array, volumes: Array) -> Slabs:
-    """Return the volumes of bodies in plane layers.
+    """Return the volumes of bodies and deposit in plane layers.
 
-    Deposits of the volumes (n,) mm3 end at points (n, 3) of the part on those planes. Bodies
-    that overlap count twice there.
+    Bodies that overlap count twice there.
+
+    Parameters
+    ----------
+    group : Group
+        The bodies and their base.
+    layer_height : float
+        Layer height, mm.
+    points : (n, 3) array
+        Ends of deposits on the planes, in part coordinates, mm.
+    volumes : (n,) array
+        Volumes of the deposits, mm3.
+
+    Returns
+    -------
+    Slabs
+        Volumes of each layer.
     """
     top = max(float(group.base.inside(body.vertices)[:, 2].max()) for body in group.bodies)
     layer = np.maximum(np.rint(group.base.inside(points)[:, 2] / layer_height), 0).astype(np.intp)
@@ -215,8 +267,24 @@ def slabs(group: Group, layer_height: float, points: Array, volumes: Array) -> S
 
 
 def volumes_below(vertices: Array, triangles: Index, heights: Sequence[float] | Array) -> Array:
-    """Return the volumes (k,) mm3 of a closed mesh, with outward facets, below heights (k,).
+    """Return the volumes of a closed mesh below heights.
 
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        Vertices, mm.
+    triangles : (m, 3) int array
+        Triangles with outward normals.
+    heights : (k,) array
+        Heights, mm.
+
+    Returns
+    -------
+    (k,) array
+        Volumes, mm3.
+
+    Notes
+    -----
     By the divergence of (0, 0, z - height), which is 0 on the plane itself: each facet counts
     by its part below.
     """
@@ -245,10 +313,20 @@ def _volume_below(corners: Array, area: Array, height: float) -> float:
 
 
 def outline(group: Group, height: float) -> list[Array]:
-    """Return the cut of the bodies by the plane `height` mm above the base: closed loops (n, 2),
-    first point repeated.
+    """Return the cut of bodies by a plane above the base.
 
-    Each body is cut separately, in the frame of the base.
+    Parameters
+    ----------
+    group : Group
+        The bodies and their base.
+    height : float
+        Height above the base, mm.
+
+    Returns
+    -------
+    list of (n, 2) array
+        Closed loops in the frame of the base, mm, first point repeated; each body is cut
+        separately.
     """
     cuts = [PlaneCuts(group.base.inside(body.vertices), body.triangles) for body in group.bodies]
     loops = [loop for cut in cuts for loop in next(cut.loops([height]))]

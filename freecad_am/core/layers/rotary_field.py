@@ -123,8 +123,29 @@ CUT = 0.25  # share of the chord error, of cuts
 
 
 def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[Slice]:
-    """The layers of a solid from the hub outwards, at 0, d, 2 d ... mm; those without any region are left out. InputError
-    APEX_INSIDE, TOO_FAR_ROUND."""
+    """Yield the layers of a solid from the hub outwards.
+
+    The layers are at 0, h, 2 h ... mm from the hub; layers without regions are left out.
+
+    Parameters
+    ----------
+    base : Base
+        The hub.
+    body : Body
+        The solid.
+    strategy : DevelopableParameters
+        Layer height, margin and chord error.
+
+    Yields
+    ------
+    Slice
+        The layers in order.
+
+    Raises
+    ------
+    InputError
+        APEX_INSIDE, TOO_FAR_ROUND.
+    """
     assert isinstance(base.surface, Developable)
     azimuth = middle_azimuth(base, body.vertices)
     facets = Facets(base.surface, base.inside(body.vertices), body.triangles, body.name)

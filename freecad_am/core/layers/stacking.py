@@ -53,10 +53,26 @@ class Stacked(NamedTuple):
 def prepare_stack(
     bodies: Sequence[Body], strategy: SolidParameters, label: str, issues: tuple[Issue, ...] = ()
 ) -> SolidsOnHub:
-    """Return the bodies on the plane through their lowest point.
+    """Return bodies on the plane through their lowest point.
 
-    The Z of the frame is the stacking direction, its origin in the middle under them. With
-    the direction `auto` a note reports the choice and its reason.
+    The Z of the frame is the stacking direction, its origin in the middle under them. With the
+    direction `auto` a note reports the choice and its reason.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The bodies.
+    strategy : SolidParameters
+        Direction and chord error.
+    label : str
+        Name of the part, for messages.
+    issues : tuple of Issue, optional
+        Issues to attach.
+
+    Returns
+    -------
+    SolidsOnHub
+        The bodies on one base.
     """
     requested = strategy.stacking()
     if requested is None:
@@ -166,11 +182,25 @@ def _stability(corners: Array, direction: Array, standing: float, middle: Array)
 
 
 def facets(bodies: Sequence[Body], slit: float | None) -> tuple[Array, Array, Array]:
-    """Return corners (m, 3, 3), unit normals (m, 3) and areas (m,) of all triangles with an
-    area.
+    """Return all triangles that have an area.
 
-    Area covered by another body, within a slit of `slit` mm, does not count: touching bodies
-    are one. None: each body counts separately.
+    Area covered by another body, within a slit, does not count: touching bodies are one.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The bodies.
+    slit : float or None
+        Width of slits that count as closed, mm; None if each body counts separately.
+
+    Returns
+    -------
+    corners : (m, 3, 3) array
+        Corners in part coordinates, mm.
+    normals : (m, 3) array
+        Unit normals.
+    areas : (m,) array
+        Free areas, mm2.
     """
     corners = np.concatenate([body.corners() for body in bodies])
     normal = doubled_areas(corners)
@@ -261,10 +291,27 @@ def _candidates(normals: Array, areas: Array) -> list[Array]:
 def evaluate_direction(
     direction: Array, corners: Array, normals: Array, areas: Array, steep: float, standing: float
 ) -> Stacked:
-    """Return the figures of a unit direction (3,) from the facets of a part.
+    """Return the figures of a stacking direction.
 
-    Unsupported facets overhang by more than `steep`, the sine of an angle from the direction,
-    and reach more than `standing` mm above the lowest point.
+    Parameters
+    ----------
+    direction : (3,) array
+        Unit vector.
+    corners : (m, 3, 3) array
+        Corners of the facets, mm.
+    normals : (m, 3) array
+        Their unit normals.
+    areas : (m,) array
+        Their areas, mm2.
+    steep : float
+        Sine of the overhang beyond which a facet is unsupported.
+    standing : float
+        Facets at most this far above the lowest point are supported, mm.
+
+    Returns
+    -------
+    Stacked
+        Unsupported area and height.
     """
     heights = corners @ direction
     low, high = float(heights.min()), float(heights.max())
@@ -325,8 +372,19 @@ class Leaning(NamedTuple):
     total_area: float
 
     def steeper_than(self, angle: float) -> tuple[Array, float]:
-        """Return the corners (k, 3, 3) of facets that overhang by more than an angle, rad, and their
-        area, mm2.
+        """Return the facets that overhang by more than an angle.
+
+        Parameters
+        ----------
+        angle : float
+            The angle, rad.
+
+        Returns
+        -------
+        corners : (k, 3, 3) array
+            Their corners, mm.
+        area : float
+            Their area, mm2.
         """
         first_steeper = int(np.searchsorted(self.lean, angle + MIN_LEAN_RAD, side="right"))
         return self.corners[first_steeper:], float(self.area[first_steeper:].sum())
@@ -335,12 +393,26 @@ class Leaning(NamedTuple):
 def find_leaning(
     bodies: Sequence[Body], base: Base, standing: float, slit: float | None = None
 ) -> Leaning:
-    """Return the facets of bodies that face against the stacking direction of layers on a base,
-    or along a guide.
+    """Return the facets of bodies that overhang.
 
-    The overhang of a wall is 0, of a ceiling a right angle. Facets at most `standing` mm
-    above the lowest point are carried by the surface under the part. slit: as in
-    `stacking.facets`.
+    The overhang of a wall is 0, of a ceiling a right angle.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The bodies.
+    base : Base
+        The base; along a guide the stacking direction follows it.
+    standing : float
+        Facets at most this far above the lowest point are carried by the surface under the
+        part, mm.
+    slit : float or None, optional
+        As in `facets`.
+
+    Returns
+    -------
+    Leaning
+        The facets, rising overhang.
     """
     corners, normals, areas = facets(bodies, slit)
     inside = base.inside(corners)

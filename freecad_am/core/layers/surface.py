@@ -47,13 +47,35 @@ class LayerSurface(Protocol):
         """Whether it bends as it comes, so that directions may depart from its normals to turn slower."""
 
     def unroll(self, points: Array) -> Array:
-        """Return points (n, 3) of the surface unrolled, (n, 2) mm."""
+        """Unroll points of the surface.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            Points in the frame of the field, mm.
+
+        Returns
+        -------
+        (n, 2) array
+            Points of the plane, mm.
+        """
 
     def wrap(self, flat: Array) -> Wrapped:
         """A curve (n, 2) on the plane brought back."""
 
     def heights(self, flat: Array) -> Array | None:
-        """Return the layer heights (n,) mm at points (n, 2); None if the layer height is constant."""
+        """Return the layer heights at points.
+
+        Parameters
+        ----------
+        flat : (n, 2) array
+            Points of the plane, mm.
+
+        Returns
+        -------
+        (n,) array or None
+            Heights, mm; None if the layer height is constant.
+        """
 
     def for_sheet(self, flat: Array, sheet: float) -> LayerSurface:
         """Return the surface for a curve (n, 2) about u = `sheet` mm (`strip.Period`)."""
@@ -65,8 +87,20 @@ class LayerSurface(Protocol):
         """In how many pieces (n - 1,) the edges of a polyline (n, 2) keep within the chord error, mm, when wrapped."""
 
     def axes(self, normals: Array) -> tuple[Array, Array]:
-        """Two unit directions (n, 3) each within the surface where it has these normals (n, 3), at right angles, the second
-        to the left of the first seen from outside."""
+        """Return two directions within the surface, at right angles.
+
+        Parameters
+        ----------
+        normals : (n, 3) array
+            Unit normals.
+
+        Returns
+        -------
+        x : (n, 3) array
+            Unit vectors.
+        left : (n, 3) array
+            Unit vectors to the left of the first, seen from outside.
+        """
 
 
 class Slice(NamedTuple):
@@ -91,8 +125,13 @@ class Slice(NamedTuple):
 
     @property
     def borders(self) -> list[tuple[Array, bool]]:
-        """The borders of its regions, (n, 2) on the plane, and whether each is closed; around the
-        hub in all adjacent turns.
+        """Return the borders of the layer's regions.
+
+        Returns
+        -------
+        list of ((n, 2) array, bool)
+            Borders on the plane, mm, and whether each is closed; around a hub in all
+            adjacent turns.
         """
         curves = []
         for region in self.regions:
@@ -183,8 +222,17 @@ def _overhanging_regions(
 
 
 def common_regions(neighbours: Sequence[Sequence[Region]]) -> tuple[Region, ...]:
-    """Return the common regions of all near layers, away from tops and bottoms. A missing layer
-    is an empty sequence.
+    """Return the common regions of adjacent layers, away from tops and bottoms.
+
+    Parameters
+    ----------
+    neighbours : sequence of sequence of Region
+        Regions of each layer; a missing layer is an empty sequence.
+
+    Returns
+    -------
+    tuple of Region
+        The common regions; empty if any layer is missing.
     """
     if not all(neighbours):
         return ()

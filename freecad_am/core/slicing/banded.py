@@ -18,7 +18,22 @@ from ..types import Array
 
 
 def refuse_too_many(layers: int, height: float, label: str) -> None:
-    """InputError LAYER_HEIGHT once there are as many layers as may be."""
+    """Reject more layers than allowed.
+
+    Parameters
+    ----------
+    layers : int
+        Number of layers before the next one.
+    height : float
+        Layer height, mm.
+    label : str
+        Name of the part, for the message.
+
+    Raises
+    ------
+    InputError
+        LAYER_HEIGHT at MOST_LAYERS layers.
+    """
     if layers >= MOST_LAYERS:
         raise InputError(
             "LAYER_HEIGHT",
@@ -63,12 +78,34 @@ def smooth_between(
     bend: Array | None = None,
     closed: bool = True,
 ) -> Array:
-    """Return x (n,) that minimises |x - target|^2 + weight |second differences + bend|^2 with
-    low <= x <= high.
+    """Return the smoothest values between bounds.
 
-    bend: second differences of the datum from which x is measured, none by default; (n,), or
-    (n - 2,) at the points between the ends. closed: x is periodic. Alternating directions: a
-    smooth x and one within the bounds approach each other. The smooth one is returned.
+    Minimises norm(x - target)^2 + weight norm(second differences + bend)^2 with low <= x <=
+    high.
+
+    Parameters
+    ----------
+    target : (n,) array
+        Values to stay near.
+    low, high : (n,) array
+        Bounds.
+    weight : float
+        Weight of the second differences.
+    bend : (n,) or (n - 2,) array or None, optional
+        Second differences of the datum from which x is measured, at all points or without
+        the ends; None for a straight datum.
+    closed : bool, optional
+        Whether x is periodic.
+
+    Returns
+    -------
+    (n,) array
+        The smooth values, within the bounds up to the tolerance.
+
+    Notes
+    -----
+    Alternating directions: a smooth x and one within the bounds approach each other. The smooth
+    one is returned.
     """
     n = len(target)
     if closed:
@@ -95,9 +132,24 @@ def smooth_between(
 
 
 def lightest(trial: Callable[[int], Layer | None], start: int, limit: float) -> Layer | None:
-    """The layer of the lightest weight that keeps the limit, searched from `start`, or the one that turns least.
+    """Return the layer of the lightest weight that keeps the limit.
 
-    A heavier weight turns less until the band stops it; too heavy a one leaves the band (`trial` gives None).
+    A heavier weight turns less until the band stops it; too heavy a weight leaves the band.
+
+    Parameters
+    ----------
+    trial : callable
+        Returns the layer for an index of WEIGHTS, None if it leaves the band.
+    start : int
+        Index at which the search begins.
+    limit : float
+        Largest turn within the wall, rad/mm.
+
+    Returns
+    -------
+    Layer or None
+        The layer, or the one that turns least if none keeps the limit; None if all leave
+        the band.
     """
     best = trial(start)
     for index in range(start - 1, -1, -1):

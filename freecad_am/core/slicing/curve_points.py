@@ -25,11 +25,24 @@ HALVINGS = 12
 
 
 def sample_within_chord(curve: SpaceCurve, low: float, high: float, chord_error: float) -> Array:
-    """Return parameters (n,) from low to high, rising, including every corner between.
+    """Return parameters of a curve whose chords keep the chord error.
 
-    The chords are off by at most `chord_error` mm, the outline of the points by 2
-    TOLERANCE_MM. Segments are shorter where the curve bends more. On a closed curve high may
-    be beyond the last node.
+    Segments are shorter where the curve bends more.
+
+    Parameters
+    ----------
+    curve : SpaceCurve
+        The curve.
+    low, high : float
+        Ends of the parameter; on a closed curve `high` may be beyond the last node.
+    chord_error : float
+        Largest distance of the curve from its chords, mm.
+
+    Returns
+    -------
+    (n,) array
+        Rising parameters from low to high, with every corner. The outline of the points is
+        off by at most 2 TOLERANCE_MM.
     """
     corners = curve.w[curve.corners]
     if curve.closed:

@@ -19,7 +19,20 @@ ROUNDS = 14
 
 
 def finer_grid(curve: SpaceCurve, within: float = TOLERANCE_MM) -> Array:
-    """Parameters in the middle of the arcs that are off by more than `within` mm."""
+    """Return the middles of arcs that are not accurate enough.
+
+    Parameters
+    ----------
+    curve : SpaceCurve
+        The curve.
+    within : float, optional
+        Largest error, mm.
+
+    Returns
+    -------
+    (k,) array
+        Parameters.
+    """
     coarse = (curve.interpolation_error() > within) & (curve.span > MIN_ARC_SHARE * curve.period)
     middle: Array = curve.w[:-1][coarse] + 0.5 * curve.span[coarse]
     return middle
@@ -37,12 +50,31 @@ def intersect_implicit(
     v: Array,
     label: str = "wall",
 ) -> WallLayer:
-    """Return the curve in which the wall finally leaves the substrate as u rises through
-    `u_range`.
+    """Return the curve in which the wall finally leaves the substrate.
 
-    v: (m,) from one seam to the next; nodes are added where cubic arcs between them would not
-    follow the curve. Exact to rounding at the nodes. Raises InputError NO_INTERSECTION if the
-    wall does not touch the substrate.
+    Parameters
+    ----------
+    surface : Surface
+        The wall.
+    substrate : Implicit
+        The substrate as an implicit surface.
+    u_range : tuple[float, float]
+        Range of u; the wall leaves the substrate as u rises.
+    v : (m,) array
+        Parameters from one seam to the next; nodes are added where cubic arcs between them
+        would not follow the curve.
+    label : str, optional
+        Name of the wall, for messages.
+
+    Returns
+    -------
+    WallLayer
+        The first layer, exact to rounding at the nodes.
+
+    Raises
+    ------
+    InputError
+        NO_INTERSECTION if the wall does not touch the substrate.
     """
     for _ in range(ROUNDS):
         u, slope = _find_exit(surface, substrate, u_range, v, label)
@@ -91,12 +123,32 @@ def _find_exit(
 def interpolate_polyline(
     surface: Surface, points: Array, corner: float = np.radians(20.0), label: str = "wall"
 ) -> WallLayer:
-    """Return the layer through a closed chain of points (m, 3) on the wall, in either direction,
-    the first not repeated.
+    """Return the layer through a closed chain of points on the wall.
 
-    Between the points, smooth curves run from corner to corner, where the chain turns by more
-    than `corner` (rad). Raises InputError NOT_AROUND if the chain does not run once around
-    the wall without reversing in v.
+    Between the points, smooth curves run from corner to corner.
+
+    Parameters
+    ----------
+    surface : Surface
+        The wall.
+    points : (m, 3) array
+        The chain in either direction, the first point not repeated, mm.
+    corner : float, optional
+        Turn beyond which a point is a corner, rad.
+    label : str, optional
+        Name of the wall, for messages.
+
+    Returns
+    -------
+    WallLayer
+        The layer.
+
+    Raises
+    ------
+    InputError
+        NOT_AROUND if the chain does not run once around the wall without reversing in v.
+    ValueError
+        If the wall is open in v.
     """
     if surface.period is None:
         raise ValueError("a wall that is open in v has no closed layers")

@@ -12,12 +12,33 @@ from ..types import Array
 
 
 def arc_length_levels(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]:
-    """Return the arc lengths of the beads of each layer, the first at the base, and the length
-    left over at the top, mm.
+    """Return the arc lengths of the beads of each layer, equally spaced along the wall.
 
     A wall that is a whole number of layer heights long has its last layer on its end. The
-    closing of a top on the axis adds none. Raises InputError 'LAYER_HEIGHT' if the layer
-    height is larger than the wall is long.
+    closing of a top on the axis adds none.
+
+    Parameters
+    ----------
+    meridian : Meridian
+        The meridian of the wall.
+    layer_height : float
+        Layer height along the wall, mm.
+
+    Returns
+    -------
+    levels : list of (1,) array
+        Arc length of the bead of each layer, the first at the base, mm.
+    rest : float
+        Length left over at the top, mm.
+
+    Raises
+    ------
+    InputError
+        LAYER_HEIGHT if the layer height is larger than the wall is long.
+
+    References
+    ----------
+    Chalvin 2020, section 2.1.
     """
     if layer_height > meridian.length:
         raise InputError(
@@ -38,10 +59,33 @@ def arc_length_levels(meridian: Meridian, layer_height: float) -> tuple[list[Arr
 
 
 def iso_height_levels(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]:
-    """Arc lengths of the beads of each layer, from the lowest plane up, and the height left at the top. mm.
+    """Return the arc lengths of the beads of each layer, equally spaced along the axis.
 
-    A plane that cuts the wall more than once gives as many beads, in the order of the wall from the platform up.
-    Raises InputError 'LAYER_HEIGHT' when the layer height is larger than the wall is high.
+    A plane that cuts the wall more than once gives as many beads, in the order of the wall from
+    the platform up.
+
+    Parameters
+    ----------
+    meridian : Meridian
+        The meridian of the wall.
+    layer_height : float
+        Layer height along the axis, mm.
+
+    Returns
+    -------
+    levels : list of array
+        Arc lengths of the beads of each layer, from the lowest plane up, mm.
+    rest : float
+        Height left over at the top, mm.
+
+    Raises
+    ------
+    InputError
+        LAYER_HEIGHT if the layer height is larger than the wall is high.
+
+    References
+    ----------
+    Chalvin 2020, section 2.1.
     """
     low, high = float(meridian.points[:, 1].min()), float(meridian.points[:, 1].max())
     if layer_height > high - low:
@@ -59,8 +103,21 @@ def iso_height_levels(meridian: Meridian, layer_height: float) -> tuple[list[Arr
 
 
 def spacing(meridian: Meridian, below: Array, layer: Array) -> Array:
-    """Return the distance (k,) mm in the meridian's plane of each bead of a layer from the
-    nearest bead below.
+    """Return the distances of the beads of a layer from the layer below.
+
+    Parameters
+    ----------
+    meridian : Meridian
+        The meridian of the wall.
+    below : (m,) array
+        Arc lengths of the beads below, mm.
+    layer : (k,) array
+        Arc lengths of the beads of the layer, mm.
+
+    Returns
+    -------
+    (k,) array
+        Distance from the nearest bead below in the meridian's plane, mm.
     """
     r, h, _ = meridian.at(np.r_[below, layer])
     n = len(below)

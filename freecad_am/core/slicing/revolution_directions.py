@@ -24,19 +24,55 @@ BLOCK_SIZE, PARTS = (
 
 
 def local(tangents: Array) -> Array:
-    """Tangent to the wall: (n, 3) from meridian tangents (n, 2)."""
+    """Return the directions tangent to the wall.
+
+    Parameters
+    ----------
+    tangents : (n, 2) array
+        Meridian tangents, radius and axis.
+
+    Returns
+    -------
+    (n, 3) array
+        Components along radius, azimuth and axis.
+    """
     return np.stack([tangents[:, 0], np.zeros(len(tangents)), tangents[:, 1]], axis=1)
 
 
 def fixed(count: int) -> Array:
-    """The axis, (n, 3)."""
+    """Return the axis as direction.
+
+    Parameters
+    ----------
+    count : int
+        Number n of directions.
+
+    Returns
+    -------
+    (n, 3) array
+        Components along radius, azimuth and axis.
+    """
     return np.tile([0.0, 0.0, 1.0], (count, 1))
 
 
 def layer_mean(tangent: Array, azimuth: Array, start: float, end: float) -> Array:
-    """One direction for a whole open bead, the mean of its local ones: (n, 3) at the azimuths (n,).
+    """Return one direction for a complete open bead, the mean of its local ones.
 
-    tangent: (2,) of the meridian; the bead spans start to end rad. Over a full turn the mean is along the axis.
+    Over a full turn the mean is along the axis.
+
+    Parameters
+    ----------
+    tangent : (2,) array
+        Tangent of the meridian, radius and axis.
+    azimuth : (n,) array
+        Azimuths of the points, rad.
+    start, end : float
+        Azimuths that the bead spans, rad.
+
+    Returns
+    -------
+    (n, 3) array
+        Components along radius, azimuth and axis at each point.
     """
     half = 0.5 * (end - start)
     radial = tangent[0] * np.sin(half) / half
@@ -52,10 +88,23 @@ def layer_mean(tangent: Array, azimuth: Array, start: float, end: float) -> Arra
 
 
 def lean_tool(build: Array, lead: float, tilt: float, rising: bool) -> Array:
-    """Return tool axes (n, 3): build directions (n, 3) turned by `lead` forward along the bead,
-    then by `tilt` outwards.
+    """Return tool axes that lean from the build directions.
 
-    Angles in rad. rising: the bead runs with rising azimuth.
+    The direction is turned by `lead` forward along the bead, then by `tilt` outwards.
+
+    Parameters
+    ----------
+    build : (n, 3) array
+        Build directions along radius, azimuth and axis.
+    lead, tilt : float
+        Angles, rad.
+    rising : bool
+        Whether the bead runs with rising azimuth.
+
+    Returns
+    -------
+    (n, 3) array
+        Unit vectors.
     """
     if lead == 0.0 and tilt == 0.0:
         return build
@@ -67,15 +116,37 @@ def lean_tool(build: Array, lead: float, tilt: float, rising: bool) -> Array:
 
 
 def from_vertical(directions: Array) -> Array:
-    """Angle (n,) rad between directions (n, 3) and the axis."""
+    """Return the angles between directions and the axis.
+
+    Parameters
+    ----------
+    directions : (n, 3) array
+        Directions; the axis is the third component.
+
+    Returns
+    -------
+    (n,) array
+        Angles, rad.
+    """
     x, y, z = columns(directions)
     angle: Array = np.arctan2(np.hypot(x, y), z)
     return angle
 
 
 def tilt_back(build: Array, angle: Array) -> Array:
-    """Return build directions (n, 3) turned by the angle (n,) rad towards the axis, at most onto
-    it.
+    """Turn build directions towards the axis, at most onto it.
+
+    Parameters
+    ----------
+    build : (n, 3) array
+        Build directions, unit vectors.
+    angle : (n,) array
+        Angles, rad.
+
+    Returns
+    -------
+    (n, 3) array
+        Unit vectors.
     """
     x, y, z = columns(build)
     level = np.hypot(x, y)
@@ -93,12 +164,27 @@ def least_tilt_back(
     about: Array | None = None,
     free: Mask | None = None,
 ) -> Array:
-    """Return the smallest tilt-back (n,) rad, `low` (n,) or more, at which each row is good; NaN
-    if no angle up to the axis is.
+    """Return the smallest tilt-back at which each direction is good.
 
-    The result is accurate to `within` rad. good(rows (k,), angles (k,)) -> (k,) bool: whether
-    the rows are good when tilted back by the angles. about: (n, 2) angles between which the
-    search starts, NaN for none. free: (n,) rows known to be good at `low`.
+    Parameters
+    ----------
+    build : (n, 3) array
+        Build directions, unit vectors.
+    low : (n,) array
+        Smallest angles allowed, rad.
+    good : callable
+        Returns whether rows (k,) are good when tilted back by angles (k,).
+    within : float, optional
+        Accuracy, rad.
+    about : (n, 2) array or None, optional
+        Angles between which the search starts, NaN for none.
+    free : (n,) bool array or None, optional
+        Rows known to be good at `low`.
+
+    Returns
+    -------
+    (n,) array
+        Angles, rad; NaN if no angle up to the axis is good.
     """
     angle = low.copy()
     rows = np.arange(len(build)) if free is None else np.flatnonzero(~free)

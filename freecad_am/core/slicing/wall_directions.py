@@ -25,13 +25,24 @@ SHORT_ARC = 1e-3  # of the typical arc length; a shorter arc has no turn of its 
 
 
 def turns_in_wall(curve: SpaceCurve, normal: Array) -> Array:
-    """Return the turn of the bead within the wall per length, (m - 1,) rad/mm, of each arc with
-    its starting corner.
+    """Return the turn of a bead within the wall per length.
 
-    normal: (m, 3) of the wall at the nodes. The wall's own curvature does not count: the
+    Each arc counts with its starting corner. The wall's own curvature does not count: the
     nozzle is normal to the bead in the wall and follows it anyway. A very short arc has the
-    turn of the stretch around it, as long as a typical arc: its own turn would be rounding
-    over no length.
+    turn of the stretch around it, as long as a typical arc: its own turn would be rounding over
+    no length.
+
+    Parameters
+    ----------
+    curve : SpaceCurve
+        The bead, m nodes.
+    normal : (m, 3) array
+        Unit normals of the wall at the nodes.
+
+    Returns
+    -------
+    (m - 1,) array
+        Turn of each arc, rad/mm.
     """
     # both tangents of a turn projected onto the plane of the normal between them
     middle = normal[:-1] + normal[1:]
@@ -82,11 +93,26 @@ class Limited(NamedTuple):
 
 
 def local_directions(normal: Array, into: Array, out: Array, up: Array) -> Array:
-    """Return the vectors (n, 3) tangent to the wall and normal to the bead.
+    """Return the directions tangent to the wall and normal to the bead.
 
-    normal: of the wall, either side. into, out: directions of the bead before and after each
-    point, of any length, equal except at corners. up: vectors away from the layer below, not
-    along the bead.
+    Parameters
+    ----------
+    normal : (n, 3) array
+        Normals of the wall, either side.
+    into, out : (n, 3) array
+        Directions of the bead before and after each point, of any length, equal except at
+        corners.
+    up : (n, 3) array
+        Vectors away from the layer below, not along the bead.
+
+    Returns
+    -------
+    (n, 3) array
+        Unit vectors.
+
+    References
+    ----------
+    Chalvin 2019, section II.D.
     """
     sides = [
         np.cross(normal, side / np.linalg.norm(side, axis=1, keepdims=True)) for side in (into, out)
@@ -96,10 +122,26 @@ def local_directions(normal: Array, into: Array, out: Array, up: Array) -> Array
 
 
 def project_onto_plane(directions: Array, plane: Array, label: str = "build_direction") -> Array:
-    """Project directions onto the plane of symmetry with the unit normal `plane` (3,): one
-    rotation about that normal remains.
+    """Project directions onto a plane of symmetry: one rotation about its normal remains.
 
-    Raises InputError NO_DIRECTION if a direction is normal to the plane.
+    Parameters
+    ----------
+    directions : (n, 3) array
+        Build directions.
+    plane : (3,) array
+        Unit normal of the plane.
+    label : str, optional
+        Name for messages.
+
+    Returns
+    -------
+    (n, 3) array
+        Unit vectors.
+
+    Raises
+    ------
+    InputError
+        NO_DIRECTION if a direction is normal to the plane.
     """
     flat = directions - (directions @ plane)[:, None] * plane
     if np.linalg.norm(flat, axis=1).min() < MIN_IN_PLANE:
@@ -113,10 +155,25 @@ def project_onto_plane(directions: Array, plane: Array, label: str = "build_dire
 
 
 def lean_tool(build: Array, forward: Array, normal: Array, lead: float, tilt: float) -> Array:
-    """Return tool axes (n, 3): build directions turned by `lead` forward along the bead, then by
-    `tilt` to the outside, rad.
+    """Return tool axes that lean from the build directions.
 
-    forward: (n, 3) unit vectors along the bead. normal: (n, 3) of the wall, to its outside.
+    The direction is turned by `lead` forward along the bead, then by `tilt` to the outside.
+
+    Parameters
+    ----------
+    build : (n, 3) array
+        Build directions, unit vectors.
+    forward : (n, 3) array
+        Unit vectors along the bead.
+    normal : (n, 3) array
+        Normals of the wall, to its outside.
+    lead, tilt : float
+        Angles, rad.
+
+    Returns
+    -------
+    (n, 3) array
+        Unit vectors.
     """
     if lead == 0.0 and tilt == 0.0:
         return build
@@ -128,7 +185,22 @@ def lean_tool(build: Array, forward: Array, normal: Array, lead: float, tilt: fl
 
 
 def cap_lean(directions: Array, max_lean: float) -> tuple[Array, float]:
-    """Directions turned back to `max_lean` rad from the vertical where they lean over more, and by how much the farthest is."""
+    """Turn directions back that lean more than allowed from the vertical.
+
+    Parameters
+    ----------
+    directions : (n, 3) array
+        Unit vectors.
+    max_lean : float
+        Largest angle to the vertical, rad.
+
+    Returns
+    -------
+    directions : (n, 3) array
+        Unit vectors.
+    excess : float
+        Largest angle by which one was turned back, rad.
+    """
     x, y, z = columns(directions)
     level = np.hypot(x, y)
     angle = np.arctan2(level, z)
@@ -144,7 +216,20 @@ def cap_lean(directions: Array, max_lean: float) -> tuple[Array, float]:
 
 
 def turn_rates(points: Array, directions: Array) -> Array:
-    """Turn of the direction per length (n - 1,) from point to point, rad/mm."""
+    """Return the turn of directions per length from point to point.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points, mm.
+    directions : (n, 3) array
+        Unit vectors.
+
+    Returns
+    -------
+    (n - 1,) array
+        rad/mm.
+    """
     cross = np.linalg.norm(np.cross(directions[:-1], directions[1:]), axis=1)
     angle = np.arctan2(cross, dot(directions[:-1], directions[1:]))
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
@@ -160,13 +245,35 @@ def limit_turns(
     label: str = "build_direction",
     max_lean: float = np.pi,
 ) -> Limited:
-    """Return directions that turn by at most `rate` rad/mm from point to point (n, 3), and lean
-    by at most `max_lean` rad.
+    """Return directions that turn by at most a rate from point to point.
 
     Near faster turns each direction is the mean over a stretch of the bead. The stretches
-    shrink to nothing away from such turns, and are as short as the limit allows. Closed beads
-    repeat their first point. Raises InputError TURN_LIMIT if even the mean over the whole
-    bead turns faster, or has no direction.
+    shrink to nothing away from such turns, and are as short as the limit allows.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points, mm; closed beads repeat their first point.
+    directions : (n, 3) array
+        Unit vectors.
+    closed : bool
+        Whether the bead is closed.
+    rate : float
+        Largest turn, rad/mm.
+    label : str, optional
+        Name for messages.
+    max_lean : float, optional
+        Largest angle to the vertical, rad.
+
+    Returns
+    -------
+    Limited
+        The directions, and the departure of each from the requested one.
+
+    Raises
+    ------
+    InputError
+        TURN_LIMIT if even the mean over the full bead turns faster, or has no direction.
     """
     fast = turn_rates(points, directions) > rate
     if not fast.any():

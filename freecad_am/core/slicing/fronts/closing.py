@@ -113,11 +113,21 @@ SEARCH_DIRECTIONS, SEARCH_STEPS, STEP_REDUCTION = (
 def close_gaps(
     slicing: Slicing, below: list[SpaceCurve], above: list[SpaceCurve], passed: Index
 ) -> list[SpaceCurve]:
-    """Return the beads, along the middle of gaps, that cover the wall between fronts; the
-    deposit below is on their right.
+    """Return the beads that cover the wall between fronts, along the middle of gaps.
 
-    below, above: the fronts of two consecutive layers, `above` empty where the wall ends.
-    passed: (n,) the vertices of the wall's mesh between them.
+    Parameters
+    ----------
+    slicing : Slicing
+        Wall, rims and layer height.
+    below, above : list of SpaceCurve
+        The fronts of two consecutive layers; `above` is empty where the wall ends.
+    passed : (n,) int array
+        Vertices of the wall's mesh between them.
+
+    Returns
+    -------
+    list of SpaceCurve
+        The beads; the deposit below is on their right.
     """
     if not len(passed):
         return []

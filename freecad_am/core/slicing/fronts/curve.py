@@ -43,7 +43,20 @@ class Slicing:
         return 1.0 if self.smoothing is None else 1.0 + self.smoothing.band
 
     def left_of(self, curve: SpaceCurve) -> tuple[Array, Array]:
-        """Points (n, 3) in the middle of a curve's arcs, and vectors (n, 3) within the wall to its left there."""
+        """Return the direction to the left of a curve within the wall.
+
+        Parameters
+        ----------
+        curve : SpaceCurve
+            The curve, with n arcs.
+
+        Returns
+        -------
+        points : (n, 3) array
+            Middles of its arcs, mm.
+        left : (n, 3) array
+            Vectors within the wall to its left.
+        """
         points, slope, _ = curve.at(curve.w[:-1] + 0.5 * curve.span)
         return points, np.cross(self.wall.project(points)[1], slope)
 
@@ -60,13 +73,26 @@ SAME_FOOT = 1e-3  # of the height; branches whose nearest points are closer than
 
 
 def fit_front(slicing: Slicing, below: list[SpaceCurve], line: Line) -> list[SpaceCurve]:
-    """Return the front at the layer height above the fronts below that runs near a line.
+    """Return the front at the layer height above the fronts below, near a line.
 
-    Nodes are on the wall and at the height to rounding, arcs to TOLERANCE_MM; corners are
-    nodes. The deposit below is on the curve's right, seen from the side to which the wall's
-    normals point. An end of an open line that is not known moves along the wall's edge.
-    Returns no curve or several pieces if points of the line do not reach their distance:
-    between fronts that meet.
+    The deposit below is on the curve's right, seen from the side to which the wall's normals
+    point. An end of an open line that is not known moves along the wall's edge.
+
+    Parameters
+    ----------
+    slicing : Slicing
+        Wall, rims and layer height.
+    below : list of SpaceCurve
+        The fronts of the layer below.
+    line : Line
+        A level line of the mesh near the front.
+
+    Returns
+    -------
+    list of SpaceCurve
+        One curve; none, or several pieces, if points of the line do not reach their
+        distance: between fronts that meet. Nodes are on the wall and at the height to
+        rounding, arcs to TOLERANCE_MM; corners are nodes.
     """
     offset = _Offset(slicing.wall, below, slicing.height)
     nodes = offset.nodes_near(line)

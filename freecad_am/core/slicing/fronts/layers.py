@@ -68,7 +68,26 @@ def slice_layers(
 ) -> Sliced:
     """Return all layers, from the first until the wall is covered or its edges are reached.
 
-    progress(fraction, text) receives the share of the wall that is covered.
+    Parameters
+    ----------
+    wall : PatchWall
+        The wall.
+    height : float
+        Layer height, mm.
+    smoothing : Smoothing or None, optional
+        How fronts are smoothed; None for exact ones.
+    progress : callable, optional
+        Receives the share of the wall that is covered, and a text; may raise to cancel.
+
+    Returns
+    -------
+    Sliced
+        Fronts, closing beads and rims.
+
+    Raises
+    ------
+    InputError
+        LAYER_HEIGHT for too many layers.
     """
     slicing = Slicing(wall, Rims.of(wall.rims), height, smoothing)
     state = start_state(slicing)

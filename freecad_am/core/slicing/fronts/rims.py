@@ -23,8 +23,21 @@ from ...types import Array, Index, Mask
 
 
 def resample(points: Array, closed: bool, count: int) -> Array:
-    """Resample a polyline evenly: (count, 3) points of a closed one, (count + 1, 3) with both
-    ends of an open one.
+    """Resample a polyline evenly.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        The polyline; a closed one may repeat its first point.
+    closed : bool
+        Whether it is closed.
+    count : int
+        Number of segments.
+
+    Returns
+    -------
+    (count, 3) or (count + 1, 3) array
+        Points of a closed line; for an open one with both ends.
     """
     if closed and (points[0] != points[-1]).any():
         points = np.vstack([points, points[:1]])
@@ -35,8 +48,21 @@ def resample(points: Array, closed: bool, count: int) -> Array:
 
 
 def smooth_points(points: Array, closed: bool, wide: float) -> Array:
-    """Return means over neighbours with normal weights, standard deviation `wide` points; the
-    ends of an open line stay.
+    """Smooth a polyline by means over neighbours with normal weights.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        The points; a closed line does not repeat its first.
+    closed : bool
+        Whether the line is closed; the ends of an open one stay.
+    wide : float
+        Standard deviation, in points.
+
+    Returns
+    -------
+    (n, 3) array
+        The smooth points.
     """
     reach = min(int(np.ceil(3.0 * wide)), len(points) - 1)
     share = np.exp(-0.5 * (np.arange(-reach, reach + 1) / max(wide, 1e-9)) ** 2)
@@ -52,7 +78,22 @@ def smooth_points(points: Array, closed: bool, wide: float) -> Array:
 
 
 def spline(points: Array, closed: bool) -> tuple[Array, Array]:
-    """Parameters (n,) and derivatives (n, 3) of a smooth curve through points; a closed one repeats its first."""
+    """Return a smooth curve through points.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        The points; a closed line repeats its first.
+    closed : bool
+        Whether the curve is periodic.
+
+    Returns
+    -------
+    w : (n,) array
+        Parameters, the length along the polyline, mm.
+    slope : (n, 3) array
+        Derivatives by the parameter.
+    """
     w = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     return w, CubicSpline(w, points, bc_type="periodic" if closed else "not-a-knot")(w, 1)
 
@@ -72,7 +113,24 @@ class Feet(NamedTuple):
 
     @classmethod
     def between(cls, points: Array, foot: Array, front: Index, w: Array) -> Feet:
-        """Return the feet of points (n, 3), given the nearest points foot (n, 3) at (front, w)."""
+        """Return the feet of points from known nearest points.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            The points, mm.
+        foot : (n, 3) array
+            The nearest points on the fronts, mm.
+        front : (n,) int array
+            The front of each nearest point.
+        w : (n,) array
+            Its parameter.
+
+        Returns
+        -------
+        Feet
+            Distances and directions.
+        """
         offset = points - foot
         distance = np.linalg.norm(offset, axis=1)
         return cls(distance, offset / np.maximum(distance, 1e-300)[:, None], front, w, foot)
@@ -116,15 +174,41 @@ def nearest_feet(fronts: list[SpaceCurve], points: Array) -> Feet:
 
 
 def local_distances(front: SpaceCurve, below: list[SpaceCurve], finer: int = 1) -> Array:
-    """Return the distances (n,) mm of a front from the fronts below, at its nodes and `finer` -
-    1 points between.
+    """Return the distances of a front from the fronts below.
+
+    Parameters
+    ----------
+    front : SpaceCurve
+        The front.
+    below : list of SpaceCurve
+        The fronts of the layer below.
+    finer : int, optional
+        Number of points per arc; 1 for only the nodes.
+
+    Returns
+    -------
+    (n,) array
+        Distances, mm.
     """
     return nearest_feet(below, front.at(front.refined(finer))[0]).distance
 
 
 def points_near_fronts(tree: cKDTree, fronts: list[SpaceCurve], reach: float) -> Index:
-    """Return the numbers (k,) of a tree's points within `reach` mm of the fronts, and a few
-    more.
+    """Return the points of a tree near fronts, and a few more.
+
+    Parameters
+    ----------
+    tree : cKDTree
+        The points.
+    fronts : list of SpaceCurve
+        The fronts.
+    reach : float
+        Distance from the fronts, mm.
+
+    Returns
+    -------
+    (k,) int array
+        Numbers of the points, rising.
     """
     samples = []
     for front in fronts:
@@ -182,13 +266,30 @@ class Rims:
 
     @cached_property
     def upper(self) -> Array:
-        """Points (k, 3) along the edges at which layers finish."""
+        """Return the points along the edges at which layers finish.
+
+        Returns
+        -------
+        (k, 3) array
+            mm.
+        """
         return np.vstack(
             [np.empty((0, 3)), *(curve.points for curve, end in zip(self.curves, self.end) if end)]
         )
 
     def from_upper(self, points: Array) -> Array:
-        """Distances (n,) mm of points (n, 3) from those along the edges at which layers finish; infinite without any."""
+        """Return the distances of points from the edges at which layers finish.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            The points, mm.
+
+        Returns
+        -------
+        (n,) array
+            Distances, mm; infinite without such edges.
+        """
         return (
             np.asarray(self._upper_tree.query(points)[0])
             if len(self.upper)
@@ -209,10 +310,24 @@ class Rims:
     def points_at_height(
         self, below: list[SpaceCurve], height: float, reach: float, tolerance: float
     ) -> Array:
-        """Return points (k, 3) on the rims at `height` mm from the fronts below.
+        """Return the points on the rims at a height from the fronts below.
 
-        reach: mm from these fronts in which they are searched. Differences of the distance below
-        `tolerance` mm count as above, so a front may run along a rim.
+        Parameters
+        ----------
+        below : list of SpaceCurve
+            The fronts of the layer below.
+        height : float
+            Distance from these fronts, mm.
+        reach : float
+            Distance in which they are searched, mm.
+        tolerance : float
+            Smaller differences of the distance count as above, mm, so a front may run
+            along a rim.
+
+        Returns
+        -------
+        (k, 3) array
+            The points, mm.
         """
         if not self.curves:
             return np.empty((0, 3))
@@ -293,7 +408,22 @@ class Rims:
         return points
 
     def nearest(self, points: Array) -> tuple[Array, Array, Array]:
-        """Distance (n,) mm of points (n, 3) from the rims, nearest points (n, 3), unit vectors (n, 3) along the rim."""
+        """Return the nearest points on the rims.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            The points, mm.
+
+        Returns
+        -------
+        distance : (n,) array
+            Distances, mm; infinite without rims.
+        nearest : (n, 3) array
+            Nearest points, mm.
+        along : (n, 3) array
+            Unit vectors along the rim there.
+        """
         if not self.curves:
             return np.full(len(points), np.inf), points, np.zeros_like(points)
         foot = nearest_feet(list(self.curves), points)
@@ -326,10 +456,24 @@ class Line(NamedTuple):
 
 
 def cut_at_rims(lines: list[LevelLine], ends: Array, longest_edge: float) -> list[Line]:
-    """Return the lines with their ends among the points (k, 3) where fronts meet rims.
+    """Return lines with their ends among the points where fronts meet rims.
 
-    Two further points near a line mark a gap in the wall that the coarse mesh misses, so the line is
-    cut there. longest_edge: of the mesh, mm.
+    Two further points near a line mark a gap in the wall that the coarse mesh misses, so the
+    line is cut there.
+
+    Parameters
+    ----------
+    lines : list of LevelLine
+        Level lines of the mesh.
+    ends : (k, 3) array
+        Points where fronts meet rims, mm.
+    longest_edge : float
+        Longest edge of the mesh, mm.
+
+    Returns
+    -------
+    list of Line
+        The lines, some in pieces.
     """
     ended_lines, free = [], np.ones(len(ends), dtype=bool)
     for line in lines:

@@ -66,13 +66,29 @@ def smooth_front(
     other_fronts: list[SpaceCurve],
     weight: int = HEAVY,
 ) -> SmoothFront:
-    """Return the front near an exact one, as near to the layer height as a turn within the wall
-    of smoothing.limit allows.
+    """Return a smooth front near an exact one.
 
-    Its ends move along their rims. other_fronts: the further fronts of the layer, which need
-    room. weight: start of the search, best the weight of the layer below. If the band is too
-    narrow for the limit, the band holds; if no smooth front fits within it, the exact one is
-    returned.
+    It stays as near to the layer height as a turn within the wall of smoothing.limit allows.
+    Its ends move along their rims. If the band is too narrow for the limit, the band holds.
+
+    Parameters
+    ----------
+    slicing : Slicing
+        Wall, rims, layer height and smoothing.
+    below : list of SpaceCurve
+        The fronts of the layer below.
+    front : SpaceCurve
+        The exact front.
+    other_fronts : list of SpaceCurve
+        The further fronts of the layer, which need room.
+    weight : int, optional
+        Start of the search, best the weight of the layer below.
+
+    Returns
+    -------
+    SmoothFront
+        The smooth front; the exact one if it turns slowly enough or no smooth one fits
+        within the band.
     """
     wall, height, smoothing = slicing.wall, slicing.height, slicing.smoothing
     unsmoothed = SmoothFront(front, turn(wall, front), weight)

@@ -362,19 +362,51 @@ class Flat(NamedTuple):
 
 
 def count(facets: Facets, height: float, margin: float, chord_error: float) -> int:
-    """How many layers there are, at 0, `height`, twice that ... mm from the base."""
+    """Return the number of layers.
+
+    Layers are at 0, `height`, twice that ... mm from the base.
+
+    Parameters
+    ----------
+    facets : Facets
+        The solid.
+    height : float
+        Layer height, mm.
+    margin : float
+        Machining margin above the solid, mm.
+    chord_error : float
+        Chord error, mm; a rest of this order gets no layer.
+
+    Returns
+    -------
+    int
+        The number.
+    """
     top = float(facets.distances.max()) + margin
     return step_count(top - CLEARANCE_RATIO * chord_error, height, 0)
 
 
 def cut(facets: Facets, distance: float, chord_error: float) -> list[Loop]:
-    """Return the loops (in the base's frame) of the solid just outside the surface at `distance`
-    mm, moved onto it.
+    """Return the loops of a solid just outside an equidistant surface, moved onto it.
 
     Where facets coincide with that surface, as the foot of a blade with its hub, or the solid
-    begins slightly outside it, the cut is further out: noise would decide a cut through them.
-    A face that only touches the surface, as a flat top along a generatrix, touches it within
+    begins slightly outside it, the cut is further out: noise would decide a cut through them. A
+    face that only touches the surface, as a flat top along a generatrix, touches it within
     TOUCH after rounding: it is not cut.
+
+    Parameters
+    ----------
+    facets : Facets
+        The solid.
+    distance : float
+        Distance of the surface from the base, mm.
+    chord_error : float
+        Chord error of the loops, mm.
+
+    Returns
+    -------
+    list of Loop
+        The loops in the frame of the base.
     """
     corners = facets.distances[facets.triangles]
     low, high = corners.min(axis=1), corners.max(axis=1)
@@ -391,8 +423,26 @@ def unroll_layers(
 ) -> Flat:
     """Unroll loops of layers moved onto one surface, none of which goes around it, together.
 
-    They are cut open opposite the azimuth `centre`, or near that. Raises InputError
-    TOO_FAR_ROUND if a contour winds so far around a cone that it would overlap itself.
+    Parameters
+    ----------
+    surface : Developable
+        The surface.
+    layers : sequence of sequence of Loop
+        Loops of each layer.
+    centre : float
+        Azimuth opposite to which they are cut open, if possible, rad.
+    where : str
+        Name for messages.
+
+    Returns
+    -------
+    Flat
+        The unrolled borders.
+
+    Raises
+    ------
+    InputError
+        TOO_FAR_ROUND if a contour winds so far around a cone that it would overlap itself.
     """
     loops = [loop for layer in layers for loop in layer]
     azimuths = [_unwrap_azimuths(loop.points, surface) for loop in loops]

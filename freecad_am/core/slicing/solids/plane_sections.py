@@ -69,8 +69,18 @@ class PlaneCuts:
         return float(self.vertices[:, 2].max())
 
     def loops(self, heights: Sequence[float] | Array) -> Iterator[list[Array]]:
-        """Yield, for each of the rising heights (k,) mm, its loops (n, 2), first point not repeated,
-        the solid on their left from above.
+        """Yield the loops of each section.
+
+        Parameters
+        ----------
+        heights : (k,) array
+            Rising heights, mm.
+
+        Yields
+        ------
+        list of (n, 2) array
+            Closed loops in mm, first point not repeated, the solid on their left from
+            above.
         """
         planes = np.asarray(heights, dtype=np.float64)
         z = self.vertices[:, 2]

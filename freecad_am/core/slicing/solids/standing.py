@@ -94,11 +94,29 @@ def group_by_base(
     hub: str = "",
     unitless: Sequence[Body] = (),
 ) -> SolidsOnHub:
-    """Group bodies by the base with the longest contour; groups are ordered up the axis of the
-    first base.
+    """Group bodies by the base with the longest contour.
 
-    hub: name of the object that has the bases, for errors, if it is not the bodies' own.
-    unitless: bodies of files without a unit.
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The bodies.
+    seats : sequence of Seat
+        The bases.
+    chord_error : float
+        Chord error, mm.
+    label : str
+        Name of the part, for errors.
+    issues : tuple of Issue, optional
+        Issues to attach.
+    hub : str, optional
+        Name of the object that has the bases, for errors, if it is not the bodies' own.
+    unitless : sequence of Body, optional
+        Bodies of files without a unit.
+
+    Returns
+    -------
+    SolidsOnHub
+        The groups, ordered up the axis of the first base.
 
     Raises
     ------
@@ -218,10 +236,28 @@ def _near(seat: Seat, points: Array, all_round: bool = False) -> Mask:
 def hub_among(
     bodies: Sequence[Body], seats: Sequence[Sequence[Seat]], chord_error: float, label: str
 ) -> int:
-    """Return the index of the solid of a part that is the hub: the one on which most of the
-    others are based.
+    """Return the solid of a part that is the hub: the one that carries most of the others.
 
-    seats: of each solid. Raises InputError NO_HUB.
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The solids.
+    seats : sequence of sequence of Seat
+        The bases of each solid.
+    chord_error : float
+        Chord error, mm.
+    label : str
+        Name of the part, for errors.
+
+    Returns
+    -------
+    int
+        Index of the hub.
+
+    Raises
+    ------
+    InputError
+        NO_HUB if no solid is on a cylinder or cone of another.
     """
     votes = np.zeros(len(bodies), dtype=int)
     for k in range(len(bodies)):

@@ -33,11 +33,31 @@ MIN_INTERVAL = (
 def next_layer(
     surface: Surface, below: WallLayer, height: float, grid: Array, label: str = "wall"
 ) -> WallLayer:
-    """Return the layer at the distance `height` (mm) from the curve of the layer below.
+    """Return the layer at a distance from the curve of the layer below.
 
-    grid: (n,) values of v from one seam to the next, rising; nodes are added at corners and
-    where cubic arcs would not follow the front. Raises InputError LAYER_HEIGHT if no point of
-    a line v = const has that distance.
+    Parameters
+    ----------
+    surface : Surface
+        The wall.
+    below : WallLayer
+        The layer below.
+    height : float
+        The distance, mm.
+    grid : (n,) array
+        Rising values of v from one seam to the next; nodes are added at corners and where
+        cubic arcs would not follow the front.
+    label : str, optional
+        Name of the wall, for messages.
+
+    Returns
+    -------
+    WallLayer
+        The layer.
+
+    Raises
+    ------
+    InputError
+        LAYER_HEIGHT if no point of a line v = const has that distance.
     """
     offset = Offset(surface, below.curve, below.u, height)
     period = grid[-1] - grid[0]
@@ -68,8 +88,32 @@ def layers(
     points: int = 360,
     label: str = "wall",
 ) -> list[WallLayer]:
-    """Return all layers from the first to the first one wholly past u_end, each with at least
-    `points` points.
+    """Return all layers from the first to the first one wholly past an end.
+
+    Parameters
+    ----------
+    surface : Surface
+        The wall.
+    first_layer : WallLayer
+        The first layer.
+    height : float
+        Distance from layer to layer, mm.
+    u_end : float
+        End of the wall in u.
+    points : int, optional
+        Smallest number of points of a layer.
+    label : str, optional
+        Name of the wall, for messages.
+
+    Returns
+    -------
+    list of WallLayer
+        The layers, `first_layer` included.
+
+    Raises
+    ------
+    InputError
+        LAYER_HEIGHT as `next_layer`, or for too many layers.
     """
     grid = first_layer.v[0] + (first_layer.v[-1] - first_layer.v[0]) * np.linspace(
         0.0, 1.0, points + 1

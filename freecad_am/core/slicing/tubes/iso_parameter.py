@@ -16,11 +16,34 @@ STEPS = 40
 
 
 def next_layer(surface: Surface, below: WallLayer, height: float, label: str = "wall") -> WallLayer:
-    """Return the layer whose points are at the chord `height` (mm) from points of the layer
-    below with the same v.
+    """Return the layer whose points are at a chord from points below with the same v.
 
-    The chord is measured in space, as in equation 2, whose closed form this is on a torus.
-    Raises InputError LAYER_HEIGHT if the wall bends too sharply for such a point to exist.
+    The chord is measured in space.
+
+    Parameters
+    ----------
+    surface : Surface
+        The wall.
+    below : WallLayer
+        The layer below.
+    height : float
+        The chord, mm.
+    label : str, optional
+        Name of the wall, for messages.
+
+    Returns
+    -------
+    WallLayer
+        The layer.
+
+    Raises
+    ------
+    InputError
+        LAYER_HEIGHT if the wall bends too sharply for such a point to exist.
+
+    References
+    ----------
+    Chalvin 2019, equation 2, whose closed form this is on a torus.
     """
     v, u, into, out = below.v, below.u, *below.slopes(surface)
     for _ in range(ROUNDS):
@@ -37,7 +60,31 @@ def next_layer(surface: Surface, below: WallLayer, height: float, label: str = "
 def layers(
     surface: Surface, first_layer: WallLayer, height: float, u_end: float, label: str = "wall"
 ) -> list[WallLayer]:
-    """Return all layers from the first to the first one wholly past u_end."""
+    """Return all layers from the first to the first one wholly past an end.
+
+    Parameters
+    ----------
+    surface : Surface
+        The wall.
+    first_layer : WallLayer
+        The first layer.
+    height : float
+        Chord from layer to layer, mm.
+    u_end : float
+        End of the wall in u.
+    label : str, optional
+        Name of the wall, for messages.
+
+    Returns
+    -------
+    list of WallLayer
+        The layers, `first_layer` included.
+
+    Raises
+    ------
+    InputError
+        LAYER_HEIGHT as `next_layer`, or for too many layers.
+    """
     wall_layers = [first_layer]
     while wall_layers[-1].u.min() < u_end:
         refuse_too_many(len(wall_layers), height, label)

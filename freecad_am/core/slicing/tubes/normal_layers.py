@@ -41,7 +41,25 @@ class Centreline(NamedTuple):
 
 
 def centreline(surface: Surface, low: float, high: float) -> Centreline:
-    """The centreline of a wall closed around between two values of u."""
+    """Return the centreline of a wall closed around.
+
+    Parameters
+    ----------
+    surface : Surface
+        The wall.
+    low, high : float
+        Range of u.
+
+    Returns
+    -------
+    Centreline
+        The centreline.
+
+    Raises
+    ------
+    ValueError
+        If the wall is open in v.
+    """
     if surface.period is None:
         raise ValueError("a wall that is open in v has no centreline")
     u = np.linspace(low, high, SECTIONS)
@@ -66,12 +84,40 @@ def layers(
     points: int = 360,
     label: str = "wall",
 ) -> list[WallLayer]:
-    """Return the curves in planes `height` mm apart along the centreline, up to the first curve
-    wholly past u_end.
+    """Return the curves in planes at equal distances along the centreline.
 
-    They start at the lowest point of `first_layer`; where they are below it there is nothing
-    to deposit. Raises InputError NOT_NORMAL if a plane does not cut every line v = const of
-    the wall once, near its own section.
+    They start at the lowest point of `first_layer`; where they are below it there is nothing to
+    deposit.
+
+    Parameters
+    ----------
+    surface : Surface
+        The wall.
+    first_layer : WallLayer
+        The first layer.
+    height : float
+        Distance along the centreline, mm.
+    u_end : float
+        End of the wall in u.
+    points : int, optional
+        Number of points around.
+    label : str, optional
+        Name of the wall, for messages.
+
+    Returns
+    -------
+    list of WallLayer
+        The curves, up to the first one wholly past `u_end`.
+
+    Raises
+    ------
+    InputError
+        NOT_NORMAL if a plane does not cut every line v = const of the wall once, near its
+        own section.
+
+    References
+    ----------
+    Chalvin 2018.
     """
     low = float(first_layer.u.min())
     # past its end the wall continues, at least straight, so the last planes cut it all around

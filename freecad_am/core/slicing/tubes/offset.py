@@ -99,7 +99,22 @@ class Offset:
         return result
 
     def slopes(self, v: Array, u: Array, w: Array, run: Index) -> Array:
-        """du/dv (n,) of branches: a front moves at right angles to itself."""
+        """Return the slopes of branches: a front moves at right angles to itself.
+
+        Parameters
+        ----------
+        v, u : (n,) array
+            Parameters of the points on the wall.
+        w : (n,) array
+            Positions on the curve below.
+        run : (n,) int array
+            Run of each point.
+
+        Returns
+        -------
+        (n,) array
+            du/dv.
+        """
         point, along, around = self.surface.derivatives(u, v)
         reach = point - self._below(w, run)[0]
         slope: Array = -dot(reach, around) / dot(reach, along)
@@ -108,11 +123,27 @@ class Offset:
     def crossings(
         self, low: Array, high: Array, u: Array, w: Array, run: Index
     ) -> tuple[Array, Array, Array]:
-        """Return where two branches meet: v, u (k,) and w (k, 2), NaN if not between low and high
-        (k,).
+        """Return where two branches meet.
 
-        u (k,), w, run (k, 2): starting heights and the positions of the left and the right
-        branch.
+        Parameters
+        ----------
+        low, high : (k,) array
+            Values of v between which they meet.
+        u : (k,) array
+            Starting heights.
+        w : (k, 2) array
+            Starting positions on the curve below, of the left and the right branch.
+        run : (k, 2) int array
+            Their runs.
+
+        Returns
+        -------
+        v : (k,) array
+            Where they meet; NaN if not between low and high.
+        u : (k,) array
+            The heights.
+        w : (k, 2) array
+            The positions on the curve below.
         """
         v, w = 0.5 * (low + high), w.copy()
         width = high - low

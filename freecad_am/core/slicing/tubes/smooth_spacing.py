@@ -35,7 +35,22 @@ class WallLayer:
 
     @classmethod
     def of(cls, surface: Surface, v: Array, u: Array, into: Array, out: Array) -> WallLayer:
-        """The layer through (u, v), (m,), with the slopes du/dv (m,) on either side of each node."""
+        """Return the layer through points of the wall.
+
+        Parameters
+        ----------
+        surface : Surface
+            The wall.
+        v, u : (m,) array
+            Parameters of the nodes; v rises through one period.
+        into, out : (m,) array
+            Slopes du/dv before and after each node.
+
+        Returns
+        -------
+        WallLayer
+            The layer.
+        """
         points, along, around = surface.derivatives(u, v)
         return cls(
             u,
@@ -46,11 +61,28 @@ class WallLayer:
 
     @property
     def v(self) -> Array:
-        """v (m,) at the nodes, rising through one period."""
+        """Return v at the nodes.
+
+        Returns
+        -------
+        (m,) array
+            Rising through one period.
+        """
         return self.curve.w
 
     def slopes(self, surface: Surface) -> tuple[Array, Array]:
-        """du/dv (m,) on either side of each node."""
+        """Return the slopes on either side of each node.
+
+        Parameters
+        ----------
+        surface : Surface
+            The wall.
+
+        Returns
+        -------
+        into, out : (m,) array
+            du/dv before and after each node.
+        """
         _, along, around = surface.derivatives(self.u, self.v)
         rate = dot(along, along)
         return dot(self.curve.into - around, along) / rate, dot(
@@ -58,7 +90,22 @@ class WallLayer:
         ) / rate
 
     def heights(self, surface: Surface, v: Array) -> tuple[Array, Array, Array]:
-        """u (n,) and its slopes du/dv on either side at v (n,) from the first node to the last."""
+        """Evaluate the layer between its nodes.
+
+        Parameters
+        ----------
+        surface : Surface
+            The wall.
+        v : (n,) array
+            Parameters from the first node to the last.
+
+        Returns
+        -------
+        u : (n,) array
+            Heights.
+        into, out : (n,) array
+            Slopes du/dv before and after each point.
+        """
         into, out = self.slopes(surface)
         arc = np.clip(np.searchsorted(self.v, v, side="right") - 1, 0, len(self.v) - 2)
         span = np.diff(self.v)[arc]
@@ -73,18 +120,54 @@ class WallLayer:
 
 
 def even_grid(surface: Surface, count: int, start: float = 0.0) -> Array:
-    """`count` + 1 equally spread values of v through one period."""
+    """Return equally spread values of v through one period.
+
+    Parameters
+    ----------
+    surface : Surface
+        The wall.
+    count : int
+        Number of intervals.
+    start : float, optional
+        First value.
+
+    Returns
+    -------
+    (count + 1,) array
+        Rising values.
+
+    Raises
+    ------
+    ValueError
+        If the wall is open in v.
+    """
     if surface.period is None:
         raise ValueError("a wall that is open in v has no closed layers")
     return start + surface.period * np.linspace(0.0, 1.0, count + 1)
 
 
 def local_distances(layer: WallLayer, below: WallLayer, finer: int = 1) -> tuple[Array, Array]:
-    """Return v (n,) and the distance (n,) mm of the layer from the nearest point of the one
-    below.
+    """Return the distances of a layer from the nearest points of the one below.
 
-    finer: points per arc of the layer; 1 uses only its nodes. d_ij of Chalvin 2019, equation
-    6 and figures 6 and 8.
+    Parameters
+    ----------
+    layer : WallLayer
+        The layer.
+    below : WallLayer
+        The layer below.
+    finer : int, optional
+        Points per arc of the layer; 1 uses only its nodes.
+
+    Returns
+    -------
+    v : (n,) array
+        Parameters of the points.
+    distance : (n,) array
+        Distances, mm.
+
+    References
+    ----------
+    Chalvin 2019, equation 6 and figures 6 and 8 (d_ij).
     """
     v = layer.curve.refined(finer)
     return v, below.curve.nearest(layer.curve.at(v)[0])[0]
@@ -106,7 +189,20 @@ class Smoothed(NamedTuple):
 
 
 def turns_in_wall(surface: Surface, layer: WallLayer) -> Array:
-    """Turn of the bead within the wall per length, (m - 1,) rad/mm, see `wall_turn`."""
+    """Return the turn of a bead within the wall per length.
+
+    Parameters
+    ----------
+    surface : Surface
+        The wall.
+    layer : WallLayer
+        The bead, m nodes.
+
+    Returns
+    -------
+    (m - 1,) array
+        Turn of each arc, rad/mm.
+    """
     return wall_directions.turns_in_wall(layer.curve, normals(surface, layer.u, layer.v))
 
 
@@ -120,13 +216,38 @@ def next_layer(
     label: str = "wall",
     weight: int = HEAVY,
 ) -> Smoothed:
-    """Return the layer above `below`, as near to `height` mm as a turn within the wall of
-    `limit` rad/mm allows.
+    """Return the smooth layer above another, as near to the layer height as the turn allows.
 
-    grid: (n,) evenly spaced values of v from seam to seam. band: largest departure of the
-    local distance, as a share of the height. weight: start of the search, best the weight of
-    the layer below. If the band is too narrow for the limit, the band holds: see
-    Smoothed.turn. Raises InputError LAYER_HEIGHT if the wall has no point at such a distance.
+    If the band is too narrow for the limit, the band holds: see Smoothed.turn.
+
+    Parameters
+    ----------
+    surface : Surface
+        The wall.
+    below : WallLayer
+        The layer below.
+    height : float
+        Layer height, mm.
+    grid : (n,) array
+        Evenly spaced values of v from seam to seam.
+    band : float
+        Largest departure of the local distance, as a share of the height.
+    limit : float
+        Largest turn within the wall, rad/mm.
+    label : str, optional
+        Name of the wall, for messages.
+    weight : int, optional
+        Start of the search, best the weight of the layer below.
+
+    Returns
+    -------
+    Smoothed
+        The layer with its distances and turn.
+
+    Raises
+    ------
+    InputError
+        LAYER_HEIGHT if the wall has no point at such a distance, BAND if no layer fits.
     """
     fronts = []
     for share in (1.0, 1.0 - band * (1.0 - MARGIN), 1.0 + band * (1.0 - MARGIN)):
@@ -174,7 +295,32 @@ def layers(
     points: int = 360,
     label: str = "wall",
 ) -> list[Smoothed]:
-    """Return all layers above the first up to the first one wholly past u_end."""
+    """Return all smooth layers above the first, to the first one wholly past an end.
+
+    Parameters
+    ----------
+    surface : Surface
+        The wall.
+    first_layer : WallLayer
+        The first layer.
+    height : float
+        Layer height, mm.
+    u_end : float
+        End of the wall in u.
+    band : float, optional
+        Largest departure of the local distance, as a share of the height.
+    limit : float, optional
+        Largest turn within the wall, rad/mm.
+    points : int, optional
+        Number of points of a layer.
+    label : str, optional
+        Name of the wall, for messages.
+
+    Returns
+    -------
+    list of Smoothed
+        The layers, without `first_layer`.
+    """
     grid = first_layer.v[0] + (first_layer.v[-1] - first_layer.v[0]) * np.linspace(
         0.0, 1.0, points + 1
     )
