@@ -66,6 +66,7 @@ WORDS = {
     f.COUNT: "whole number",
     f.TEXT: "text",
     f.RECORDS: "records",
+    f.VECTOR: "text",
     f.POSE: "pose",
     f.ANGLE_RANGE: "two angles",
     f.RATIO_RANGE: "two percentages",
@@ -88,6 +89,8 @@ FIELDS = [pair for prefix, cls in SECTIONS for pair in parameters(prefix, cls)]
 
 def default_text(spec, value):
     """A default as a job file has it."""
+    if spec.kind == f.VECTOR:
+        return spec.records.text(value)
     if value is None:
         return "null"
     if isinstance(value, bool):

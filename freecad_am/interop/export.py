@@ -87,7 +87,7 @@ def cell_text(cell: CellParameters, folder: str) -> str:
         for point in cell.touched
     ]
     if cell.world_up != usual.world_up:
-        lines.append(f"world_up: {_format(cell.upward(), f.NUMBER)}")
+        lines.append(f"world_up: {_format(cell.world_up, f.NUMBER)}")
     return "\n".join(lines) + "\n"
 
 

@@ -206,7 +206,7 @@ def _bases(
     base = strategy.base
     if base.radius != "auto":
         height = math.inf if base.height == "inf" else float(base.height)
-        return [seat_of_numbers(float(base.radius), height, *base.line())], None
+        return [seat_of_numbers(float(base.radius), height, *base.axis)], None
     if inputs.base_faces is not None:
         return seats(_named_faces(*inputs.base_faces, f"{inputs.label}.BaseFaces"), True), None
     if inputs.faces:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ..core.issues import InputError, Text
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import CellParameters
+from ..core.parameters.field import VECTOR, spec_of
 from ..core.parameters.process import OF_FEATURE, ProcessParameters
 from ..core.parameters.scan import ScanParameters
 from ..core.parameters.strategy import RevolutionParameters, SurfaceParameters
@@ -321,10 +322,21 @@ def _sources(feature: Any) -> tuple[Any, ...]:
 
 def _input_key(link: str, linked: Any) -> str:
     return (
-        repr(seen_of(linked.Proxy.value(linked)))
+        _key_of_cell(seen_of(linked.Proxy.value(linked)))
         if link == "Cell"
         else fingerprints.key_of_stage(link, linked)
     )
+
+
+def _key_of_cell(cell: CellParameters) -> str:
+    """The representation of a cell with vectors as texts, which is the same in documents of all versions."""
+    values = []
+    for field in dataclasses.fields(cell):
+        value, spec = getattr(cell, field.name), spec_of(field)
+        if spec.kind == VECTOR and spec.records is not None:
+            value = spec.records.text(value)
+        values.append(f"{field.name}={value!r}")
+    return f"{type(cell).__name__}({', '.join(values)})"
 
 
 def _cell(obj: Any) -> CellParameters | None:

@@ -77,9 +77,6 @@ def _parse_section(section: Any) -> CellParameters:
         section["nozzle"] = {**section["nozzle"], "shape": _shape(section["nozzle"]["shape"])}
     if section.get("touched") not in (None, []):
         section["touched"] = _touched(section["touched"])
-    if isinstance(section.get("world_up"), list):
-        numbers = [fields.read(number, f.NUMBER, "cell.world_up") for number in section["world_up"]]
-        section["world_up"] = " ".join(f"{number:.15g}" for number in numbers)
     cell = fields.build(CellParameters, section, "cell")
     arrangement.planned_of(cell.setup)
     return (

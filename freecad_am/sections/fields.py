@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 from ..core.issues import InputError, Text, Word
 from ..core.parameters import field as f
 from ..core.parameters.records import Records
+from ..core.parameters.vectors import VectorText
 from ..objects.fields import pendants
 
 # ---- Quantities as FreeCAD understands them: '1 mm', '90 deg', '360 mm/min', '1/2 in'
@@ -253,6 +254,9 @@ def _value(spec: f.Spec, field: dataclasses.Field[Any], value: Any, key: str) ->
         return None
     if isinstance(spec.records, Records):
         return spec.records.read(value)
+    if isinstance(spec.records, VectorText):
+        numbers = _vector(value, key) if isinstance(value, list) else text(value, key)
+        return spec.records.read(numbers)
     if isinstance(value, str) and value in spec.words:
         return math.inf if value == "inf" else value
     if _is_pose(spec, field) and (pose := as_shown(value, key)) is not None:
@@ -268,6 +272,18 @@ def _value(spec: f.Spec, field: dataclasses.Field[Any], value: Any, key: str) ->
     if spec.kind in WANTED:
         return _number(value, spec, key)
     return _plain(spec, value, key)
+
+
+def _vector(values: list[Any], key: str) -> list[float]:
+    """The numbers of a direction, or of an axis: a list of a point and a direction."""
+    is_axis = bool(values) and all(isinstance(entry, list) for entry in values)
+    rows = values if is_axis else [values]
+    numbers = [
+        read(number, f.LENGTH if k == 0 and len(rows) == 2 else f.NUMBER, key)
+        for k, row in enumerate(rows)
+        for number in row
+    ]
+    return [float(f"{number:.15g}") for number in numbers]  # as exact as texts of documents were
 
 
 def _is_pose(spec: f.Spec, field: dataclasses.Field[Any]) -> bool:

@@ -1417,6 +1417,11 @@
         <translation>, car son contenu ne fait pas partie de la forme ({0})</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/vectors.py"/>
+        <source>, or {0}</source>
+        <translation>, ou {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>. At a constant wire feed faster stretches are lower; process.wire.feed_mode: proportional would keep the cross-section, at {0} to {1} mm/s of wire</source>
         <translation>. Au même dévidage les passages plus rapides sont plus bas ; process.wire.feed_mode: proportional garderait la section, à {0} à {1} mm/s de fil</translation>
@@ -2027,7 +2032,7 @@
         <translation>Annulé : rien n&apos;a été fait.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/new_job.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>Cancelled: the document is unchanged.</source>
         <translation>Annulé : le document est tel qu&apos;il était.</translation>
     </message>
@@ -8852,16 +8857,6 @@
         <translation>donnez la géométrie avec plus de chiffres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>give three numbers such as [0, 0, 1]</source>
-        <translation>donnez trois nombres comme [0, 0, 1]</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>give three numbers such as [0, 0, 1], or auto</source>
-        <translation>donnez trois nombres comme [0, 0, 1], ou auto</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/planning/methods/point_by_point.py"/>
         <source>going from point to point</source>
         <translation>passage de point en point</translation>
@@ -15322,14 +15317,9 @@
         <translation>{0} n&apos;est pas une sortie logique du projet</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>{0} is not a direction; give three numbers such as 0 1 0, or auto</source>
-        <translation>{0} n&apos;est pas une direction ; donnez trois nombres comme 0 1 0, ou auto</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/field.py"/>
-        <source>{0} is not a direction; {1}</source>
-        <translation>{0} n&apos;est pas une direction ; {1}</translation>
+        <location filename="../../freecad_am/core/parameters/vectors.py"/>
+        <source>{0} is not a direction; give three numbers such as [0, 0, 1]{1}</source>
+        <translation>{0} n&apos;est pas une direction ; donnez trois nombres comme [0, 0, 1]{1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
@@ -15662,7 +15652,7 @@
         <translation>{0} n&apos;est pas : {1} ; choisissez-en un</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <location filename="../../freecad_am/core/parameters/vectors.py"/>
         <source>{0} is not an axis; give a point and a direction such as [[0, 0, 0], [0, 0, 1]]</source>
         <translation>{0} n&apos;est pas un axe ; donnez un point et une direction comme [[0, 0, 0], [0, 0, 1]]</translation>
     </message>

@@ -60,7 +60,7 @@ def test_the_base_in_its_forms(read):
         START + "  base: {radius: 6 cm, height: 200 mm, axis: [[0, 1 cm, 280], [0, 0, 1]]}\n"
     )
     assert (job.strategy.base.radius, job.strategy.base.height) == (60.0, 200.0)
-    assert job.strategy.base.line() == ((0.0, 10.0, 280.0), (0.0, 0.0, 1.0))
+    assert job.strategy.base.axis == ((0.0, 10.0, 280.0), (0.0, 0.0, 1.0))
     assert read(START + "  base: {radius: 60 mm, height: inf}\n").strategy.base.height == "inf"
     assert job.substrate.faces == ("Face2",)
     assert (

@@ -33,9 +33,9 @@ def read(tmp_path):
 
 def test_keys_and_their_forms(read):
     assert read(START).strategy == SolidParameters() == read(START + "  layers: planes\n").strategy
-    assert read(START + "  direction: [0, -1, 0.5]\n").strategy.stacking() == (0.0, -1.0, 0.5)
-    assert read(START + "  direction: auto\n").strategy.stacking() is None
-    assert read(START + "  direction: 1 0 0\n").strategy.stacking() == (1.0, 0.0, 0.0)
+    assert read(START + "  direction: [0, -1, 0.5]\n").strategy.direction == (0.0, -1.0, 0.5)
+    assert read(START + "  direction: auto\n").strategy.direction is None
+    assert read(START + "  direction: 1 0 0\n").strategy.direction == (1.0, 0.0, 0.0)
     assert read(START.replace("part.step}", "part.stl, fuse: none}")).strategy.fuse == "none"
     assert read(START + "substrate: {file: plate.step}\n").substrate.file.endswith("plate.step")
     assert read(START + "  layers: developable\n").strategy == DevelopableParameters()

@@ -117,7 +117,7 @@ def random_value(row, rng):
         return rng.choice(spec.choices)
     if spec.kind == f.FLAG:
         return rng.random() < 0.5
-    if spec.kind == f.RECORDS:
+    if spec.kind in (f.RECORDS, f.VECTOR):
         return spec.records.read(TEXTS[row.path[-1]])
     if spec.kind == f.TEXT:
         return TEXTS[row.path[-1]]
@@ -419,7 +419,9 @@ def spellings(row, value):
 def job_cases():
     for cls, section in (*CLASSES, *FAMILIES):
         for row in rows.rows(cls):
-            plain_text = row.spec.kind in (f.TEXT, f.POSE, f.RECORDS) or row.form == rows.TEXT_LIST
+            plain_text = (
+                row.spec.kind in (f.TEXT, f.POSE, f.RECORDS, f.VECTOR) or row.form == rows.TEXT_LIST
+            )
             if not plain_text and not (cls is CladdingParameters and row.key in NOT_FOR_CLADDING):
                 yield pytest.param(cls, section, row, id=f"{cls.__name__}-{row.key}")
 

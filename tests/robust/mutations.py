@@ -150,9 +150,8 @@ def _valid(job, chance):
         if key in (
             "cell.machine",
             "cell.setup",
-            "strategy.base.axis",
             "process.bead_model",
-        ) or spec.kind in (f.TEXT, f.RECORDS):
+        ) or spec.kind in (f.TEXT, f.RECORDS, f.VECTOR):
             continue
         return key, valid_value(key, spec, default, chance)
 

@@ -166,19 +166,10 @@ def strategy_of(section: Any) -> LayerParameters:
     if family.kind != kind:  # the name of its layers, which has said all
         section = {key: value for key, value in section.items() if key != "layers"}
     names = {field.name for field in dataclasses.fields(family.parameters)}
-    for name, write in _LISTS.items():
+    for name, write in _WRITTEN.items():
         if name in names:
             section = write(section)
     return fields.build(family.parameters, section, "strategy", also=kept_clear(family))
-
-
-def direction_as_text(section: dict[str, Any]) -> dict[str, Any]:
-    """The section with a direction, a list of three numbers, as their text."""
-    direction = section.get("direction")
-    if not isinstance(direction, list):
-        return section
-    numbers = [fields.read(number, f.NUMBER, "strategy.direction") for number in direction]
-    return {**section, "direction": " ".join(f"{number:.15g}" for number in numbers)}
 
 
 def _roles_as_text(section: dict[str, Any]) -> dict[str, Any]:
@@ -192,24 +183,10 @@ def _roles_as_text(section: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _base_as_text(section: dict[str, Any]) -> dict[str, Any]:
-    """Return the section without `base: auto`, and with an axis, a point and a direction, as a text
-    of six numbers."""
-    base = section.get("base")
-    if base == "auto":
-        return {key: value for key, value in section.items() if key != "base"}
-    if not isinstance(base, dict) or not isinstance(base.get("axis"), list):
-        return section
-    rows = base["axis"] if all(isinstance(row, list) for row in base["axis"]) else [base["axis"]]
-    numbers = [
-        fields.read(
-            number, f.LENGTH if k == 0 and len(rows) == 2 else f.NUMBER, "strategy.base.axis"
-        )
-        for k, row in enumerate(rows)
-        for number in row
-    ]
-    return {**section, "base": {**base, "axis": " ".join(f"{number:.15g}" for number in numbers)}}
+def _without_auto_base(section: dict[str, Any]) -> dict[str, Any]:
+    """Return the section without `base: auto`."""
+    return {key: value for key, value in section.items() if (key, value) != ("base", "auto")}
 
 
-# keys that are lists in a job and texts in parameters
-_LISTS = {"base": _base_as_text, "direction": direction_as_text, "roles": _roles_as_text}
+# keys that a job writes in another way than parameters
+_WRITTEN = {"base": _without_auto_base, "roles": _roles_as_text}

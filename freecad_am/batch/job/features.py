@@ -21,7 +21,6 @@ from ...core.process import wire
 from ...core.process.wire import model_wire_feed
 from ...sections import fields, tree
 from .feature_sections import (
-    direction_as_text,
     kept_clear,
     process_of,
     refuse_direction,
@@ -232,7 +231,7 @@ def chosen(feature: JobFeature, kind: str, layers: str, mend: float, mode: str =
 
 def planes_of(feature: JobFeature) -> SolidParameters:
     """The direction in which planes would be stacked and how far apart, of a feature whose family is left open."""
-    section = direction_as_text(feature.sections["strategy"])
+    section = feature.sections["strategy"]
     plane_keys = {key: section[key] for key in ("direction", "layer_height") if key in section}
     return fields.build(SolidParameters, plane_keys, "strategy")
 

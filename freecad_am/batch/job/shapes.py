@@ -278,7 +278,7 @@ class Shapes:
                 self.of.process.bead_width,
                 self.job.cell is not None,
                 base=() if self.of.substrate is None else self.of.substrate.faces,
-                direction=planes.stacking(),
+                direction=planes.direction,
                 layer_height=planes.layer_height,
             )
             if proposal.layers == GEODESIC and self.fails:

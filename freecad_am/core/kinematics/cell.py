@@ -645,7 +645,7 @@ def resolve(
     station = station if offset is None else offset.pose @ mount
     if mechanisms:
         machine, limits, external = coupled(
-            machine, limits, mechanisms, parameters.upward(), folders
+            machine, limits, mechanisms, parameters.world_up, folders
         )
         station = station if not external.turning else frames.bryant(platform_pose)
     return Cell(
@@ -662,7 +662,7 @@ def resolve(
         platform_diameter=parameters.platform_diameter,
         external=external,
         arm_clearance=parameters.arm_clearance,
-        up=upward(parameters.upward()),
+        up=upward(parameters.world_up),
         offset=offset,
         external_links=external_links(external),
     )

@@ -74,15 +74,14 @@ def prepare_stack(
     SolidsOnHub
         The bodies on one base.
     """
-    requested = strategy.stacking()
-    if requested is None:
+    if strategy.direction is None:
         ranking = rank_directions(bodies, strategy)
         direction, issues = (
             ranking[0].direction,
             (*issues, _note(ranking, label, np.degrees(strategy.max_overhang))),
         )
     else:
-        direction = np.array(requested) / np.linalg.norm(requested)
+        direction = np.array(strategy.direction) / np.linalg.norm(strategy.direction)
     turned = upright(np.zeros(3), direction)
     local = np.vstack([body.vertices for body in bodies]) @ turned[:3, :3]
     low, high = local.min(axis=0), local.max(axis=0)

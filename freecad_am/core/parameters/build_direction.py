@@ -6,8 +6,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..issues import InputError
 from . import field as f
+from .records import Point, convert_texts
+from .vectors import direction_text
 
 TURN_ON_WALLS, TURN_ON_HUBS = (
     math.radians(30.0),
@@ -56,12 +57,13 @@ class BuildDirectionParameters:
         open_low=True,
         words=("auto", "inf"),
     )
-    plane: str = f.parameter(
-        "auto",
-        f.TEXT,
+    plane: Point | None = f.parameter(
+        None,
+        f.VECTOR,
         "Normal of the plane of symmetry-plane, as x y z in the part's coordinates; auto: the plane of a "
         "bend.",
         advanced=True,
+        records=direction_text("build_direction.plane", "auto"),
     )
     clearance: str = f.parameter(
         "nozzle",
@@ -83,31 +85,11 @@ class BuildDirectionParameters:
     def __post_init__(self) -> None:
         if self.max_turn == math.inf:
             object.__setattr__(self, "max_turn", "inf")
+        convert_texts(self)
         f.check(self, "build_direction")
-        self.plane_normal()
 
     def turn(self, auto: float = TURN_ON_WALLS) -> float:
         """Return `max_turn`, rad/mm, infinite for inf; for auto the value for walls, or the given
         one.
         """
         return auto if self.max_turn == "auto" else float(self.max_turn)
-
-    def plane_normal(self) -> tuple[float, float, float] | None:
-        """Return `plane` as three numbers, not normalised; None for auto.
-
-        Raises InputError BAD_VALUE if it is not a vector.
-        """
-        if self.plane == "auto":
-            return None
-        try:
-            x, y, z = (float(word) for word in self.plane.replace(",", " ").split())
-        except ValueError:
-            x = y = z = math.nan
-        if not 0.0 < math.hypot(x, y, z) < math.inf:
-            raise InputError(
-                "BAD_VALUE",
-                "build_direction.plane",
-                "{!r} is not a direction; give three numbers such as 0 1 0, or auto",
-                self.plane,
-            )
-        return x, y, z

@@ -19,7 +19,8 @@ from .cell_records import (
     TouchedPoint,
     check_names,
 )
-from .records import Pose, convert_texts
+from .records import Point, Pose, convert_texts
+from .vectors import direction_text
 
 SHOULDERS, ELBOWS, WRISTS = ("front", "back"), ("up", "down"), ("noflip", "flip")
 
@@ -110,11 +111,12 @@ class CellParameters:
         poses=True,
         records=EXTERNAL,
     )
-    world_up: str = f.parameter(
-        "0 0 1",
-        f.TEXT,
+    world_up: Point = f.parameter(
+        (0.0, 0.0, 1.0),
+        f.VECTOR,
         "Direction against gravity, as x y z in the world.",
         advanced=True,
+        records=direction_text("cell.world_up"),
     )
     arm_clearance: float | None = f.parameter(
         None,
@@ -156,19 +158,9 @@ class CellParameters:
         advanced=True,
     )
 
-    def upward(self) -> tuple[float, float, float]:
-        """Return `world_up` as three numbers, not normalised.
-
-        Raises InputError BAD_VALUE if it is not a direction.
-        """
-        return f.direction_of(
-            self.world_up, "cell.world_up", "give three numbers such as [0, 0, 1]"
-        )
-
     def __post_init__(self) -> None:
         convert_texts(self)
         check_names(self.obstacles)
-        self.upward()
         if isinstance(self.platform, (tuple, list)):
             if len(self.platform) != 6:
                 raise InputError(

@@ -16,6 +16,7 @@ from ..issues import InputError, Text, Word
 
 if TYPE_CHECKING:
     from .records import Records, RecordTexts
+    from .vectors import VectorText
 
 LENGTH, ANGLE, SPEED, TIME = "length", "angle", "speed", "time"
 RATIO, NUMBER, COUNT, FLAG, CHOICE, TEXT, POSE = (
@@ -28,7 +29,7 @@ RATIO, NUMBER, COUNT, FLAG, CHOICE, TEXT, POSE = (
     "pose",
 )
 ANGLE_RANGE, RATIO_RANGE, TURN_RATE = "angle range", "ratio range", "turn rate"
-POINT, RECORDS = "point", "records"
+POINT, RECORDS, VECTOR = "point", "records", "vector"
 GROUP = "group"
 
 # the outer unit of a bare number, and its size in internal units
@@ -62,7 +63,8 @@ class Spec:
     `optional` parameters may be None. `words` are texts allowed in place of a number (such as
     'auto'). `advanced` parameters are folded away in a panel. `unit` belongs to a NUMBER, or to a
     TEXT of numbers with one common unit; panels show it. `poses`: the text contains poses, which
-    may be typed in the notation of a pendant. `records`: the notations of a field of RECORDS.
+    may be typed in the notation of a pendant. `records`: the notations of a field of RECORDS or
+    VECTOR.
     """
 
     kind: str
@@ -76,7 +78,7 @@ class Spec:
     advanced: bool = False
     unit: str = ""
     poses: bool = False
-    records: Records | RecordTexts | None = None
+    records: Records | RecordTexts | VectorText | None = None
 
 
 def parameter(default: Any, kind: str, help: str, **more: Any) -> Any:
@@ -93,20 +95,6 @@ def spec_of(field: dataclasses.Field[Any]) -> Spec:
     """The `Spec` of a dataclass field made by `parameter` or `group`."""
     spec: Spec = field.metadata["spec"]
     return spec
-
-
-def direction_of(text: str, where: str, remedy: str) -> tuple[float, float, float]:
-    """Return three numbers, not normalised.
-
-    Raises InputError BAD_VALUE if the text is not a direction.
-    """
-    try:
-        x, y, z = (float(word) for word in text.replace(",", " ").split())
-    except ValueError:
-        x = y = z = math.nan
-    if not 0.0 < math.hypot(x, y, z) < math.inf:
-        raise InputError("BAD_VALUE", where, "{!r} is not a direction; {}", text, remedy)
-    return x, y, z
 
 
 def outer_text(spec: Spec, value: float) -> str:
@@ -163,7 +151,7 @@ def check_value(spec: Spec, value: Any, key: str) -> None:
             raise InputError(
                 "BAD_VALUE", key, "{!r} is not true or false; use true or false", value
             )
-    elif spec.kind == RECORDS:
+    elif spec.kind in (RECORDS, VECTOR):
         return  # checked when they are made
     elif spec.kind == TEXT:
         if not isinstance(value, str):

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 
 from ..issues import InputError, Text
 from . import field as f
+from .records import Point, convert_texts
 from .strategy import LAYER_TIME, MEND, LayerParameters
+from .vectors import Axis, axis_text, direction_text
 
 
 @dataclass(frozen=True)
@@ -66,18 +68,19 @@ class BaseParameters:
         open_low=True,
         words=("inf",),
     )
-    axis: str = f.parameter(
-        "0 0 0 0 0 1",
-        f.TEXT,
+    axis: Axis = f.parameter(
+        Axis((0.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+        f.VECTOR,
         "Middle x y z of the base circle and direction i j k of the axis, towards the apex, in the "
         "part's coordinates.",
+        records=axis_text("strategy.base.axis"),
     )
 
     def __post_init__(self) -> None:
         if self.height == math.inf:
             object.__setattr__(self, "height", "inf")
+        convert_texts(self)
         f.check(self, "strategy.base")
-        self.line()
         if self.radius == "auto" and self.height != "inf":
             raise InputError(
                 "BAD_VALUE",
@@ -85,22 +88,6 @@ class BaseParameters:
                 "a height without a radius does not define a cone; give the radius of the base "
                 "circle too, or base: auto",
             )
-
-    def line(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Middle of the base circle and direction of the axis, not of unit length."""
-        try:
-            numbers = [float(word) for word in self.axis.replace(",", " ").split()]
-        except ValueError:
-            numbers = []
-        point, way = tuple(numbers[:3]), tuple(numbers[3:])
-        if len(numbers) != 6 or not all(map(math.isfinite, numbers)) or not math.hypot(*way) > 0.0:
-            raise InputError(
-                "BAD_VALUE",
-                "strategy.base.axis",
-                "{!r} is not an axis; give a point and a direction such as [[0, 0, 0], [0, 0, 1]]",
-                self.axis,
-            )
-        return point, way
 
 
 @dataclass(frozen=True)
@@ -362,11 +349,12 @@ class SolidParameters(FilledParameters):
         "(along).",
         choices=(PLANES, GEODESIC, OFFSET, ALONG),
     )
-    direction: str = f.parameter(
-        "0 0 1",
-        f.TEXT,
+    direction: Point | None = f.parameter(
+        (0.0, 0.0, 1.0),
+        f.VECTOR,
         "Stacking direction x y z in part coordinates, from the first layer to the last; auto: "
         "the direction with the least overhanging area, then the least height.",
+        records=direction_text("strategy.direction", "auto"),
     )
     cut_at: str = f.parameter(
         "middle",
@@ -398,19 +386,8 @@ class SolidParameters(FilledParameters):
     )
 
     def __post_init__(self) -> None:
+        convert_texts(self)
         super().__post_init__()
-        self.stacking()
-
-    def stacking(self) -> tuple[float, float, float] | None:
-        """Return `direction` as three numbers of any length; None for auto.
-
-        Raises InputError BAD_VALUE if it is not a direction.
-        """
-        if self.direction == "auto":
-            return None
-        return f.direction_of(
-            self.direction, "strategy.direction", "give three numbers such as [0, 0, 1], or auto"
-        )
 
     @property
     def has_plane_layers(self) -> bool:

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from ..geometry.curves import gcode, gcode_roles
 from ..issues import InputError
 from . import field as f
+from .records import Point, convert_texts
+from .vectors import direction_text
 
 MIN_CHORD_ERROR = 0.01  # mm, for parts up to SMALL and for unknown sizes
 SMALL_PART_SIZE = 250.0  # mm
@@ -187,11 +189,12 @@ class SurfaceParameters(LayerParameters):
 class CurvesParameters(LayerParameters):
     """How to print curves as beads. mm."""
 
-    direction: str = f.parameter(
-        "0 0 1",
-        f.TEXT,
+    direction: Point = f.parameter(
+        (0.0, 0.0, 1.0),
+        f.VECTOR,
         "Direction x y z from the deposit towards the tool, in part coordinates, used where "
         "neither the curves nor faces define one.",
+        records=direction_text("strategy.direction"),
     )
     repeat: int = f.parameter(
         1,
@@ -220,8 +223,8 @@ class CurvesParameters(LayerParameters):
     min_layer_time: float = f.parameter(0.0, f.TIME, f"{LAYER_TIME}.", low=0.0)
 
     def __post_init__(self) -> None:
+        convert_texts(self)
         f.check(self, "strategy")
-        self.way()
         if not gcode_roles.split_entries(self.roles):
             raise InputError(
                 "BAD_VALUE",
@@ -229,14 +232,3 @@ class CurvesParameters(LayerParameters):
                 "{!r} names no roles; give part, all, or a list",
                 self.roles,
             )
-
-    def way(self) -> tuple[float, float, float]:
-        """Return `direction` as a unit vector.
-
-        Raises InputError BAD_VALUE if it is not a direction.
-        """
-        x, y, z = f.direction_of(
-            self.direction, "strategy.direction", "give three numbers such as [0, 0, 1]"
-        )
-        size = math.hypot(x, y, z)
-        return x / size, y / size, z / size

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -40,7 +41,7 @@ def plan(
 
     InputError ALONG_DIRECTION.
     """
-    fixed = np.array(strategy.way())
+    fixed = np.array(strategy.direction) / math.hypot(*strategy.direction)
     numbers = sorted({curve.layer for curve in curves_.curves})
     layers: list[Layer] = []
     for again in range(strategy.repeat):

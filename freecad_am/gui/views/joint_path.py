@@ -224,7 +224,7 @@ def _limit_shares(obj: Any, value: Seen, kind: str) -> Array:
         settings.external,
     )
     if mechanisms:
-        machine, limits, _ = coupled(machine, limits, mechanisms, settings.upward(), folders)
+        machine, limits, _ = coupled(machine, limits, mechanisms, settings.world_up, folders)
     if joints.shape[1] != limits.axes:
         raise InputError(
             "BAD_INPUT",

@@ -19,7 +19,8 @@ import FreeCAD as App
 
 from ...core.issues import InputError, Text, Word
 from ...core.parameters import field as f
-from ...core.parameters.records import Records
+from ...core.parameters.records import Records, RecordTexts
+from ...core.parameters.vectors import VectorText
 from ...posts import catalogue
 from . import pendants
 
@@ -165,6 +166,8 @@ class Row:
             checked_words([value], where)
         if isinstance(self.spec.records, Records):
             return self._records(self.spec.records, value, where)
+        if isinstance(self.spec.records, VectorText):
+            return self.spec.records.read(value)
         if self.form == f.POSE:
             return _pose(value, where)
         if self.form == TEXT_LIST:
@@ -311,7 +314,7 @@ def _form(spec: f.Spec, annotation: str) -> str:
     if spec.kind == f.LENGTH and "Pose" in annotation:
         return LENGTH_OR_POSE
     if spec.records is not None:
-        return f.TEXT if isinstance(spec.records, Records) else TEXT_LIST
+        return TEXT_LIST if isinstance(spec.records, RecordTexts) else f.TEXT
     if spec.kind == f.TEXT and annotation.startswith("tuple"):
         return TEXT_LIST
     return MIXED if spec.words or spec.optional else spec.kind

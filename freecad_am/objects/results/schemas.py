@@ -30,7 +30,7 @@ SCHEMAS: dict[str, Schema] = {
     "bead_path": Schema("core.planning.joint_path:BeadPath"),
     "bead_role": Schema("core.toolpath:BeadRole"),
     "cell_obstacle": Schema("core.parameters.cell_records:Obstacle"),
-    "cell_parameters": Schema("core.parameters.cell:CellParameters", 2),
+    "cell_parameters": Schema("core.parameters.cell:CellParameters", 3),
     "clad_faces": Schema("core.geometry.walls.patch_wall:CladFaces"),
     "cone_surface": Schema("core.geometry.walls.surface:Cone"),
     "curves": Schema("core.geometry.curves.bead_curves:Curves"),
@@ -129,6 +129,7 @@ def _divide_toolpath(fields: Fields) -> Any:
 UPGRADES: dict[tuple[str, int], Callable[[Fields], Any]] = {
     ("bead", 1): _divide_bead,
     ("cell_parameters", 1): lambda fields: fields,  # texts, which the class turns into records
+    ("cell_parameters", 2): lambda fields: fields,
     ("nozzle_parameters", 1): lambda fields: fields,
     ("toolpath", 1): _divide_toolpath,
 }

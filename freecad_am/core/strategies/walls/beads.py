@@ -62,9 +62,8 @@ def symmetry_plane(wall: SurfaceWall | PatchWall, build: BuildDirectionParameter
     """
     if build.mode != "symmetry-plane":
         return None
-    plane_normal = build.plane_normal()
-    if plane_normal is not None:
-        return np.asarray(np.array(plane_normal) / np.linalg.norm(plane_normal))
+    if build.plane is not None:
+        return np.asarray(np.array(build.plane) / np.linalg.norm(build.plane))
     normal = wall.symmetry_normal
     if normal is None:
         raise InputError(
