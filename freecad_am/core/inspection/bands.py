@@ -58,7 +58,22 @@ def css(colour: tuple[float, float, float]) -> str:
 
 
 def colours(deviation: Array, within: Mask, tolerance: float) -> Array:
-    """Colours (n, 3) of deviations (n,); grey where they do not count."""
+    """Return the colours of deviations.
+
+    Parameters
+    ----------
+    deviation : (n,) array
+        Deviations, mm.
+    within : (n,) bool array
+        Deviations that count; the others are grey.
+    tolerance : float
+        Width of a band, mm.
+
+    Returns
+    -------
+    (n, 3) array
+        Red, green and blue from 0 to 1.
+    """
     colours_ = np.array(_COLOURS)[band_of(deviation, tolerance)]
     colours_[~within] = PAST_EDGES
     return colours_

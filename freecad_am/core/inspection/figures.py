@@ -226,7 +226,26 @@ def summarise(deviation: Array, tolerance: float) -> Spread:
 
 
 def ball(points: Array, feet: Array, where: str) -> Ball | None:
-    """Sphericity of points (n, 3) whose feet on the planned surface (n, 3) are on a sphere; None if they are not."""
+    """Return the sphericity of points.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Measured points, mm.
+    feet : (n, 3) array
+        Their feet on the planned surface, mm.
+    where : str
+        Name of the points, for messages.
+
+    Returns
+    -------
+    Ball or None
+        None if the feet are not on a sphere.
+
+    References
+    ----------
+    Chalvin 2020, table 2.
+    """
     try:
         planned = least_squares_round(feet, where)
         if planned.zone > ROUND * planned.radius:
@@ -241,10 +260,40 @@ def ball(points: Array, feet: Array, where: str) -> Ball | None:
 def circle(
     planned: Planned, points: Array, normal: Array, height: float, band: float, where: str
 ) -> Circle:
-    """Circularity of the points (n, 3), with the planned normals (n, 3), within a band of a height, mm.
+    """Return the circularity of points at a height.
 
-    They are moved to the height by the change of the planned radius, along the meridian of a part of revolution, else along the
-    slope of the planned surface, so that a point at the height does not move. Raises InputError FEW_POINTS.
+    Points in the band are moved to the height by the change of the planned radius, along the
+    meridian of a part of revolution, else along the slope of the planned surface, so that a
+    point at the height does not move.
+
+    Parameters
+    ----------
+    planned : Planned
+        The surface with its frame.
+    points : (n, 3) array
+        Measured points, mm.
+    normal : (n, 3) array
+        Planned normals there.
+    height : float
+        Height above the base, mm.
+    band : float
+        Half width of the band, mm.
+    where : str
+        Name of the points, for messages.
+
+    Returns
+    -------
+    Circle
+        The fitted circle and the narrowest zone.
+
+    Raises
+    ------
+    InputError
+        FEW_POINTS for fewer than four points in the band.
+
+    References
+    ----------
+    Chalvin 2020, table 2.
     """
     local = (points - planned.frame[:3, 3]) @ planned.frame[:3, :3]
     in_band = np.abs(local[:, 2] - height) <= band
@@ -296,8 +345,25 @@ def _radius_change(meridian: Meridian, heights: Array, radius: Array, height: fl
 def thickness(
     feet: Array, deviation: Array, outer: Mask, planned: float, reach: float
 ) -> Thickness | None:
-    """Thickness where feet (n, 3) on the planned surface measured on its outer side have feet of the inner side within `reach` mm:
-    `planned` mm plus both deviations (n,). None without such pairs.
+    """Return the thickness of a wall that was measured on both sides.
+
+    Parameters
+    ----------
+    feet : (n, 3) array
+        Feet of the points on the planned surface, mm.
+    deviation : (n,) array
+        Deviations of the points, mm.
+    outer : (n,) bool array
+        Points of the outer side.
+    planned : float
+        Planned thickness, mm.
+    reach : float
+        Largest distance between the feet of a pair, mm.
+
+    Returns
+    -------
+    Thickness or None
+        The planned thickness plus both deviations; None without pairs.
     """
     outer_rows, inner_rows = np.flatnonzero(outer), np.flatnonzero(~outer)
     if not len(outer_rows) or not len(inner_rows):
@@ -339,8 +405,24 @@ def zone_of(points: Array, where: str) -> Round:
 
 
 def default_heights(planned: Planned, points: Array) -> tuple[float, ...]:
-    """A sixth, a half and five sixths of the heights of points (n, 3) above the part's base, mm, as the paper has them of
-    10 to 40 mm: 15, 25 and 35."""
+    """Return a sixth, a half and five sixths of the height of points.
+
+    Parameters
+    ----------
+    planned : Planned
+        The surface with its frame.
+    points : (n, 3) array
+        Measured points, mm.
+
+    Returns
+    -------
+    tuple of float
+        Heights above the base, mm.
+
+    Notes
+    -----
+    The paper has 15, 25 and 35 mm for heights of 10 to 40 mm.
+    """
     height = (points - planned.frame[:3, 3]) @ planned.frame[:3, 2]
     low, high = float(height.min()), float(height.max())
     return tuple(round(low + share * (high - low), 3) for share in (1.0 / 6.0, 0.5, 5.0 / 6.0))

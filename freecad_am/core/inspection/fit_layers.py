@@ -42,7 +42,15 @@ class Scanned:
     off: Array
 
     def samples(self) -> tuple[Array, Array]:
-        """Points (k, 3) along the bead, at most STEP apart, and offsets (k,) of the scan there."""
+        """Return points along the bead, at most STEP apart.
+
+        Returns
+        -------
+        points : (k, 3) array
+            Points, mm.
+        off : (k,) array
+            Offsets of the scan there, mm.
+        """
         arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(self.bead.points, axis=0), axis=1))]
         samples_ = np.linspace(0.0, arc[-1], max(2, int(np.ceil(arc[-1] / STEP)) + 1))
         points = np.column_stack(
@@ -54,7 +62,26 @@ class Scanned:
 def along_beads(
     beads: Sequence[Bead], directions_of: Ways, off: Off, share: float, tolerance: float
 ) -> list[Scanned]:
-    """The beads with as many points as `share` of the scan offset needs to be linear between them, within `tolerance` mm."""
+    """Return beads with enough points for the scan offset to be linear between them.
+
+    Parameters
+    ----------
+    beads : sequence of Bead
+        The beads.
+    directions_of : Ways
+        Returns the directions (n, 3) in which layers grow along a bead.
+    off : Off
+        Returns the scan offsets (n,) of points (n, 3) along directions (n, 3).
+    share : float
+        Share of the offset that counts.
+    tolerance : float
+        Largest departure from linear, mm.
+
+    Returns
+    -------
+    list of Scanned
+        The beads with directions and offsets.
+    """
     close = max(tolerance, NOISE_MM)
     points, directions = (
         np.concatenate([bead.points for bead in beads]),
@@ -110,8 +137,24 @@ def _halved(
 
 
 def move_bead(scanned: Scanned, share: float, thinner: float, height: float) -> Bead:
-    """The bead moved by a share of the scan offset. thinner: 1/mm, reduction of the layer height, mm, per mm of offset, as a share;
-    the bead is deposited as much faster.
+    """Return a bead moved by a share of the scan offset.
+
+    Parameters
+    ----------
+    scanned : Scanned
+        The bead with directions and offsets.
+    share : float
+        The share.
+    thinner : float
+        Relative reduction of the layer height per mm of offset, 1/mm; the bead is deposited
+        as much faster.
+    height : float
+        Layer height of beads without their own, mm.
+
+    Returns
+    -------
+    Bead
+        The moved bead.
     """
     bead, shift = scanned.bead, share * scanned.off[:, None] * scanned.directions
     if bead.closed:
@@ -179,10 +222,32 @@ def refuse_family(toolpath: Toolpath, where: str) -> None:
 def fit_layers(
     toolpath: Toolpath, scan: Scan, parameters: ScanParameters, left_out: int, motion: Array
 ) -> Toolpath:
-    """The toolpath with its layers fitted to a scan.
+    """Return the toolpath with its layers fitted to a scan.
 
-    left_out: points of its file that were dropped; motion: (4, 4) from the measuring coordinates to the part. InputError
-    NO_LAYER, SCAN_MISSES, SCAN_OFF, and the errors of `refuse_family`.
+    The first layer above the scan is on it, and the next ones lead back to the plan.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The planned toolpath.
+    scan : Scan
+        The scan in part coordinates.
+    parameters : ScanParameters
+        First layer and band.
+    left_out : int
+        Number of points of the file that were dropped.
+    motion : (4, 4) array
+        Motion from the measuring coordinates to the part.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath with a record of the fit.
+
+    Raises
+    ------
+    InputError
+        NO_LAYER, SCAN_MISSES, SCAN_OFF; NOT_YET as in `refuse_family`.
     """
     refuse_family(toolpath, scan.label)
     first_layer = parameters.first
@@ -251,7 +316,20 @@ def fit_layers(
 
 
 def max_moves(record: Fitted, layers: Index) -> Array:
-    """(n,) mm that points of the layers (n,) were moved at most to fit them to a scan."""
+    """Return how far points of layers were moved at most to fit them to a scan.
+
+    Parameters
+    ----------
+    record : Fitted
+        The record of the fit.
+    layers : (n,) int array
+        Layers of the points.
+
+    Returns
+    -------
+    (n,) array
+        mm.
+    """
     largest = float(np.abs(record.off).max(initial=0.0))
     reduction = 1.0 - (
         record.remains / largest if largest else 0.0

@@ -69,7 +69,31 @@ class Inspected:
 def inspect(
     measured: Measured, planned: Planned, parameters: InspectionParameters, report: Report
 ) -> Inspected:
-    """Align measured points with the planned surface and judge them. Raises InputError, and InfeasibleError NOT_SETTLED."""
+    """Align measured points with the planned surface and judge them.
+
+    Parameters
+    ----------
+    measured : Measured
+        The points.
+    planned : Planned
+        The surface in part coordinates.
+    parameters : InspectionParameters
+        Fit, probe, tolerance and heights.
+    report : Report
+        Receives share and text; may raise to cancel.
+
+    Returns
+    -------
+    Inspected
+        Points, deviations and figures.
+
+    Raises
+    ------
+    InputError
+        For unsuitable points or parameters.
+    InfeasibleError
+        NOT_SETTLED if the fit does not converge.
+    """
     refuse_too_few(measured.points, measured.label)
     report(0.05, "laying the points onto the part")
     registration, within, distances = _aligned(measured, planned, parameters)

@@ -51,7 +51,22 @@ class Planned:
 
 
 def sided(surface: Surface, side: str, thickness: float) -> Surface:
-    """The surface of a wall's outer side, inner side, or the nearer of both, half a thickness, mm, off its planned one."""
+    """Return the surface of a side of a wall, half a thickness off its planned surface.
+
+    Parameters
+    ----------
+    surface : Surface
+        Returns signed distances (n,) and normals (n, 3) at points.
+    side : str
+        OUTER, INNER, or BOTH for the nearer one.
+    thickness : float
+        Thickness of the wall, mm.
+
+    Returns
+    -------
+    Surface
+        Such a function for the side.
+    """
     if side == BOTH:
 
         def both(points: Array) -> tuple[Array, Array]:
@@ -78,7 +93,30 @@ def triangle_surface(
     chord: float = 0.0,
     max_points: int = 20_000,
 ) -> Planned:
-    """A surface of triangles, counter-clockwise seen from outside for a solid; or the surface that they approximate, by `exact`."""
+    """Return a planned surface of triangles.
+
+    Parameters
+    ----------
+    name : str
+        Name for messages.
+    vertices : (n, 3) array
+        Vertices in part coordinates, mm.
+    triangles : (m, 3) int array
+        Counter-clockwise seen from outside for a solid.
+    frame : (4, 4) array or None, optional
+        Frame of the surface; None for the part's.
+    exact : Surface or None, optional
+        The surface that the triangles approximate; None for the triangles themselves.
+    chord : float, optional
+        Accuracy of the triangles, mm.
+    max_points : int, optional
+        Useful number of points for a fit.
+
+    Returns
+    -------
+    Planned
+        The surface.
+    """
     mesh = SolidMesh(vertices, triangles)
     extent = float(np.ptp(vertices, axis=0).max())
     search = mesh.searched(0.02 * extent)
@@ -115,7 +153,26 @@ def triangle_surface(
 
 
 def bead_surface(name: str, samples: Array, normals: Array, frame: Array, step: float) -> Planned:
-    """Planned beads as points (n, 3) along them with the wall's normals (n, 3) there, no farther apart than `step` mm."""
+    """Return planned beads as a surface.
+
+    Parameters
+    ----------
+    name : str
+        Name for messages.
+    samples : (n, 3) array
+        Points along the beads, mm.
+    normals : (n, 3) array
+        Unit normals of the wall there.
+    frame : (4, 4) array
+        Frame of the surface.
+    step : float
+        Largest distance between the points, mm.
+
+    Returns
+    -------
+    Planned
+        The surface.
+    """
     tree = cKDTree(samples)
 
     def surface(points: Array) -> tuple[Array, Array]:
@@ -310,7 +367,27 @@ PLAIN = np.radians(
 
 
 def align_scan(points: Array, body: Body, label: str) -> Array:
-    """The motion (4, 4) that moves measured points (n, 3) onto a body. Raises InputError SCAN_OTHER, SCAN_AMBIGUOUS."""
+    """Return the motion that moves measured points onto a body.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Measured points, mm.
+    body : Body
+        The body in part coordinates.
+    label : str
+        Name of the scan, for messages.
+
+    Returns
+    -------
+    (4, 4) array
+        The motion.
+
+    Raises
+    ------
+    InputError
+        SCAN_OTHER if the fit fails, SCAN_AMBIGUOUS if several attitudes are equivalent.
+    """
     planned = triangle_surface(body.name, body.vertices, body.triangles)
     neighbour_distance = np.asarray(
         cKDTree(points).query(points, k=min(NEIGHBOURS + 1, len(points)))[0]

@@ -36,7 +36,25 @@ _STL_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("mo
 
 
 def stl(data: bytes, where: str) -> Array:
-    """Vertices (n, 3) of an STL file, each once."""
+    """Return the vertices of an STL file, each once.
+
+    Parameters
+    ----------
+    data : bytes
+        Content of the file, text or binary.
+    where : str
+        Name of the file, for messages.
+
+    Returns
+    -------
+    (n, 3) array
+        In the unit of the file.
+
+    Raises
+    ------
+    InputError
+        BAD_FILE for coordinates that are not numbers.
+    """
     count = int(np.frombuffer(data[80:84], dtype="<u4")[0]) if len(data) >= 84 else 0
     if len(data) == 84 + 50 * count:
         corners = np.frombuffer(data, dtype=_STL_TRIANGLE, offset=84)["corners"].reshape(-1, 3)
@@ -53,12 +71,48 @@ def stl(data: bytes, where: str) -> Array:
 
 
 def obj(data: bytes, where: str) -> Array:
-    """Vertices (n, 3) of an OBJ file."""
+    """Return the vertices of an OBJ file.
+
+    Parameters
+    ----------
+    data : bytes
+        Content of the file.
+    where : str
+        Name of the file, for messages.
+
+    Returns
+    -------
+    (n, 3) array
+        In the unit of the file.
+
+    Raises
+    ------
+    InputError
+        BAD_FILE for coordinates that are not numbers.
+    """
     return _numbers(re.findall(rb"^v[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)", data, re.MULTILINE), where)
 
 
 def ply(data: bytes, where: str) -> Array:
-    """Vertices (n, 3) of a PLY file, text or binary."""
+    """Return the vertices of a PLY file, text or binary.
+
+    Parameters
+    ----------
+    data : bytes
+        Content of the file.
+    where : str
+        Name of the file, for messages.
+
+    Returns
+    -------
+    (n, 3) array
+        In the unit of the file.
+
+    Raises
+    ------
+    InputError
+        BAD_FILE for another format or a truncated file.
+    """
     head, mark, body = data.partition(b"end_header")
     body = body.partition(b"\n")[2]
     lines = [line.split() for line in head.decode("latin-1").splitlines()]
@@ -173,7 +227,27 @@ def read(path: str | Path, unit: str = AUTO) -> Measured:
 
 
 def parse(data: bytes, label: str, unit: str = AUTO) -> Measured:
-    """As `read`, from the bytes of a file with this name."""
+    """Return the points of a file's content.
+
+    Parameters
+    ----------
+    data : bytes
+        Content of the file.
+    label : str
+        Name of the file; its suffix decides the format.
+    unit : str, optional
+        Unit of the coordinates; AUTO for the one that the file names, else mm.
+
+    Returns
+    -------
+    Measured
+        Points in mm, with a note on the interpretation.
+
+    Raises
+    ------
+    InputError
+        EMPTY_FILE, NO_POINTS, BAD_FILE, BAD_UNIT.
+    """
     if not data.strip():
         raise InputError("EMPTY_FILE", label, "the file is empty; export the points again")
     suffix = Path(label).suffix.lower()

@@ -26,7 +26,22 @@ NO_TURN = 1e-6  # rad per mm of shift: no turn
 
 
 def motion_text(turn: Array, shift: Array, middle: Array) -> str:
-    """A motion by its turn (3,) rad and the shift (3,) mm of the point `middle` (3,): a turn about an axis, or a shift."""
+    """Return a motion in words: a turn about an axis, or a shift.
+
+    Parameters
+    ----------
+    turn : (3,) array
+        Rotation vector, rad.
+    shift : (3,) array
+        Shift of the point `middle`, mm.
+    middle : (3,) array
+        The point, mm.
+
+    Returns
+    -------
+    str
+        The text.
+    """
     angle, distance = float(np.linalg.norm(turn)), float(np.linalg.norm(shift))
     if angle <= NO_TURN * distance:
         return f"a shift along {place(_upward(shift / distance))}"
@@ -97,15 +112,47 @@ def register(
     free: float = MIN_INFLUENCE,
     still: float = STILL,
 ) -> Registration:
-    """The best fit of points (n, 3) from any of the starts (4, 4): each is tried with a few points, the best with all.
+    """Return the best fit of points onto a surface from any start.
 
-    trim: share 0..1 of the points, those farthest off, that do not count (outliers, supports, a clamp).
-    radius: mm of a probe's ball whose centre was measured; distances count from the ball's surface.
-    allowed: (6, k) motions that may be made, as columns: three turns about the part's origin over three shifts; all without.
-    Their products must be of the same kind, as the turns about and shifts along one axis are.
-    free: motions that distances feel by no more than this share of the one they feel most are not made.
-    still: mm that the last round may move a point by.
-    Raises InputError for too few points; raises InfeasibleError NOT_SETTLED naming `where`.
+    Each start is tried with a few points, the best with all.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Measured points, mm.
+    surface : Surface
+        Returns signed distances (n,) and normals (n, 3) at points.
+    starts : iterable of Array
+        Motions (4, 4) to begin with.
+    where : str
+        Name of the points, for messages.
+    trim : float, optional
+        Share of the points, those farthest off, that do not count (outliers, supports, a
+        clamp); from 0 to less than 0.5.
+    radius : float, optional
+        Radius of a probe's ball whose centre was measured, mm; distances count from the
+        ball's surface.
+    allowed : (6, k) array or None, optional
+        Motions that may be made, as columns: three turns about the part's origin over three
+        shifts; None for all. Their products must be of the same kind, as the turns about
+        and shifts along one axis are.
+    free : float, optional
+        Motions that distances feel by no more than this share of the most influential one
+        are not made.
+    still : float, optional
+        Displacement of a point in the last round at which the fit has settled, mm.
+
+    Returns
+    -------
+    Registration
+        The fit.
+
+    Raises
+    ------
+    InputError
+        TOO_FEW_POINTS; OUT_OF_RANGE for an excluded share.
+    InfeasibleError
+        NOT_SETTLED if the fit does not converge.
     """
     refuse_too_few(points, where)
     if not 0.0 <= trim < 0.5:
@@ -141,8 +188,26 @@ def roughly(
     allowed: Array | None = None,
     free: float = MIN_INFLUENCE,
 ) -> Array:
-    """An approximate motion (4, 4) from a sample of the points: from the first of the starts that comes to about the least
-    distances, so that motions without influence are not made.
+    """Return an approximate motion from a sample of the points.
+
+    It comes from the first of the starts that leads to about the least distances, so that
+    motions without influence are not made.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Measured points, mm.
+    surface : Surface
+        Returns signed distances (n,) and normals (n, 3) at points.
+    starts : iterable of Array
+        Motions (4, 4) to begin with.
+    trim, radius, allowed, free : float, optional
+        As in `register`.
+
+    Returns
+    -------
+    (4, 4) array
+        The motion.
     """
     sample = points[np.unique(np.linspace(0, len(points) - 1, TRIAL_POINTS).astype(np.intp))]
     first_fits = [
@@ -164,18 +229,57 @@ def roughly(
 def mean_square(
     points: Array, surface: Surface, motion: Array, trim: float = 0.0, radius: float = 0.0
 ) -> float:
-    """Mean square distance, mm2, of the counted points (n, 3) moved by a motion (4, 4)."""
+    """Return the mean square distance of moved points from a surface.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Measured points, mm.
+    surface : Surface
+        Returns signed distances (n,) and normals (n, 3) at points.
+    motion : (4, 4) array
+        The motion.
+    trim : float, optional
+        Share of the points that do not count.
+    radius : float, optional
+        Radius of a probe's ball, mm.
+
+    Returns
+    -------
+    float
+        mm2.
+    """
     return _square(surface(_transform(points, motion))[0] - radius, trim)
 
 
 def as_measured() -> Array:
-    """The start (1, 4, 4) of points that were measured in the part's own coordinates."""
+    """Return the start for points that were measured in part coordinates.
+
+    Returns
+    -------
+    (1, 4, 4) array
+        The identity.
+    """
     return np.eye(4)[None]
 
 
 def by_extents(points: Array, of_surface: Array) -> Array:
-    """Starts (25, 4, 4): as measured, and centre on centre with the principal axes of points (n, 3) along the axes of points
-    all over the surface (m, 3), in the 24 orientations.
+    """Return starts from the extents of points and surface.
+
+    The first start is as measured; the others place centre on centre with the principal axes of
+    the points along those of the surface, in the 24 orientations.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Measured points, mm.
+    of_surface : (m, 3) array
+        Points all over the surface, mm.
+
+    Returns
+    -------
+    (25, 4, 4) array
+        Motions.
     """
     centre, surface_centre = points.mean(axis=0), of_surface.mean(axis=0)
     axes_of_points = np.linalg.svd(points - centre, full_matrices=False)[2]
@@ -192,8 +296,30 @@ def by_extents(points: Array, of_surface: Array) -> Array:
 
 
 def by_pairs(measured: Array, planned: Array, where: str) -> Array:
-    """The start (1, 4, 4) that moves three or more measured points (k, 3) onto the corresponding points of the part (k, 3), with the
-    least squares (Kabsch 1976).
+    """Return the start that moves measured points onto corresponding points of the part.
+
+    Parameters
+    ----------
+    measured : (k, 3) array
+        Three or more measured points, mm.
+    planned : (k, 3) array
+        The corresponding points of the part, mm.
+    where : str
+        Name of the points, for messages.
+
+    Returns
+    -------
+    (1, 4, 4) array
+        The motion with the least sum of squared distances.
+
+    Raises
+    ------
+    InputError
+        TOO_FEW_PAIRS; PAIRS_IN_LINE for collinear points.
+
+    References
+    ----------
+    Kabsch 1976.
     """
     if measured.shape != planned.shape or len(measured) < 3:
         raise InputError(

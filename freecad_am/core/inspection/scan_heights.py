@@ -31,12 +31,42 @@ SCALE_RATIO = (
 
 
 def share_near(points: Array, body: Body, within: float) -> float:
-    """The share of points (n, 3) within a distance, mm, of the body."""
+    """Return the share of points near a body.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points, mm.
+    body : Body
+        The body.
+    within : float
+        Largest distance, mm.
+
+    Returns
+    -------
+    float
+        From 0 to 1.
+    """
     return float((_distances(points, body) <= within).mean())
 
 
 def refuse_size(points: Array, label: str, body: Body) -> None:
-    """InputError SCAN_UNIT if points (n, 3) of a file have quite another size than the body."""
+    """Reject points of another size than a body.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points of the scan, mm.
+    label : str
+        Name of the scan.
+    body : Body
+        The body.
+
+    Raises
+    ------
+    InputError
+        SCAN_UNIT, naming the unit that would match.
+    """
     size, body_size = extent(points), extent(body.vertices)
     if body_size <= size * UNLIKE and size <= UNLIKE * body_size:
         return
@@ -64,7 +94,24 @@ def refuse_size(points: Array, label: str, body: Body) -> None:
 
 
 def refuse_other(points: Array, label: str, body: Body, within: float) -> None:
-    """InputError SCAN_OTHER with the measured distances if aligned points (n, 3) do not belong to the body."""
+    """Reject aligned points that do not belong to a body.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points in part coordinates, mm.
+    label : str
+        Name of the scan.
+    body : Body
+        The body.
+    within : float
+        Largest distance of a point on the body, mm.
+
+    Raises
+    ------
+    InputError
+        SCAN_OTHER with the measured distances.
+    """
     off = _distances(points, body)
     share = float((off <= within).mean())
     if share >= LEAST_ON_PART:
@@ -251,7 +298,22 @@ FACING = 0.2  # cosine; faces that lean farther away from where layers grow are 
 
 
 def facing(points: Array, body: Body, directions: Array) -> Mask:
-    """Which of points (n, 3) are nearest to triangles of the body that face one of the directions (m, 3)."""
+    """Return which points are nearest to triangles that face given directions.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points, mm.
+    body : Body
+        The body.
+    directions : (m, 3) array
+        Unit vectors.
+
+    Returns
+    -------
+    (n,) bool array
+        True for triangles that face one of the directions.
+    """
     solid = SolidMesh(body.vertices, body.triangles)
     extent = float(np.ptp(body.vertices, axis=0).max())
     _, _, nearest = solid.searched(extent / PARTS).signed(points)
@@ -260,7 +322,22 @@ def facing(points: Array, body: Body, directions: Array) -> Mask:
 
 
 def scanned(body: Body, scan: Scan, directions: Array) -> Body:
-    """The body with its vertices moved to the scan, on faces that face one of the directions (m, 3); other faces stay."""
+    """Return the body with its vertices moved to a scan.
+
+    Parameters
+    ----------
+    body : Body
+        The body in part coordinates.
+    scan : Scan
+        The scan in part coordinates.
+    directions : (m, 3) array
+        Unit vectors; only faces that face one of them are moved.
+
+    Returns
+    -------
+    Body
+        The moved body, perhaps with finer triangles.
+    """
     longest = max(float(np.ptp(body.vertices, axis=0).max()) / PARTS, MIN_EDGE_MM)
     owner = np.zeros(len(body.triangles), dtype=np.intp)
     refinement = refine_mesh(

@@ -161,8 +161,22 @@ def deviations(inspected: Inspected) -> Iterable[str]:
 def compared(
     inspections: list[Inspected],
 ) -> list[tuple[str, str, list[float | None], float | None, float | None]]:
-    """A row per figure of several inspections: name, unit, its value in each (None without), mean and standard deviation (n - 1)
-    over the inspections, None for fewer than two: the paper has the latter for three spheres.
+    """Return the figures of several inspections side by side.
+
+    Parameters
+    ----------
+    inspections : list of Inspected
+        The inspections.
+
+    Returns
+    -------
+    list of tuple
+        Name, unit, value in each inspection (None without), mean and standard deviation (n
+        - 1) over the inspections; None for fewer than two values.
+
+    References
+    ----------
+    Chalvin 2020, table 2, has the latter for three spheres.
     """
     tables = [{row.name: row for row in rows(table)} for table in inspections]
     names = dict.fromkeys(name for table in tables for name in table)

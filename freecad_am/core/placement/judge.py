@@ -75,8 +75,23 @@ def single_points(beads: Sequence[Bead], cell: Cell) -> Points:
 def screen_points(
     cell: Cell, points: Points, parameters: JointParameters, only_branch: int | None
 ) -> Screened:
-    """Return the share of the points (each independent) that a robot serves, in a configuration or in
-    the best one.
+    """Return the share of points that a robot serves.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell with a robot.
+    points : Points
+        The points, each independent.
+    parameters : JointParameters
+        Thresholds and range of the rotation.
+    only_branch : int or None
+        The configuration to test; None for the best one.
+
+    Returns
+    -------
+    Screened
+        Share and configuration.
     """
     results = [
         Screened(float(_find_served(Task(cell, branch, parameters), points).mean()), branch)

@@ -78,7 +78,22 @@ def pose_of(settings: CellParameters, moves: str) -> Pose:
 
 
 def replace_pose(settings: CellParameters, moves: str, pose: Sequence[float]) -> CellParameters:
-    """Return the cell with another pose of the movable."""
+    """Return the cell with another pose of the movable.
+
+    Parameters
+    ----------
+    settings : CellParameters
+        The cell.
+    moves : str
+        POINT, PLATFORM or POSITIONER.
+    pose : sequence of float
+        x y z in mm and three angles in rad.
+
+    Returns
+    -------
+    CellParameters
+        The cell.
+    """
     x, y, z, rx, ry, rz = (float(number) for number in pose)
     new_pose = (x, y, z, rx, ry, rz)
     if moves == POINT:
@@ -153,9 +168,28 @@ class Placed:
 def place_part(
     job: Job, settings: CellParameters, parameters: PlaceParameters, progress: Progress
 ) -> Placed:
-    """Judge the poses of a box and find the best. progress may raise to cancel.
+    """Judge the poses of a box and find the best.
 
-    Raises InputError NOT_FOR_SETUP if the cell does not have the movable.
+    Parameters
+    ----------
+    job : Job
+        The job.
+    settings : CellParameters
+        The cell.
+    parameters : PlaceParameters
+        The box, the criterion and the number of points.
+    progress : callable
+        Receives share and text; may raise to cancel.
+
+    Returns
+    -------
+    Placed
+        All poses with their results.
+
+    Raises
+    ------
+    InputError
+        NOT_FOR_SETUP if the cell does not have the movable.
     """
     moves = select_movable(settings, parameters.moves)
     about = pose_of(settings, moves)

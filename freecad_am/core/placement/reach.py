@@ -33,11 +33,24 @@ class Reach:
 
 
 def reach(cell: Cell, step: float, progress: Progress = lambda share, text: None) -> Reach:
-    """Return the reachable positions of the nozzle tip on a grid, in the configuration of the cell.
+    """Return the reachable positions of the nozzle tip on a grid.
 
-    With the part on the robot, these are positions of the middle of the platform. They respect the
-    limits. The grid has `step` mm, or more to stay within MOST_PLACES. Obstacles and external axes
-    are not considered. progress may raise to cancel. Empty for machines with rotary axes.
+    With the part on the robot, these are positions of the middle of the platform. They respect
+    the limits. Obstacles and external axes are not considered.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell with its configuration.
+    step : float
+        Distance between grid points, mm; larger if needed to stay within MOST_PLACES.
+    progress : callable, optional
+        Receives share and text; may raise to cancel.
+
+    Returns
+    -------
+    Reach
+        The positions; empty for machines with rotary axes.
     """
     arm = cell.robot.arm
     if arm is None:

@@ -38,7 +38,24 @@ class Fit:
     rmse: float
 
     def value_at(self, speed: Array, radius: Array) -> Array:
-        """Value (...,) mm at speeds mm/s and radii of curvature mm, infinite where straight."""
+        """Evaluate the fit.
+
+        Parameters
+        ----------
+        speed : (...) array
+            Travel speeds, mm/s.
+        radius : (...) array
+            Radii of curvature, mm; infinite where straight.
+
+        Returns
+        -------
+        (...) array
+            m v^(-1/3) + p / r + t, mm, with v in mm/min.
+
+        References
+        ----------
+        Dai 2020, section 4.
+        """
         value: Array = self.m * np.cbrt(1.0 / (MINUTE * speed)) + self.p / radius + self.t
         return value
 
@@ -88,11 +105,37 @@ class BeadModel:
         )
 
     def widths(self, speed: Array, radius: Array) -> Array:
-        """Width (...,) mm at travel speeds mm/s; radii below the table's count as its least."""
+        """Return the widths of beads.
+
+        Parameters
+        ----------
+        speed : (...) array
+            Travel speeds, mm/s.
+        radius : (...) array
+            Radii of curvature, mm; those below the table's count as its least.
+
+        Returns
+        -------
+        (...) array
+            mm.
+        """
         return self.width.value_at(speed, np.maximum(radius, self.radii[0]))
 
     def heights(self, speed: Array, radius: Array) -> Array:
-        """Height (...,) mm of the bead, the same way."""
+        """Return the heights of beads.
+
+        Parameters
+        ----------
+        speed : (...) array
+            Travel speeds, mm/s.
+        radius : (...) array
+            Radii of curvature, mm; those below the table's count as its least.
+
+        Returns
+        -------
+        (...) array
+            mm.
+        """
         return self.height.value_at(speed, np.maximum(radius, self.radii[0]))
 
     def law(self, acceleration: float) -> SpeedLaw:
@@ -105,8 +148,22 @@ class BeadModel:
         return float(self.speed_for(width, np.array([np.inf])).speed[0])
 
     def heights_of_section(self, widths: Array, width: float) -> Array:
-        """Height (n,) mm of beads of widths (n,) mm with the section of a straight one of `width` mm, as with a wire feed in proportion
-        to the speed. Sections of the same shape: height times width is the same.
+        """Return the heights of beads with the section of a straight bead.
+
+        This is the case with a wire feed in proportion to the speed. For sections of the
+        same shape, height times width is the same.
+
+        Parameters
+        ----------
+        widths : (n,) array
+            Widths of the beads, mm.
+        width : float
+            Width of the straight bead, mm.
+
+        Returns
+        -------
+        (n,) array
+            Heights, mm.
         """
         speed, straight = np.array([self.straight_speed(width)]), np.array([np.inf])
         section: Array = self.heights(speed, straight) * self.widths(speed, straight)
@@ -283,7 +340,22 @@ def _ends(values: Array) -> tuple[float, float]:
 
 
 def row_name(label: str, row: int, lines: Sequence[int] = ()) -> str:
-    """How messages name a row, from 0, of a table: counted from 1, and by its line in the file where that is known."""
+    """Return the name of a table row in messages.
+
+    Parameters
+    ----------
+    label : str
+        Name of the table.
+    row : int
+        Number of the row, from 0.
+    lines : sequence of int, optional
+        Line of each row in the file; empty if unknown.
+
+    Returns
+    -------
+    str
+        The name, counted from 1.
+    """
     return Text(
         "{} row {}{}", label, row + 1, Word(Text(" (line {})", lines[row]) if len(lines) else "")
     )

@@ -39,7 +39,22 @@ def wall_bead_class(layer: int, closing: bool = False) -> str:
 def leaning(
     build: BuildDirectionParameters, process: ProcessParameters, name: str
 ) -> BuildDirectionParameters:
-    """The build direction with the lead and tilt of a class."""
+    """Return the build direction with the lead and tilt of a class.
+
+    Parameters
+    ----------
+    build : BuildDirectionParameters
+        Build direction of the feature.
+    process : ProcessParameters
+        Process with the classes.
+    name : str
+        Name of the class.
+
+    Returns
+    -------
+    BuildDirectionParameters
+        The build direction; unchanged if the class has no lead or tilt.
+    """
     lean_values: dict[str, Any] = {
         key: value for key, value in process.of_class(name).own_values().items() if key in LEANS
     }

@@ -104,7 +104,26 @@ def height_issue(
     model: BeadModel,
     as_run: bool = False,
 ) -> Issue:
-    """The issue that compares predicted bead heights with the layers. as_run: axes can follow the speeds."""
+    """Return the issue that compares predicted bead heights with the layers.
+
+    Parameters
+    ----------
+    beads : sequence of Bead
+        The beads at the speeds of a model.
+    layer_height : float
+        Layer height, mm.
+    process : ProcessParameters
+        Bead width and wire.
+    model : BeadModel
+        The bead model.
+    as_run : bool, optional
+        Whether the speeds are limited to those that the axes can follow.
+
+    Returns
+    -------
+    Issue
+        A warning if the mean height departs by more than DRIFT, else a note.
+    """
     sized = segments(beads)
     height = _summarise(sized.height, sized.length)
     drift = abs(height["mean"] - layer_height) / layer_height
@@ -175,7 +194,24 @@ class Held(Protocol):
 def model_issues(
     sized: Sequence[Held], layer_height: float, process: ProcessParameters, model: BeadModel
 ) -> list[Issue]:
-    """All issues of beads at the speeds of a model. layer_height: mm."""
+    """Return all issues of beads at the speeds of a model.
+
+    Parameters
+    ----------
+    sized : sequence of Held
+        The beads with their marks.
+    layer_height : float
+        Layer height, mm.
+    process : ProcessParameters
+        Bead width and wire.
+    model : BeadModel
+        The bead model.
+
+    Returns
+    -------
+    list of Issue
+        The fit, contradictions in the table, speeds outside it, heights and wire feed.
+    """
     length = np.concatenate(
         [np.linalg.norm(np.diff(sized_bead.bead.points, axis=0), axis=1) for sized_bead in sized]
     )
@@ -303,10 +339,24 @@ MIN_TURN_RAD = 1e-9  # rad of turn over the window; less is none
 
 
 def radii(flat: Array, closed: bool, window: float) -> Array:
-    """Local radius of curvature (n,) mm of a flattened bead, points (n, 2), infinite where straight.
+    """Return the local radius of curvature of a flattened bead.
 
-    The path's turn over `window` mm about each point, for a bead as wide as that feels no sharper bend: a corner counts as
-    the arc of that length. A closed bead repeats its first point.
+    The path's turn over the window about each point counts, for a bead as wide as that feels no
+    sharper bend: a corner counts as the arc of that length.
+
+    Parameters
+    ----------
+    flat : (n, 2) array
+        Points, mm; a closed bead repeats its first point.
+    closed : bool
+        Whether the bead is closed.
+    window : float
+        Length of the window, mm.
+
+    Returns
+    -------
+    (n,) array
+        Radii, mm; infinite where straight.
     """
     step = np.diff(flat, axis=0)
     x, y = columns(step)
@@ -318,7 +368,24 @@ def radii(flat: Array, closed: bool, window: float) -> Array:
 
 
 def side_radii(points: Array, build: Array, closed: bool, window: float) -> Array:
-    """The same of a bead in space, points (n, 3): how it bends about its build directions (n, 3), to its sides."""
+    """Return the local radius of curvature of a bead about its build directions.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points, mm; a closed bead repeats its first point.
+    build : (n, 3) array
+        Build directions, unit vectors.
+    closed : bool
+        Whether the bead is closed.
+    window : float
+        Length of the window as in `radii`, mm.
+
+    Returns
+    -------
+    (n,) array
+        Radii, mm; infinite where straight.
+    """
     step = np.diff(points, axis=0)
     incoming, outgoing, up = step[:-1], step[1:], build[1:-1]
     if closed:
@@ -365,7 +432,24 @@ def _radii(length: Array, heading: Array, round_turn: float | None, window: floa
 
 
 def limit_acceleration(points: Array, speed: Array, closed: bool, acceleration: float) -> Array:
-    """Speeds (n,) mm/s no higher than those asked that change by no more than `acceleration` mm/s^2 along points (n, k)."""
+    """Lower speeds so that they change no faster than an acceleration.
+
+    Parameters
+    ----------
+    points : (n, k) array
+        Points of the course, mm.
+    speed : (n,) array
+        Requested speeds, mm/s.
+    closed : bool
+        Whether the course is closed.
+    acceleration : float
+        Largest acceleration, mm/s2.
+
+    Returns
+    -------
+    (n,) array
+        Speeds, mm/s.
+    """
     s = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     square = speed * speed
     if closed:
@@ -395,9 +479,31 @@ def at_speed(
     model: BeadModel,
     share: Array | float = 1.0,
 ) -> AtSpeed:
-    """The bead at the speeds that keep its width, or a share (n,) of its width, with radii of curvature (n,) mm.
+    """Return a bead at the speeds that keep its width.
 
-    Speeds change along its course, points (n, k), by no more than the acceleration of the process.
+    Speeds change along its course by no more than the acceleration of the process.
+
+    Parameters
+    ----------
+    bead : Bead
+        The bead of n points.
+    radius : (n,) array
+        Radii of curvature, mm.
+    course : (n, k) array
+        Points of the course, mm.
+    closed : bool
+        Whether the course is closed.
+    process : ProcessParameters
+        Bead width, acceleration and wire.
+    model : BeadModel
+        The bead model.
+    share : float or (n,) array, optional
+        Share of the bead width to keep.
+
+    Returns
+    -------
+    AtSpeed
+        The bead with speeds, widths and heights, and where these are limited.
     """
     speeds = model.speed_for(process.bead_width * share, radius)
     speed = limit_acceleration(course, speeds.speed, closed, process.acceleration)
@@ -412,13 +518,38 @@ def at_speed(
 
 
 def segment_speeds(speed: Array) -> Array:
-    """Speeds (n,) of the segments that end at points, from those at points (n,)."""
+    """Return the speeds of segments from those at points.
+
+    Parameters
+    ----------
+    speed : (n,) array
+        Speeds at points, mm/s.
+
+    Returns
+    -------
+    (n,) array
+        Speed of the segment that ends at each point, mm/s.
+    """
     return np.concatenate([speed[:1], 0.5 * (speed[:-1] + speed[1:])])
 
 
 def hold_widths(toolpath: Toolpath, process: ProcessParameters, model: BeadModel) -> Toolpath:
-    """The toolpath of beads that fill nothing, each as wide as asked for where it bends about its build directions, with
-    what the model says of widths and heights."""
+    """Return the toolpath of beads that fill nothing, at the speeds that keep their width.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath.
+    process : ProcessParameters
+        Bead width, acceleration and wire.
+    model : BeadModel
+        The bead model.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath with sizes and the issues of the model.
+    """
     sized: list[AtSpeed] = []
     layers = []
     for layer in toolpath.layers:

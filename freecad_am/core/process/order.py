@@ -41,7 +41,22 @@ class Course(NamedTuple):
     numbers: Mapping[tuple[int, int, int], int] = MappingProxyType({})
 
     def number(self, group: int, solid: int, layer: int) -> int | None:
-        """The number here of a layer of a stack; None if neither it nor a layer above has deposit."""
+        """Return the number here of a layer of a stack.
+
+        Parameters
+        ----------
+        group : int
+            Number of the group.
+        solid : int
+            Number of the solid in its group.
+        layer : int
+            Number of the layer in the stack.
+
+        Returns
+        -------
+        int or None
+            None if neither this layer nor a layer above has deposit.
+        """
         return self.numbers.get((group, solid, layer), self.numbers.get((group, 0, layer)))
 
 
@@ -131,10 +146,25 @@ def order_beads(beads: Sequence[RankedBead], order: str) -> Course:
 def add_waits(
     course: Course, wait: float, rapid_speed: float, min_layer_time: float = 0.0
 ) -> tuple[Layer, ...]:
-    """The layers with waits before them.
+    """Return the layers with waits before them.
 
-    No solid is returned to sooner than `wait` s after its layer before, and no layer begins sooner than `min_layer_time` s after
-    the one before. Rapids count as straight moves between beads, so waits are rather too long.
+    Rapids count as straight moves between beads, so waits are rather too long.
+
+    Parameters
+    ----------
+    course : Course
+        Layers in the order of deposit.
+    wait : float
+        Shortest time before a solid is returned to, s.
+    rapid_speed : float
+        Speed of rapids, mm/s.
+    min_layer_time : float, optional
+        Shortest time of a layer, s.
+
+    Returns
+    -------
+    tuple of Layer
+        The layers.
     """
     now, layers = 0.0, []
     end_times: dict[tuple[int, int], float] = {}
@@ -169,7 +199,22 @@ def add_waits(
 
 
 def enforce_layer_time(toolpath: Toolpath, min_layer_time: float, rapid_speed: float) -> Toolpath:
-    """The toolpath with waits before its layers, so that none takes less than `min_layer_time` s, and a note about the waits."""
+    """Return the toolpath with waits, so that no layer takes less than a time.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath.
+    min_layer_time : float
+        Shortest time of a layer, s; 0 for none.
+    rapid_speed : float
+        Speed of rapids, mm/s.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath with a note about the waits.
+    """
     if min_layer_time <= 0.0:
         return toolpath
     solids = tuple(((0, 0),) * len(layer.beads) for layer in toolpath.layers)
@@ -201,9 +246,23 @@ def enforce_layer_time(toolpath: Toolpath, min_layer_time: float, rapid_speed: f
 
 
 def rising(process: ProcessParameters, index: int, closed: bool) -> bool:
-    """Whether bead number `index` runs with rising azimuth, counter-clockwise as seen from the tool.
+    """Return whether a bead runs with rising azimuth, counter-clockwise as seen from the tool.
 
-    Open beads run as found, with rising azimuth, unless the direction is alternate.
+    Open beads run with rising azimuth, unless the direction is alternate.
+
+    Parameters
+    ----------
+    process : ProcessParameters
+        Process with the direction.
+    index : int
+        Number of the bead.
+    closed : bool
+        Whether the bead is closed.
+
+    Returns
+    -------
+    bool
+        True for rising azimuth.
     """
     if process.direction == "alternate":
         return index % 2 == 0
@@ -211,13 +270,45 @@ def rising(process: ProcessParameters, index: int, closed: bool) -> bool:
 
 
 def closed_azimuths(process: ProcessParameters, layer: int, segments: int, rising: bool) -> Array:
-    """Unwrapped azimuths (segments + 1,) rad of a full turn from the layer's seam; the last is one turn on."""
+    """Return the azimuths of a full turn from the layer's seam.
+
+    Parameters
+    ----------
+    process : ProcessParameters
+        Process with the seam.
+    layer : int
+        Number of the layer.
+    segments : int
+        Number of segments.
+    rising : bool
+        Whether azimuths rise.
+
+    Returns
+    -------
+    (segments + 1,) array
+        Unwrapped azimuths, rad; the last is one turn on.
+    """
     start = process.seam.angle + layer * process.seam.step
     turn = 2.0 * np.pi if rising else -2.0 * np.pi
     return np.asarray(start + turn * np.arange(segments + 1) / segments)
 
 
 def open_azimuths(start: float, end: float, segments: int, rising: bool) -> Array:
-    """Azimuths (segments + 1,) rad of a part of a turn, from whichever end the bead starts at."""
+    """Return the azimuths of a part of a turn, from the end at which the bead starts.
+
+    Parameters
+    ----------
+    start, end : float
+        Ends, rad.
+    segments : int
+        Number of segments.
+    rising : bool
+        Whether the bead runs from start to end.
+
+    Returns
+    -------
+    (segments + 1,) array
+        Azimuths, rad.
+    """
     azimuths = np.linspace(start, end, segments + 1)
     return azimuths if rising else azimuths[::-1]

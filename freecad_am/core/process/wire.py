@@ -53,9 +53,21 @@ def by_schedules(toolpath: Toolpath, process: ProcessParameters) -> list[str]:
 
 
 def off_most(toolpath: Toolpath, process: ProcessParameters) -> tuple[float, int, int] | None:
-    """The largest relative deviation of wire feed from bead volume over classes and phases, with its layer and bead.
+    """Return the largest relative deviation of wire feed from bead volume.
 
-    None if nothing is known. Beads fed by a schedule of their own do not count.
+    Beads fed by a schedule of their own do not count.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath.
+    process : ProcessParameters
+        Wire and travel speed.
+
+    Returns
+    -------
+    tuple of (float, int, int) or None
+        Deviation, layer and bead; None if nothing is known.
     """
     wire_rate = (toolpath.wire_feed or 0.0) * process.wire.section
     by_wire_ = [taken for taken in taken_of(toolpath) if by_wire(taken, process)]
@@ -164,11 +176,27 @@ def model_wire_feed(process: ProcessParameters, model: BeadModel) -> float:
 def set_wire_feed(
     toolpath: Toolpath, process: ProcessParameters, model: BeadModel | None
 ) -> Toolpath:
-    """The toolpath with the speed of its wire, and an issue if the wire does not balance with the beads.
+    """Return the toolpath with the speed of its wire.
 
-    Balanced is wire section x feed = bead width x layer height x travel speed, or the volume of a filled part: overlapping beads
-    may be fed for the room that each has. Beads of a model were measured with their wire; `solids.notes` reports their balance. A
-    feed of 0 means no wire. Without a known bead width there is no issue.
+    Balanced is wire section x feed = bead width x layer height x travel speed, or the volume of
+    a filled part: overlapping beads may be fed for the room that each has. Beads of a model
+    were measured with their wire; `solids.notes` reports their balance. A feed of 0 means no
+    wire.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath.
+    process : ProcessParameters
+        Wire, bead width and travel speed.
+    model : BeadModel or None
+        Bead model that sets the speeds; None without one.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath, with an issue if the wire does not balance with the beads; unchanged
+        without a known bead width.
     """
     if model is not None:
         return replace(toolpath, wire_feed=model_wire_feed(process, model))

@@ -31,11 +31,34 @@ def plan(
     model: BeadModel | None,
     progress: Progress = silent,
 ) -> Toolpath:
-    """The toolpath of cladding, in part coordinates: layer i is i layer heights above the faces.
+    """Return the toolpath of cladding: layer i is i layer heights above the faces.
 
-    model: sets the speeds; with None the travel speed applies everywhere.
-    Raises InputError FOLDED, BEAD_SPACING, NOTHING_TO_DEPOSIT,
-    InfeasibleError THIN_REGION.
+    Parameters
+    ----------
+    clad_faces : CladFaces
+        The faces.
+    strategy : CladdingParameters
+        Layers, spacing, filling and order.
+    build : BuildDirectionParameters
+        Build direction and its limits.
+    process : ProcessParameters
+        Speeds and bead width.
+    model : BeadModel or None
+        Bead model that sets the speeds; None if the travel speed applies everywhere.
+    progress : callable, optional
+        Receives share and text; may raise to cancel.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath in part coordinates.
+
+    Raises
+    ------
+    InputError
+        FOLDED, BEAD_SPACING, NOTHING_TO_DEPOSIT.
+    InfeasibleError
+        THIN_REGION.
     """
     strategy = spaced(strategy, process)
     width = bead_width(strategy, process, model)

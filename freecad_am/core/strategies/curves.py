@@ -37,9 +37,32 @@ def plan(
     process: ProcessParameters,
     progress: Progress = silent,
 ) -> Toolpath:
-    """The toolpath of curves, in part coordinates: layer k has the curves k layer heights further along their deposit directions.
+    """Return the toolpath of curves.
 
-    InputError ALONG_DIRECTION.
+    Layer k has the curves k layer heights further along their deposit directions.
+
+    Parameters
+    ----------
+    curves_ : Curves
+        The curves.
+    strategy : CurvesParameters
+        Layer height, repetitions and direction.
+    build : BuildDirectionParameters
+        Build direction and its limits.
+    process : ProcessParameters
+        Speeds.
+    progress : callable, optional
+        Receives share and text; may raise to cancel.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath in part coordinates.
+
+    Raises
+    ------
+    InputError
+        ALONG_DIRECTION for a curve along its deposit direction.
     """
     fixed = np.array(strategy.direction) / math.hypot(*strategy.direction)
     numbers = sorted({curve.layer for curve in curves_.curves})

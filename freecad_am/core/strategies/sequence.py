@@ -97,7 +97,20 @@ def _uneven(toolpaths: Sequence[Toolpath], numbers: Sequence[Index]) -> Array | 
 
 
 def renumbered(issues: Sequence[Issue], numbers: Index) -> tuple[Issue, ...]:
-    """The issues of a feature with the layer numbers (n,) of a job with several features."""
+    """Return the issues of a feature with layer numbers of the job.
+
+    Parameters
+    ----------
+    issues : sequence of Issue
+        Issues with layers of the feature.
+    numbers : (n,) int array
+        Number of each of its layers in the job.
+
+    Returns
+    -------
+    tuple of Issue
+        The issues.
+    """
     return tuple(
         issue if issue.layer is None else replace(issue, layer=int(numbers[issue.layer]))
         for issue in issues
@@ -107,15 +120,45 @@ def renumbered(issues: Sequence[Issue], numbers: Index) -> tuple[Issue, ...]:
 def update_feature(
     toolpath: Toolpath, number: int, feature: Toolpath, issues: Sequence[Issue]
 ) -> Toolpath:
-    """The toolpath with an updated feature and further issues, numbered through."""
+    """Return the toolpath with an updated feature and further issues.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath of all features.
+    number : int
+        Number of the feature.
+    feature : Toolpath
+        Its toolpath.
+    issues : sequence of Issue
+        Issues with layers of the job.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath.
+    """
     features = list(toolpath.features)
     features[number] = replace(features[number], values=_without_layers(feature))
     return replace(toolpath, features=tuple(features), issues=(*toolpath.issues, *issues))
 
 
 def refuse_floating(toolpath: Toolpath, number: int, lengths: dict[int, float]) -> None:
-    """Raise InputError FLOATS if nothing supports a feature: nearly its whole first layer is unsupported. lengths: mm of
-    unsupported beads, by layer.
+    """Reject a feature whose first layer is nearly unsupported.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath of all features.
+    number : int
+        Number of the feature.
+    lengths : dict[int, float]
+        Length of unsupported beads by layer, mm.
+
+    Raises
+    ------
+    InputError
+        FLOATS if nothing supports the feature.
     """
     feature, numbers = toolpath.parts[number]
     length = sum(bead.length for bead in feature.layers[0].beads)

@@ -168,8 +168,22 @@ def fronts_size(wall: PatchWall, strategy: SurfaceParameters) -> Size:
 def solids_size(
     solids: SolidsOnHub, strategy: FilledParameters, spacing: float | None = None
 ) -> Size:
-    """The size of solids on a hub. spacing: mm between beads; None: from the parameter, and without points if an overlap replaces
-    it.
+    """Estimate the size of the toolpath of solids on a hub.
+
+    Parameters
+    ----------
+    solids : SolidsOnHub
+        The solids.
+    strategy : FilledParameters
+        Layer height, spacing, margin and chord error.
+    spacing : float or None, optional
+        Distance between beads, mm; None for the parameter, without points if an overlap
+        replaces it.
+
+    Returns
+    -------
+    Size
+        Layers, points and grid nodes.
     """
     if spacing is None:
         spacing = strategy.bead_spacing if strategy.bead_overlap is None else math.inf
@@ -236,9 +250,22 @@ def _sheet_points(sheet: PatchWall, high: float, chord_error: float) -> float:
 
 
 def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = None) -> None:
-    """InputError TOO_MANY for more than MOST_LAYERS or MOST_POINTS, naming the parameter farthest below its usual value.
+    """Reject a toolpath of absurd size.
 
-    width: mm of the beads, if it and an overlap give their spacing.
+    Parameters
+    ----------
+    size : Size
+        The estimated size.
+    strategy : LayerParameters
+        The layer parameters that cause it.
+    width : float or None, optional
+        Width of the beads if it and an overlap give their spacing, mm; None otherwise.
+
+    Raises
+    ------
+    InputError
+        TOO_MANY for more than MOST_LAYERS or MOST_POINTS, naming the parameter farthest
+        below its usual value.
     """
     height = strategy.layer_height
     if size.layers > MOST_LAYERS:
@@ -270,9 +297,26 @@ def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = N
 
 
 def size_issues(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
-    """A note LARGE where planning takes more than LARGE_SECONDS or LARGE_GIGABYTES; one more where the grids of curved
-    layers or the folds of a mesh take longer than all points, and these take LARGE_GIGABYTES. Raises InputError as
-    `refuse_absurd`."""
+    """Return notes on a toolpath that takes long to plan.
+
+    Parameters
+    ----------
+    size : Size
+        The estimated size.
+    strategy : LayerParameters
+        The layer parameters.
+
+    Returns
+    -------
+    tuple of Issue
+        A note LARGE from LARGE_SECONDS or LARGE_GIGABYTES on, and another where the shape
+        takes longer than the points.
+
+    Raises
+    ------
+    InputError
+        As `refuse_absurd`.
+    """
     refuse_absurd(size, strategy)
     a_point = next(
         seconds for kind, seconds in _SECONDS_A_POINT.items() if isinstance(strategy, kind)
@@ -338,7 +382,20 @@ def _shape_issues(size: Size, seconds: float) -> tuple[Issue, ...]:
 
 
 def tilting_issues(points: int, times: int = 1) -> tuple[Issue, ...]:
-    """A note LARGE if the search for nozzle tilts at a number of points takes long. times: maximum number of searches if the tool turns too fast."""
+    """Return a note LARGE if the search for nozzle tilts takes long.
+
+    Parameters
+    ----------
+    points : int
+        Number of points searched.
+    times : int, optional
+        Maximum number of searches if the tool turns too fast.
+
+    Returns
+    -------
+    tuple of Issue
+        One note, or none.
+    """
     seconds = points * times * SECONDS_A_TILT
     if seconds < LARGE_SECONDS:
         return ()
@@ -377,9 +434,21 @@ def tilting_issues(points: int, times: int = 1) -> tuple[Issue, ...]:
 def remedy_issues(
     points: int, seconds_per_point: float, longest: float = math.inf
 ) -> tuple[Issue, ...]:
-    """A note LARGE if the search for a remedy of an infeasible job, by planning a number of points again, takes long.
+    """Return a note LARGE if the search for a remedy of an infeasible job takes long.
 
-    seconds_per_point: s; longest: s, after which the search stops.
+    Parameters
+    ----------
+    points : int
+        Number of points to plan again.
+    seconds_per_point : float
+        Planning time per point, s.
+    longest : float, optional
+        Time after which the search stops, s.
+
+    Returns
+    -------
+    tuple of Issue
+        One note, or none.
     """
     seconds = min(points * seconds_per_point, longest)
     if seconds < LARGE_SECONDS:

@@ -32,11 +32,26 @@ ABOVE_SUBSTRATE = "ABOVE_SUBSTRATE"
 def check_support(
     toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]
 ) -> Toolpath:
-    """The toolpath with its unsupported length, and issues.
+    """Return the toolpath with its unsupported length, and issues.
 
-    planes: frames (4, 4) in part coordinates; points on or below the plane z = 0 of one are supported. bases: hubs, which count if
-    most of the first layer is on none of the bodies: then only the hub's surface is known. The first layer of a wall starts on the
-    wall's base by construction, and is supported.
+    The first layer of a wall starts on the wall's base by construction, and is supported.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath in part coordinates.
+    planes : sequence of (4, 4) array
+        Frames in part coordinates; points on or below the plane z = 0 of one are supported.
+    bodies : sequence of Body
+        Bodies that support, in part coordinates.
+    bases : sequence of Base
+        Hubs, which count if most of the first layer is on none of the bodies: then only the
+        hub's surface is known.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath with checks and issues.
     """
     ground = _Ground(toolpath, planes, bodies, bases)
     open_, issues = support.find_unsupported(
@@ -53,9 +68,27 @@ def feature_support(
     bodies: Sequence[Body],
     bases: Sequence[Base],
 ) -> tuple[dict[int, float], list[Issue]]:
-    """Unsupported length of one feature's layers, mm by layer, and issues; deposit of other features supports later layers.
+    """Return the unsupported length of one feature's layers.
 
-    planes, bodies, bases: as in `check_support`.
+    Deposit of other features supports later layers.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath of all features.
+    number : int
+        Number of the feature.
+    planes : sequence of (4, 4) array
+        As in `check_support`.
+    bodies, bases : sequence of Body
+        As in `check_support`.
+
+    Returns
+    -------
+    lengths : dict of int to float
+        Unsupported length by layer, mm.
+    issues : list of Issue
+        Their issues.
     """
     feature, numbers = toolpath.parts[number]
     ground = _Ground(feature, planes, bodies, bases)
@@ -87,11 +120,28 @@ def over_edge(
     bodies: Sequence[Body],
     feature: Array | None = None,
 ) -> list[Issue]:
-    """A warning if beads of the first layer on the plane of the platform, or of solids below it, are beyond its edge by more than
-    half of their width, and on none of the bodies.
+    """Return a warning if the first layer overhangs the edge of the platform.
 
-    The platform is a disc of `diameter` mm about the origin of the frame (4, 4) in part coordinates. feature: the alternative frame
-    of `cell.mount: feature`, which is tried.
+    This applies to beads on the plane of the platform, or to solids below it, that are beyond
+    its edge by more than half of their width, and on none of the bodies.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath in part coordinates.
+    frame : (4, 4) array
+        Pose of the platform in part coordinates.
+    diameter : float
+        Diameter of the platform, mm.
+    bodies : sequence of Body
+        Bodies that support, in part coordinates.
+    feature : (4, 4) array or None, optional
+        The alternative frame of `cell.mount: feature`, which is tried for the remedy.
+
+    Returns
+    -------
+    list of Issue
+        One warning, or none.
     """
     first_pieces = cut_beads(replace(toolpath, layers=toolpath.layers[:1]), support.PIECE)
     beyond = _beyond_edge(toolpath, first_pieces, frame, diameter)
@@ -143,8 +193,22 @@ def _beyond_edge(toolpath: Toolpath, first_pieces: Pieces, frame: Array, diamete
 
 
 def stands_on(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> bool:
-    """Whether all that is deposited, and bodies, are above a plane, z = 0 of a frame (4, 4), onto which the first layer
-    comes."""
+    """Return whether deposit and bodies are above a plane that the first layer touches.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath in part coordinates.
+    frame : (4, 4) array
+        Frame whose plane z = 0 is meant, in part coordinates.
+    bodies : sequence of Body
+        Bodies in part coordinates.
+
+    Returns
+    -------
+    bool
+        True if so.
+    """
     points = [bead.points for _, _, bead in toolpath]
     heights = [
         (points_ - frame[:3, 3]) @ frame[:3, 2]
@@ -157,8 +221,21 @@ def stands_on(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> bool:
 
 
 def above(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> list[Issue]:
-    """A warning if most of the first layer is above the plane of the platform, z = 0 of the frame (4, 4) in part coordinates, and on
-    none of the bodies.
+    """Return a warning if most of the first layer is above the platform and on none of the bodies.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath in part coordinates.
+    frame : (4, 4) array
+        Pose of the platform in part coordinates.
+    bodies : sequence of Body
+        Bodies that support, in part coordinates.
+
+    Returns
+    -------
+    list of Issue
+        One warning, or none.
     """
     first_pieces = cut_beads(replace(toolpath, layers=toolpath.layers[:1]), support.PIECE)
     height = (first_pieces.middle - frame[:3, 3]) @ frame[:3, 2]

@@ -57,7 +57,24 @@ def feature_balance(value: Any, width: float) -> Balance | None:
 
 
 def toolpath_balance(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
-    """The balance once beads exist, which give the covered volume exactly where they fill a part."""
+    """Return the balance once beads exist.
+
+    Where beads fill a part, they give the covered volume exactly.
+
+    Parameters
+    ----------
+    value : Any
+        The feature's wall, solids or curves.
+    toolpath : Toolpath
+        Its toolpath.
+    width : float
+        Width of beads without their own, mm.
+
+    Returns
+    -------
+    Balance or None
+        None if nothing is known.
+    """
     if toolpath.checks.volumes is None:
         return _beads_balance(value, toolpath, width)
     part_volume, left_out, outside = toolpath.checks.volumes
@@ -161,7 +178,18 @@ def _solids_balance(solids: SolidsOnHub) -> Balance | None:
 
 
 def issues(balance: Balance | None) -> tuple[Issue, ...]:
-    """The issues of a balance, at most one of each kind."""
+    """Return the issues of a balance, at most one of each kind.
+
+    Parameters
+    ----------
+    balance : Balance or None
+        The balance; None if unknown.
+
+    Returns
+    -------
+    tuple of Issue
+        Left-out volume, stray volume and over-deposition.
+    """
     if balance is None:
         return ()
     if balance.filled:

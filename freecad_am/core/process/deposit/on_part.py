@@ -21,9 +21,20 @@ STEP = 0.5  # of a layer height, between two places on the beads below that are 
 
 
 def over_layers(toolpath: Toolpath) -> tuple[Array, ...]:
-    """Per layer, (n,) mm: the height of each point over the nearest position on the beads of the layer before.
+    """Return the heights of points over the beads of the layer before, by layer.
 
-    Measured along the build direction there. Layers with nothing of their feature below, and beads that close gaps, are left out.
+    Heights are measured along the build direction there. Layers with nothing of their feature
+    below, and beads that close gaps, are left out.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath.
+
+    Returns
+    -------
+    tuple of (n,) array
+        Heights, mm.
     """
     if toolpath.features:
         return tuple(
@@ -105,9 +116,23 @@ def allowed_distance(toolpath: Toolpath, margin: float = 0.0) -> float:
 
 
 def check_on_part(toolpath: Toolpath, places_: Places, off: Array, limit: float) -> Toolpath:
-    """The toolpath with the number of places checked, the largest distance of one and the allowed one, mm, and an error if exceeded.
+    """Return the toolpath with the result of the check whether it is on the part.
 
-    off: (n,) mm, NaN if unknown.
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath.
+    places_ : Places
+        The checked places.
+    off : (n,) array
+        Their distances from the part, mm; NaN if unknown.
+    limit : float
+        Largest distance allowed, mm.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath with count, largest and allowed distance, and an error if exceeded.
     """
     measured = np.flatnonzero(np.isfinite(off))
     if not len(measured):

@@ -20,11 +20,22 @@ PLANE_TOLERANCE_MM = 1e-6  # mm; a layer whose points differ no more in height i
 
 
 def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
-    """Per layer after the first, (n,) mm: the distance of each of its points to the layer before, in order of deposit.
+    """Return the distances of points from the layer before, by layer.
 
-    A spiral is one layer; there it is the distance of each point to the turn before. For plane filled layers it is the distance
-    of the planes, because the nearest bead below gives the spacing within a layer. Beads that close gaps, and layers with nothing
-    of the feature below, are left out. Several features follow each other.
+    A spiral is one layer; there it is the distance of each point to the turn before. For plane
+    filled layers it is the distance of the planes, because the nearest bead below gives the
+    spacing within a layer. Beads that close gaps, and layers with nothing of the feature below,
+    are left out. Several features follow each other.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath.
+
+    Returns
+    -------
+    tuple of (n,) array
+        Distances of each layer after the first, mm.
     """
     if toolpath.features:
         return tuple(
@@ -57,9 +68,18 @@ def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
 
 
 def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
-    """Per bead in the order of deposit, (n,) mm: the distance of each of its points to the layer before.
+    """Return the distances of points from the layer before, by bead.
 
-    NaN if nothing of the feature is below: in first layers, and in the first turn of a spiral.
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath.
+
+    Returns
+    -------
+    tuple of (n,) array
+        Distances of each bead in the order of deposit, mm; NaN if nothing of the feature is
+        below: in first layers, and in the first turn of a spiral.
     """
     if toolpath.features:
         by_layer: list[list[Array]] = [[] for _ in toolpath.layers]
@@ -98,9 +118,20 @@ def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
 
 
 def between_turns(bead: Bead) -> tuple[Array, ...]:
-    """Per quarter turn after the first turn, (n,) mm: the distance of its points to the stretch one turn before.
+    """Return the distances of a spiral from the turn before, by quarter turn.
 
-    The stretch is three quarters of a turn long, so that it holds the nearest point but not the points' own neighbours.
+    The stretch one turn before is three quarters of a turn long, so that it holds the nearest
+    point but not the points' own neighbours.
+
+    Parameters
+    ----------
+    bead : Bead
+        The spiral.
+
+    Returns
+    -------
+    tuple of (n,) array
+        Distances of each quarter turn after the first turn, mm.
     """
     return tuple(distance(bead.points[quarter], stretch) for quarter, stretch in _quarters(bead))
 
@@ -206,18 +237,44 @@ class Curve:
 
 
 def distance(points: Array, curve: Curve) -> Array:
-    """(n,) distance from points (n, 3) to the curve, in their unit.
+    """Return the distances of points from a smooth curve.
 
-    The nearest vertex bounds the distance from above, so only segments whose middle is nearer than this bound plus half
-    the longest segment can hold the nearest point of the chords; all such segments are tried. For every segment whose cubic may
-    be the nearest, as far as it bows from its chord, the foot is moved along the cubic: near a corner that is not always the
-    one with the nearest chord.
+    The nearest vertex bounds the distance from above, so only segments whose middle is nearer
+    than this bound plus half the longest segment can hold the nearest point of the chords; all
+    such segments are tried. For every segment whose cubic may be the nearest, as far as it bows
+    from its chord, the foot is moved along the cubic: near a corner that is not always the one
+    with the nearest chord.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points.
+    curve : Curve
+        The curve.
+
+    Returns
+    -------
+    (n,) array
+        Distances, in the unit of the points.
     """
     return _batch_distances([(points, curve)])[0]
 
 
 def distances(queries: Iterable[tuple[Array, Curve]]) -> Iterator[Array]:
-    """Yield the `distance` of points to a curve for each query, in batches: for a few points the calls take longer than the work."""
+    """Yield the `distance` of points from a curve for each query.
+
+    Queries are handled in batches: for a few points the calls take longer than the work.
+
+    Parameters
+    ----------
+    queries : Iterable[tuple[Array, Curve]]
+        Points (n, 3) and curve of each query.
+
+    Yields
+    ------
+    (n,) array
+        Distances of a query.
+    """
     batch: list[tuple[Array, Curve]] = []
     for query in queries:
         batch.append(query)
@@ -396,7 +453,22 @@ def _to_cubic(
 
 
 def columns_of(points: Array, closed: bool, tangents: Array | None = None) -> tuple[Array, ...]:
-    """The columns of `Curve` for points (n, 3) of a bead or a section, with its unit tangents (n, 2, 3) where known."""
+    """Return the columns of `Curve` for points of a bead or a section.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points, mm.
+    closed : bool
+        Whether the curve is closed; then the first point is repeated.
+    tangents : (n, 2, 3) array or None, optional
+        Unit tangents that arrive at and leave each point; None if unknown.
+
+    Returns
+    -------
+    tuple of array
+        One entry for each field of `Curve`.
+    """
     step = np.diff(points, axis=0)
     length = lengths(step)
     if tangents is not None:

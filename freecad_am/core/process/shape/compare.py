@@ -47,8 +47,22 @@ class Faces:
 
 
 def faces(vertices: Array, triangles: Index, side: str = OUTSIDE) -> Faces:
-    """Places evenly spread over triangles (m, 3) of vertices (k, 3) mm, which are counter-clockwise seen from outside; with
-    BOTH they enclose nothing."""
+    """Return points evenly spread over triangles.
+
+    Parameters
+    ----------
+    vertices : (k, 3) array
+        Vertices, mm.
+    triangles : (m, 3) int array
+        Counter-clockwise seen from outside.
+    side : str, optional
+        OUTSIDE for a solid, BOTH for faces that enclose nothing.
+
+    Returns
+    -------
+    Faces
+        Points with normals and areas.
+    """
     corners = vertices[triangles]
     vectors = doubled_areas(corners)
     twice = np.linalg.norm(vectors, axis=1)
@@ -136,7 +150,13 @@ class Compared:
 
     @property
     def surface(self) -> Array:
-        """(n, 3) mm, the places of the deposit's surface that were met."""
+        """Return the points of the deposit's surface that correspond to the faces.
+
+        Returns
+        -------
+        (n, 3) array
+            mm.
+        """
         points: Array = self.faces.points + self.deviation[:, None] * self.faces.normals
         return points
 
@@ -223,7 +243,27 @@ def _first_change(
 
 
 def figures(deposit: PredictedDeposit, comparison: Compared, allowance: float) -> PredictedShape:
-    """The figures of a comparison for an allowance, mm, on all faces. ValueError without faces to be covered."""
+    """Return the figures of a comparison.
+
+    Parameters
+    ----------
+    deposit : PredictedDeposit
+        The predicted deposit.
+    comparison : Compared
+        The comparison with the faces.
+    allowance : float
+        Required allowance on all faces, mm.
+
+    Returns
+    -------
+    PredictedShape
+        The figures.
+
+    Raises
+    ------
+    ValueError
+        Without faces to be covered.
+    """
     if not len(comparison.faces):
         raise ValueError("there are no faces to be covered")
     area, worst = comparison.faces.areas, int(comparison.deviation.argmin())
@@ -347,7 +387,22 @@ BARS = 40  # of a histogram, about
 
 
 def deviation_map(deposit: PredictedDeposit, comparison: Compared, layers: int) -> DeviationMap:
-    """The map of a comparison for a path with a number of layers: regularly sampled places, the worst first."""
+    """Return the map of a comparison: regularly sampled places, the worst first.
+
+    Parameters
+    ----------
+    deposit : PredictedDeposit
+        The predicted deposit.
+    comparison : Compared
+        The comparison with the faces.
+    layers : int
+        Number of layers of the path.
+
+    Returns
+    -------
+    DeviationMap
+        The map with a histogram and figures by layer.
+    """
     named = _worst(comparison.faces.points, comparison.deviation)
     count = len(comparison.deviation)
     sample = np.arange(0, count, -(-count // MOST_PLACES))

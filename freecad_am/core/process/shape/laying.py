@@ -53,7 +53,18 @@ class Footprint:
     cover: Array
 
     def mixed(self, of_pieces: Array) -> Array:
-        """(k,) at cubes, of values (n,) of pieces."""
+        """Interpolate values of pieces at cubes.
+
+        Parameters
+        ----------
+        of_pieces : (n,) array
+            Values of the pieces.
+
+        Returns
+        -------
+        (k,) array
+            Values at the cubes.
+        """
         return np.asarray(
             self.share * of_pieces[self.piece_rows]
             + (1.0 - self.share) * of_pieces[self.other_piece],
@@ -61,7 +72,20 @@ class Footprint:
         )
 
     def summed(self, of_cubes: Array, count: int) -> Array:
-        """(n,) sums over the cubes of `count` pieces, of values (k,)."""
+        """Sum values of cubes over their pieces.
+
+        Parameters
+        ----------
+        of_cubes : (k,) array
+            Values of the cubes.
+        count : int
+            Number n of pieces.
+
+        Returns
+        -------
+        (n,) array
+            The sums.
+        """
         sums = np.bincount(self.piece_rows, self.share * of_cubes, count)
         return np.asarray(
             sums + np.bincount(self.other_piece, (1.0 - self.share) * of_cubes, count),
@@ -70,7 +94,22 @@ class Footprint:
 
 
 def footprint(grid: Grid, pieces: Strands, low: Array, high: Array) -> Footprint:
-    """The cubes of every piece of a layer that are not full yet, from `low` to `high` (n,) mm above the path."""
+    """Return the cubes of the pieces of a layer that are not full yet.
+
+    Parameters
+    ----------
+    grid : Grid
+        The grid.
+    pieces : Strands
+        The n pieces of the layer.
+    low, high : (n,) array
+        Range above the path, mm.
+
+    Returns
+    -------
+    Footprint
+        The cubes with their pieces.
+    """
     candidates = [_near(grid, pieces, rows, low, high) for rows in _chunks(grid, pieces, low, high)]
     cubes, piece_rows, up, aside, off = (
         np.concatenate(columns) for columns in zip(*candidates, strict=True)
@@ -227,7 +266,20 @@ class PredictedDeposit:
 
 
 def feature_parts(toolpath: Toolpath, processes: Sequence[ProcessParameters]) -> tuple[Part, ...]:
-    """The features of a toolpath with the process of each."""
+    """Return the features of a toolpath with the process of each.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath.
+    processes : sequence of ProcessParameters
+        Process of each feature.
+
+    Returns
+    -------
+    tuple of Part
+        The features.
+    """
     return tuple(
         Part(feature, numbers, feature_process)
         for (feature, numbers), feature_process in zip(toolpath.parts, processes, strict=True)
@@ -243,8 +295,26 @@ def edge_of(pieces: Strands) -> float:
 def predicted_deposit(
     parts: Sequence[Part], report: Report, edge: float | None = None
 ) -> PredictedDeposit:
-    """The deposit of features, one after the other. edge: mm of its cubes, as `edge_of` by default. ValueError if the width of
-    the beads is not known.
+    """Predict the deposit of features, one after the other.
+
+    Parameters
+    ----------
+    parts : sequence of Part
+        The features.
+    report : Report
+        Receives share and text; may raise to cancel.
+    edge : float or None, optional
+        Edge of the cubes, mm; None for `edge_of`.
+
+    Returns
+    -------
+    PredictedDeposit
+        The deposit.
+
+    Raises
+    ------
+    ValueError
+        If the width of the beads is unknown.
     """
     feature_strands = [strands(part.toolpath, part.process) for part in parts]
     pieces = join_strands(feature_strands)

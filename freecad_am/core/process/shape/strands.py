@@ -70,14 +70,36 @@ class Grid:
         self.filled = np.concatenate([self.filled, np.zeros(CUBES * int(new.sum()))])
 
     def centres(self, indices: Index) -> Array:
-        """Middles (n, 3) mm of cubes at indices (n,)."""
+        """Return the middles of cubes.
+
+        Parameters
+        ----------
+        indices : (n,) int array
+            Indices of the cubes.
+
+        Returns
+        -------
+        (n, 3) array
+            mm.
+        """
         slot, within = np.divmod(indices, CUBES)
         local = np.stack([within // (SIDE * SIDE), within // SIDE % SIDE, within % SIDE], axis=1)
         centres_: Array = (self._corners[slot] + local + 0.5) * self.edge
         return centres_
 
     def fill_at(self, points: Array) -> Array:
-        """How full the grid is (n,) at points (n, 3) mm, interpolated between the middles of cubes."""
+        """Return how full the grid is at points.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            Points, mm.
+
+        Returns
+        -------
+        (n,) array
+            Shares, interpolated between the middles of cubes.
+        """
         along = points / self.edge - 0.5
         low = np.floor(along).astype(np.int64)
         share = along - low
@@ -152,8 +174,22 @@ def join_strands(parts: Sequence[Strands]) -> Strands:
 
 
 def sections(bead: Bead, toolpath: Toolpath, process: ProcessParameters) -> Array:
-    """mm2 (n - 1,) that the wire feeds for each mm of the segments of a bead; the counted section without a wire, or with a schedule
-    of their own, whose feed is not known here.
+    """Return the section that the wire feeds along a bead.
+
+    Parameters
+    ----------
+    bead : Bead
+        The bead of n points.
+    toolpath : Toolpath
+        Its toolpath, with wire feed and bead size.
+    process : ProcessParameters
+        Wire and schedules.
+
+    Returns
+    -------
+    (n - 1,) array
+        mm3 per mm of each segment; width times height without a wire, or with a schedule of
+        the class, whose feed is unknown here.
     """
     schedule = process.for_class(bead.role.bead_class).schedule
     if schedule == process.schedule and bead.wire_share is not None:

@@ -52,7 +52,22 @@ class Space:
 
 
 def nozzle_of(nozzle: NozzleParameters, bead_height: float = 0.0, lean: float = 0.0) -> Nozzle:
-    """The nozzle for clearance checks of beads up to a height, mm, leaning by intention, rad."""
+    """Return the nozzle for clearance checks.
+
+    Parameters
+    ----------
+    nozzle : NozzleParameters
+        The nozzle of the cell.
+    bead_height : float, optional
+        Height of the highest bead, mm.
+    lean : float, optional
+        Intended angle between tool axis and build direction, rad.
+
+    Returns
+    -------
+    Nozzle
+        The nozzle while it deposits.
+    """
     return depositing(
         0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, bead_height, lean
     )
@@ -66,10 +81,27 @@ def space_of(
     often: bool = True,
     feature: int = 0,
 ) -> Space:
-    """The clearance data of the points of a toolpath, in order, among bodies.
+    """Return the clearance data of a toolpath among bodies.
 
-    max_tilt: rad. often: the data are used repeatedly; if not, they take less memory. feature: number of the feature whose points
-    are checked, if several.
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath in part coordinates.
+    bodies : sequence of Body
+        Bodies in part coordinates.
+    nozzle : NozzleParameters
+        The nozzle.
+    max_tilt : float
+        Largest angle of the tool axis to the vertical, rad.
+    often : bool, optional
+        Whether the data are used repeatedly; if not, they take less memory.
+    feature : int, optional
+        Number of the feature whose points are checked, if several.
+
+    Returns
+    -------
+    Space
+        The data for all points, in order.
     """
     beads = [bead for _, _, bead in toolpath]
     points, build = (
@@ -121,7 +153,22 @@ def _turn_before(angle: Array) -> Index:
 
 
 def halfway(beads: Sequence[Bead], tool: Array) -> tuple[Array, Array]:
-    """Points and axes (n, 3) halfway from each point to the next of its bead; at the last of a bead its own."""
+    """Return points and axes halfway to the next point of the bead.
+
+    Parameters
+    ----------
+    beads : sequence of Bead
+        The beads.
+    tool : (n, 3) array
+        Tool axes at all their points.
+
+    Returns
+    -------
+    points : (n, 3) array
+        Points, mm; the last point of a bead itself.
+    axes : (n, 3) array
+        Unit vectors.
+    """
     points, axes, start = [], [], 0
     for bead in beads:
         bead_tool = tool[start : start + len(bead)]
@@ -136,7 +183,24 @@ def halfway(beads: Sequence[Bead], tool: Array) -> tuple[Array, Array]:
 
 
 def touched_between(space: Space, beads: Sequence[Bead], tool: Array, free: Mask) -> Mask:
-    """The points (n,) that are free as the next of their bead is, and the nozzle touches halfway to it."""
+    """Return the points after which the nozzle touches halfway to the next.
+
+    Parameters
+    ----------
+    space : Space
+        The clearance data.
+    beads : sequence of Bead
+        The beads.
+    tool : (n, 3) array
+        Tool axes at all their points.
+    free : (n,) bool array
+        Points at which the nozzle is clear.
+
+    Returns
+    -------
+    (n,) bool array
+        Clear points whose next point is also clear, but not the position halfway.
+    """
     points, axes = halfway(beads, tool)
     both_free = free & np.r_[free[1:], False]
     both_free[np.cumsum([len(bead) for bead in beads]) - 1] = False
@@ -173,7 +237,24 @@ CLEARANCE = "CLEARANCE"  # the nozzle touches something while it deposits
 def locate_row(
     bead_keys: list[tuple[int, int]], begin: Index, row: int
 ) -> tuple[tuple[int, int], int]:
-    """Layer and bead of a row of the joined points, and its number in its bead. bead_keys: (layer, bead) pairs; begin: first rows."""
+    """Return layer, bead and point of a row of the joined points.
+
+    Parameters
+    ----------
+    bead_keys : list[tuple[int, int]]
+        Layer and bead of each bead.
+    begin : int array
+        First row of each bead.
+    row : int
+        The row.
+
+    Returns
+    -------
+    bead_key : tuple of int
+        Layer and bead.
+    point : int
+        Number of the point in the bead.
+    """
     bead = int(np.searchsorted(begin, row, side="right")) - 1
     return bead_keys[bead], row - int(begin[bead])
 
@@ -181,7 +262,24 @@ def locate_row(
 def tilt_issues(
     bead_keys: list[tuple[int, int]], begin: Index, tilt: Array, stuck: Mask
 ) -> list[Issue]:
-    """Where tools are tilted, by tilt (n,) rad, and at which points (n,) that does not help."""
+    """Report where tools are tilted, and where that does not help.
+
+    Parameters
+    ----------
+    bead_keys : list[tuple[int, int]]
+        Layer and bead of each bead.
+    begin : (beads + 1,) int array
+        First row of each bead, and the number of rows.
+    tilt : (n,) array
+        Tilts, rad.
+    stuck : (n,) bool array
+        Points at which the nozzle touches at every tilt.
+
+    Returns
+    -------
+    list of Issue
+        An error for stuck points, a note for tilted ones.
+    """
     bead = np.repeat(np.arange(len(bead_keys)), np.diff(begin))
     layer = np.array([key[0] for key in bead_keys])[bead]
     issues = []
@@ -265,9 +363,25 @@ def check_nozzle(
     max_points: int,
     feature: int | None = None,
 ) -> Looked:
-    """Check at up to `max_points` evenly spread points whether the nozzle touches bodies or earlier deposit.
+    """Check at evenly spread points whether the nozzle touches bodies or earlier deposit.
 
-    The platform is one of the bodies; beads have their width and height. feature: number of the feature to check, if several.
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath in part coordinates; beads have their width and height.
+    bodies : sequence of Body
+        Bodies in part coordinates, with the platform.
+    nozzle : NozzleParameters
+        The nozzle.
+    max_points : int
+        Largest number of points.
+    feature : int or None, optional
+        Number of the feature to check, if several; None for all.
+
+    Returns
+    -------
+    Looked
+        Numbers of checked and touching points, and the first of the latter.
     """
     space = space_of(toolpath, bodies, nozzle, np.pi, often=False, feature=feature or 0)
     beads = list(toolpath)
@@ -303,7 +417,24 @@ def join_checks(looks: Sequence[Looked]) -> Looked | None:
 def nozzle_issues(
     toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters
 ) -> list[Issue]:
-    """An error where the nozzle would touch bodies while depositing, for toolpaths that are not tilted away from them."""
+    """Report where the nozzle would touch bodies while depositing.
+
+    For toolpaths that are not tilted away from them.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath in part coordinates.
+    bodies : sequence of Body
+        Bodies in part coordinates.
+    nozzle : NozzleParameters
+        The nozzle.
+
+    Returns
+    -------
+    list of Issue
+        One error, or none.
+    """
     if not bodies:
         return []
     beads = [bead for _, _, bead in toolpath]

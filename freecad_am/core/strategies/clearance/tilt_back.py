@@ -384,7 +384,22 @@ def knots_along(row: Index) -> Index:
 
 
 def free_about(row: Index, knots: Index, free: Mask) -> Mask:
-    """(k,) whether the points nearest to each knot are all free; free: (n,) over the points of the toolpath."""
+    """Return whether the points nearest to each knot are all free.
+
+    Parameters
+    ----------
+    row : (m,) int array
+        Points of the bead.
+    knots : (k,) int array
+        Knots among them.
+    free : (n,) bool array
+        Free points of the toolpath.
+
+    Returns
+    -------
+    (k,) bool array
+        True where all are free.
+    """
     position = np.searchsorted(row, knots)
     middles = np.r_[0, (position[:-1] + position[1:] + 1) // 2]
     about: Mask = np.logical_and.reduceat(free[row], middles)
@@ -394,7 +409,28 @@ def free_about(row: Index, knots: Index, free: Mask) -> Mask:
 def spread_out(
     space: Space, row: Index, knots: Index, tool: Array, axes: Array
 ) -> tuple[Array, Index]:
-    """Axes (m, 3) at all points of a bead, those (k, 3) at its knots and even between; and the points that touch there."""
+    """Interpolate axes between the knots of a bead.
+
+    Parameters
+    ----------
+    space : Space
+        The clearance data.
+    row : (m,) int array
+        Points of the bead.
+    knots : (k,) int array
+        Knots among them.
+    tool : (n, 3) array
+        Requested axes of all points of the toolpath.
+    axes : (k, 3) array
+        Axes at the knots.
+
+    Returns
+    -------
+    axes : (m, 3) array
+        Axes at all points of the bead, unit vectors.
+    touching : int array
+        Points between the knots at which the nozzle touches.
+    """
     points = space.points[row]
     along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     knot_lengths = along[np.searchsorted(row, knots)]

@@ -133,7 +133,20 @@ class TiltSearch:
         )
 
     def axes(self, points: Index, offset: Array) -> Array:
-        """Tool axes (k, 3) of tilts (k, 2) at the points numbered `points` of the blocked beads."""
+        """Return the tool axes for tilts at points.
+
+        Parameters
+        ----------
+        points : (k,) int array
+            Numbers of points of the blocked beads.
+        offset : (k, 2) array
+            Tilts, rad.
+
+        Returns
+        -------
+        (k, 3) array
+            Unit vectors.
+        """
         return self._tilted(np.searchsorted(self.flat, points), offset)
 
     def _tilted(self, row: Index, offset: Array) -> Array:
@@ -154,7 +167,20 @@ class TiltSearch:
         ).reshape(-1, s)
 
     def search(self, watch: Watch) -> tuple[Array, Mask]:
-        """Tilts (m, 2) of all points, and the points (m,) without a clear one."""
+        """Search small and even tilts that keep the nozzle clear.
+
+        Parameters
+        ----------
+        watch : Watch
+            Progress of the search.
+
+        Returns
+        -------
+        offset : (m, 2) array
+            Tilts of all points, rad.
+        stuck : (m,) bool array
+            Points without a clear tilt.
+        """
         offset, stuck = self.coarse(watch.section(0.0, COARSE))
         for level in range(1, LEVELS + 1):
             watch.share(COARSE + (1.0 - COARSE) * (level - 1) / LEVELS)
@@ -162,7 +188,20 @@ class TiltSearch:
         return offset, stuck
 
     def coarse(self, watch: Watch) -> tuple[Array, Mask]:
-        """Tilts (m, 2) on the cones, and the points (m,) that have none that is clear; those hinder no one."""
+        """Search tilts on cones about the requested axes.
+
+        Parameters
+        ----------
+        watch : Watch
+            Progress of the search.
+
+        Returns
+        -------
+        offset : (m, 2) array
+            Tilts, rad.
+        stuck : (m,) bool array
+            Points without a clear tilt; they do not hinder the others.
+        """
         states = np.zeros((1, 2))
         allowed = self._clear(np.arange(len(self.flat)), states) | ~self.near[:, None]
         bead = np.repeat(np.arange(len(self.counts)), self.counts)
@@ -217,7 +256,23 @@ class TiltSearch:
         return beads
 
     def finer(self, offset: Array, step: float, turn: int) -> Array:
-        """Tilts (m, 2) near those given that make a better way, at most two steps of `step` (rad) away in each component."""
+        """Improve tilts on a finer grid near them.
+
+        Parameters
+        ----------
+        offset : (m, 2) array
+            The tilts, rad.
+        step : float
+            Step of the grid, rad; at most two steps away in each component.
+        turn : int
+            Number of the refinement; each time another point of a closed bead stays
+            unchanged.
+
+        Returns
+        -------
+        (m, 2) array
+            Better tilts, rad.
+        """
         around = step * np.arange(-2.0, 3.0)
         grid = np.stack(
             np.meshgrid(around, around if self.plane is None else [0.0], indexing="ij"), axis=-1
@@ -325,9 +380,21 @@ def _near(points: Array, blocked: Mask, closed: bool, reach: float) -> Mask:
 
 
 def nearest(marks: Array, positions: Array, length: float | None) -> Array:
-    """(n,) distance of positions (n,) on a line from the nearest of the marks (k,), rising; infinity without any.
+    """Return the distances of positions on a line from the nearest mark.
 
-    length: the length of a closed line.
+    Parameters
+    ----------
+    marks : (k,) array
+        Rising positions of the marks, mm.
+    positions : (n,) array
+        The positions, mm.
+    length : float or None
+        Length of a closed line, mm; None for an open one.
+
+    Returns
+    -------
+    (n,) array
+        Distances, mm; infinite without marks.
     """
     if not len(marks):
         return np.full(len(positions), np.inf)
@@ -434,8 +501,21 @@ class Touching(NamedTuple):
 
 
 def what_helps(touching: Touching, now: Change, clears: Callable[[Change], bool]) -> Text:
-    """The remedy as the end of a message: the first change with which the nozzle is clear, or that none is known. clears: tilts
-    every bead again.
+    """Return the remedy for contacts as the end of a message.
+
+    Parameters
+    ----------
+    touching : Touching
+        The toolpath and the points that no tilt clears.
+    now : Change
+        The current bodies, nozzle and build directions.
+    clears : callable
+        Tilts every bead again after a change and returns whether the nozzle is clear.
+
+    Returns
+    -------
+    Text
+        The first change with which the nozzle is clear, or a text that none is known.
     """
     trials: list[Text] = []
     trials_left = MAX_TRIALS

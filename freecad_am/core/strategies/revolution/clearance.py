@@ -54,11 +54,30 @@ class Platform:
 
 
 def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
-    """The platform as seen from the wall.
+    """Return the platform as seen from a wall of revolution.
 
-    diameter: mm, 0 for none. frame: (4, 4) pose of the platform in part coordinates; None when the feature frame sits on
-    it. A disc whose middle is off the axis counts as a larger one about the axis, which is on the safe side. Raises
-    InputError 'OFF_PLATFORM' when the axis of the wall misses the platform, or the wall starts below it.
+    A disc whose middle is off the axis counts as a larger one about the axis, which is on the
+    safe side.
+
+    Parameters
+    ----------
+    wall : RevolvedWall
+        The wall.
+    diameter : float
+        Diameter of the platform, mm; 0 for none.
+    frame : (4, 4) array or None
+        Pose of the platform in part coordinates; None if the feature frame sits on it.
+
+    Returns
+    -------
+    Platform
+        The platform in the feature frame.
+
+    Raises
+    ------
+    InputError
+        OFF_PLATFORM when the axis of the wall misses the platform or is not along its
+        normal, or the wall starts below it.
     """
     centre, normal = np.zeros(3), np.array([0.0, 0.0, 1.0])
     if frame is not None:
@@ -117,8 +136,27 @@ def overhanging(wall: RevolvedWall, platform: Platform) -> list[Issue]:
 def refuse_below(
     label: str, points: Array, frame: Array, diameter: float, remedy: str = MOVE
 ) -> None:
-    """InputError OFF_PLATFORM for deposit points (n, 3) below the platform, a disc about the origin of a frame (4, 4) in part
-    coordinates; diameter: mm, 0 for none. Outside the disc there is room below its plane.
+    """Reject deposit below the platform.
+
+    Outside the disc there is room below its plane.
+
+    Parameters
+    ----------
+    label : str
+        Name of the part.
+    points : (n, 3) array
+        Deposit points in part coordinates, mm.
+    frame : (4, 4) array
+        Pose of the platform in part coordinates.
+    diameter : float
+        Diameter of the platform, mm; 0 for none.
+    remedy : str, optional
+        Advice for the message.
+
+    Raises
+    ------
+    InputError
+        OFF_PLATFORM at the deepest point.
     """
     local = (points - frame[:3, 3]) @ frame[:3, :3]
     depth = np.where(np.hypot(local[:, 0], local[:, 1]) < 0.5 * diameter, -local[:, 2], 0.0)
@@ -136,7 +174,22 @@ def refuse_below(
 
 
 def refuse_solids_below(solids: SolidsOnHub, frame: Array, diameter: float) -> None:
-    """The same check for solids on a hub, outside of the surfaces under them."""
+    """Reject solids on a hub that reach below the platform, outside their base surfaces.
+
+    Parameters
+    ----------
+    solids : SolidsOnHub
+        The solids.
+    frame : (4, 4) array
+        Pose of the platform in part coordinates.
+    diameter : float
+        Diameter of the platform, mm; 0 for none.
+
+    Raises
+    ------
+    InputError
+        OFF_PLATFORM at the deepest point.
+    """
 
     def over(corners: Array) -> Mask:
         """Which triangles (n, 3, 3) may come over the disc, or below it."""
@@ -190,7 +243,13 @@ class Deposit:
 
     @property
     def points(self) -> Array:
-        """(k, 3) mm in the feature frame."""
+        """Return the points in the feature frame.
+
+        Returns
+        -------
+        (k, 3) array
+            mm.
+        """
         return _place(self.radius, self.azimuth, self.height)
 
 
@@ -242,7 +301,22 @@ class Clearance:
         return Scene(self.bodies, beads)
 
     def clear(self, among: Scene, case: Index, tool: Array) -> Mask:
-        """Whether the nozzle is clear with tool axes (n, 3), in components, in the cases numbered (n,)."""
+        """Return whether the nozzle is clear.
+
+        Parameters
+        ----------
+        among : Scene
+            The scene with tilted beads.
+        case : (n,) int array
+            Numbers of the cases.
+        tool : (n, 3) array
+            Tool axes along radius, azimuth and axis.
+
+        Returns
+        -------
+        (n,) bool array
+            True where clear.
+        """
         return self._clear(among, self.tips, case, tool)
 
     def clear_between(self, among: Scene, tool: Array) -> Mask:
@@ -267,8 +341,30 @@ def nozzle_clearance(
     chord_error: float,
     between: Tips | None = None,
 ) -> Clearance:
-    """The nozzle, leaning by `lean` rad off the build direction, over a platform and a deposit whose points leave their
-    curves by `chord_error` mm at most."""
+    """Return the nozzle over a platform and a deposit.
+
+    Parameters
+    ----------
+    nozzle : NozzleParameters
+        The nozzle.
+    lean : float
+        Angle between tool axis and build direction, rad.
+    platform : Platform
+        The platform.
+    tips : Tips
+        Tip positions, case by case.
+    deposit : Deposit
+        The deposit.
+    chord_error : float
+        Largest distance of the deposit's points from their curves, mm.
+    between : Tips or None, optional
+        Points of the deposit, if the tips do not represent them; None otherwise.
+
+    Returns
+    -------
+    Clearance
+        The clearance check.
+    """
     nozzle_ = depositing(
         0.5 * nozzle.diameter,
         float(np.tan(nozzle.half_angle)),
@@ -288,10 +384,30 @@ def nozzle_clearance(
 def arc_points(
     radius: Array, turn: float, chord_error: float, min_points: int, one_side: bool
 ) -> tuple[Index, Array]:
-    """Bead and azimuth (k,) of the points of arcs of radii (m,) over `turn` rad, seen from any point at azimuth 0: to both sides,
-    or to one side only; of full circles one half.
+    """Return the points of arcs seen from a point at azimuth 0.
 
-    The points of a bead of that chord error (mm) and fewest points of a full turn, so that the arc has the same segments.
+    Points to both sides, or to one side only; of full circles one half. They have the spacing
+    of a bead, so that the arc has the same segments.
+
+    Parameters
+    ----------
+    radius : (m,) array
+        Radii of the arcs, mm.
+    turn : float
+        Extent of the arcs, rad.
+    chord_error : float
+        Chord error of the bead, mm.
+    min_points : int
+        Fewest points of a full turn.
+    one_side : bool
+        Whether only one side is needed.
+
+    Returns
+    -------
+    bead : (k,) int array
+        Arc of each point.
+    azimuth : (k,) array
+        Its azimuth, rad.
     """
     full = turn >= 2.0 * np.pi
     counts = np.array(

@@ -112,9 +112,28 @@ def plan(
 
 
 def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, list[Issue]]:
-    """The beads of every layer, and notes on the remainder at the top, skipped beads and uneven spacing.
+    """Return the beads of every layer of a wall of revolution.
 
     A bead whose radius is no more than the chord error is a point, and is skipped.
+
+    Parameters
+    ----------
+    wall : RevolvedWall
+        The wall.
+    strategy : RevolutionParameters
+        Layer height, spacing and chord error.
+
+    Returns
+    -------
+    slices : Slices
+        The beads in the order of deposit.
+    issues : list of Issue
+        Notes on the remainder at the top, skipped beads and uneven spacing.
+
+    Raises
+    ------
+    InputError
+        LAYER_HEIGHT if the wall is lower than a layer.
     """
     meridian = wall.meridian
     along_wall = strategy.spacing == "arc-length"
@@ -268,11 +287,39 @@ PER_TURN = 8  # places to a turn at which the tilt-back is settled
 def spiral_layers(
     wall: RevolvedWall, strategy: RevolutionParameters, process: ProcessParameters, tilting: Tilting
 ) -> tuple[tuple[Layer, ...], list[Issue]]:
-    """The whole spiral as one layer with one open bead; its parameter is the angle unwrapped over all turns.
+    """Return the spiral of a wall as one layer with one open bead.
 
-    It starts with the full turn of the base circle, rises by a layer height per turn along the wall, and ends with
-    a full turn at an open top. On a top closed on the axis it ends where the radius is half a layer height.
-    Raises InputError 'PARTIAL_TURN', and 'LAYER_HEIGHT' as layers do.
+    It starts with the full turn of the base circle, rises by a layer height per turn along the
+    wall, and ends with a full turn at an open top. On a top closed on the axis it ends where
+    the radius is half a layer height. The bead's parameter is the angle unwrapped over all
+    turns.
+
+    Parameters
+    ----------
+    wall : RevolvedWall
+        The wall.
+    strategy : RevolutionParameters
+        Layer height and chord error.
+    process : ProcessParameters
+        Travel speed, seam and direction.
+    tilting : Tilting
+        Build directions and clearance.
+
+    Returns
+    -------
+    layers : tuple of Layer
+        The layer.
+    issues : list of Issue
+        Notes on tilts and on places with less room than a layer height.
+
+    Raises
+    ------
+    InputError
+        PARTIAL_TURN for a wall that is not a full turn; LAYER_HEIGHT as layers do.
+
+    References
+    ----------
+    Chalvin 2020, section 6.1.
     """
     if not wall.full:
         raise InputError(

@@ -49,8 +49,20 @@ class Cases:
         return earlier
 
     def together(self, angle: Array) -> Array:
-        """The largest tilt-back (k,) of each bead's cases, or of each and its neighbours, so that interpolated ones are never too small;
-        NaN if one has none.
+        """Return the tilt-back that all cases of a bead have in common.
+
+        In a chain each case takes the largest of its own and its neighbours' angles, so
+        that interpolated ones are never too small.
+
+        Parameters
+        ----------
+        angle : (k,) array
+            Tilt-back of each case, rad.
+
+        Returns
+        -------
+        (k,) array
+            The largest, rad; NaN if a case has none.
         """
         if self.chained:
             larger: Array = np.maximum(
@@ -85,7 +97,13 @@ class Tilting:
 
     @property
     def size(self) -> tuple[float, float]:
-        """Width and height of the beads, mm."""
+        """Return the size of the beads.
+
+        Returns
+        -------
+        width, height : float
+            mm.
+        """
         return self.bead_width, self.strategy.layer_height
 
     @property
@@ -102,10 +120,30 @@ class Tilting:
         rising: Sequence[bool],
         layer: Index,
     ) -> tuple[list[Array], list[Array], list[Issue]]:
-        """Build directions and tool axes per bead, (n, 3) or (1, 3) if the same at every point, and issues.
+        """Return build directions and tool axes of beads.
 
-        radius, height (m,), tangent (m, 2): the beads in the order of deposit. azimuths, rising: of each bead. layer: (m,) the layer
-        that issues name.
+        Parameters
+        ----------
+        radius, height : (m,) array
+            The beads in the order of deposit, mm.
+        tangent : (m, 2) array
+            Meridian tangents, radius and axis.
+        azimuths : sequence of Array
+            Azimuths (n,) of the points of each bead, rad.
+        rising : sequence of bool
+            Whether each bead runs with rising azimuth.
+        layer : (m,) int array
+            Layers that issues name.
+
+        Returns
+        -------
+        build : list of (n, 3) or (1, 3) array
+            Build directions of each bead along radius, azimuth and axis; one row if the
+            same at every point.
+        tool : list of (n, 3) or (1, 3) array
+            Tool axes.
+        issues : list of Issue
+            Tilts, and contacts that no tilt avoids.
         """
         sense = np.asarray(rising, dtype=bool)
         if self.parameters.mode == "layer" and not self.wall.full:
@@ -195,8 +233,27 @@ class Tilting:
     def tilt_back(
         self, tangent: Array, rising: bool, tips: Tips, deposit: Deposit, between: Tips
     ) -> tuple[Array, list[Issue]]:
-        """Tilt-back (c,) rad of tips along one bead with the meridian tangents (c, 2), never less than a neighbour's, and issues.
-        between: every point of the bead.
+        """Return the tilt-back of tips along one bead, never less than a neighbour's.
+
+        Parameters
+        ----------
+        tangent : (c, 2) array
+            Meridian tangents, radius and axis.
+        rising : bool
+            Whether the bead runs with rising azimuth.
+        tips : Tips
+            The c tip positions.
+        deposit : Deposit
+            The deposit.
+        between : Tips
+            Every point of the bead.
+
+        Returns
+        -------
+        angle : (c,) array
+            Tilt-back, rad.
+        issues : list of Issue
+            Tilts, and contacts that no tilt avoids.
         """
         cases = dataclasses.replace(
             self._circles(tangent, np.full(len(tangent), rising)), chained=True
@@ -207,7 +264,18 @@ class Tilting:
         return self._resolved(cases, clearance, np.zeros(len(tangent), dtype=np.intp))
 
     def build(self, tangent: Array) -> Array:
-        """Build directions (n, 3) that are asked for on full circles with the meridian tangents (n, 2)."""
+        """Return the requested build directions on full circles.
+
+        Parameters
+        ----------
+        tangent : (n, 2) array
+            Meridian tangents, radius and axis.
+
+        Returns
+        -------
+        (n, 3) array
+            Directions along radius, azimuth and axis.
+        """
         return (
             directions.local(tangent)
             if self.parameters.mode == "local"
@@ -215,7 +283,22 @@ class Tilting:
         )
 
     def axes(self, tangent: Array, angle: Array, rising: bool) -> tuple[Array, Array]:
-        """Build directions and tool axes (n, 3) on full circles from meridian tangents (n, 2) and tilt-backs (n,)."""
+        """Return build directions and tool axes on full circles.
+
+        Parameters
+        ----------
+        tangent : (n, 2) array
+            Meridian tangents, radius and axis.
+        angle : (n,) array
+            Tilt-back, rad.
+        rising : bool
+            Whether the bead runs with rising azimuth.
+
+        Returns
+        -------
+        build, tool : (n, 3) array
+            Directions along radius, azimuth and axis.
+        """
         build = directions.tilt_back(self.build(tangent), angle)
         return build, self._tool(build, np.full(len(tangent), rising))
 

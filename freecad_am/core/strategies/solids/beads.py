@@ -44,8 +44,27 @@ PROBES = 9  # the longest edges, which decide the side of the outline
 def leaning(
     curve: PlaneCurve, layer: Slice, strategy: FilledParameters, build: BuildDirectionParameters
 ) -> Lean:
-    """How the torch leans on a curve: as the build direction says, and by the deflection towards the outline where the curve
-    is a contour or a spiral that begins along it, a spiral for as long as it does."""
+    """Return how the torch leans on a curve.
+
+    The lead and tilt of the build direction apply. A contour, or a spiral as long as it runs
+    along the outline, is also deflected towards the outline.
+
+    Parameters
+    ----------
+    curve : PlaneCurve
+        The curve on the plane.
+    layer : Slice
+        Its layer.
+    strategy : FilledParameters
+        Deflection and bead spacing.
+    build : BuildDirectionParameters
+        Build direction with lead and tilt.
+
+    Returns
+    -------
+    Lean
+        The lean.
+    """
     plain = Lean(build.lead, build.tilt)
     if strategy.deflection == 0.0 or curve.kind not in ("contour", "spiral") or curve.ring > 0:
         return plain
@@ -97,8 +116,29 @@ def bead_of(
     process: ProcessParameters,
     model: BeadModel | None,
 ) -> MadeBead:
-    """The bead of a curve of a layer, in part coordinates, with the settings and lean of its class; its polynomial's variable is
-    the arc length, 2 pi in all.
+    """Return the bead of a curve, with the settings and lean of its class.
+
+    The variable of its polynomial is the arc length, scaled to one turn (2 pi).
+
+    Parameters
+    ----------
+    curve : PlaneCurve
+        The curve on the plane.
+    layer : Slice
+        Its layer.
+    strategy : FilledParameters
+        Chord error, spacing and deflection.
+    build : BuildDirectionParameters
+        Build direction.
+    process : ProcessParameters
+        Speeds by class.
+    model : BeadModel or None
+        Bead model that sets the speeds; None for the travel speed.
+
+    Returns
+    -------
+    MadeBead
+        The bead in part coordinates, with its report.
     """
     surface, base, name = (
         layer.surface,
@@ -204,7 +244,22 @@ def _sparse(points: Array, speed: Array, min_step: float) -> Mask:
 
 
 def needed(line: Array, chord_error: float, besides: Mask | None = None) -> Array:
-    """A polyline (n, 2) on the plane without points that the chord error does not need, except a mask (n,), and without coinciding points."""
+    """Remove points that the chord error does not need, and coinciding ones.
+
+    Parameters
+    ----------
+    line : (n, 2) array
+        Polyline on the plane, mm.
+    chord_error : float
+        Chord error, mm.
+    besides : (n,) bool array or None, optional
+        Points to keep in any case.
+
+    Returns
+    -------
+    (m, 2) array
+        The remaining points.
+    """
     grid = np.ascontiguousarray(
         np.round(line, GRID) + 0.0
     )  # the same rounding for equal points wherever the hub is
@@ -222,7 +277,24 @@ EXACT = 3e-3  # of the volume of a part; solids that share more overlap
 def layer_volumes(
     strategy: FilledParameters, covers: Sequence[Cover]
 ) -> tuple[float, float, float]:
-    """mm3 of the layers, of their missed volume, and of stray deposit."""
+    """Return the volumes of layers.
+
+    Parameters
+    ----------
+    strategy : FilledParameters
+        Layer height.
+    covers : sequence of Cover
+        Areas of the layers.
+
+    Returns
+    -------
+    layers : float
+        Volume of the layers, mm3.
+    missed : float
+        Volume that no bead covers, mm3.
+    stray : float
+        Deposit outside the layers, mm3.
+    """
     total_, missed, outside, _ = (strategy.layer_height * area for area in total(covers))
     return total_, missed, outside
 
@@ -278,7 +350,20 @@ def volumes(
 
 
 def slab_volumes(solids: SolidsOnHub, strategy: FilledParameters) -> Array | None:
-    """mm3 (k,) that solids in plane layers have between the planes of each; None for other layers."""
+    """Return the volumes of solids between the planes of their layers.
+
+    Parameters
+    ----------
+    solids : SolidsOnHub
+        The solids.
+    strategy : FilledParameters
+        Layer height and kind of layers.
+
+    Returns
+    -------
+    (k,) array or None
+        Volumes, mm3; None for layers that are not planes.
+    """
     group = group_of(solids)
     if group is None or strategy.has_curved_layers or strategy.follows_guide:
         return None  # curved layers may begin on a plane too
@@ -291,7 +376,26 @@ def twice_volume(
     covers: Sequence[Cover],
     width: float,
 ) -> float:
-    """mm3 of beads that count as `width` mm wide, each as wide as its spacing, beyond the area they cover."""
+    """Return the volume of beads beyond the area that they cover.
+
+    Each bead counts as wide as its spacing.
+
+    Parameters
+    ----------
+    made_beads : sequence of MadeBead
+        The beads.
+    strategy : FilledParameters
+        Layer height and spacing.
+    covers : sequence of Cover
+        Areas of the layers.
+    width : float
+        Width of beads without their own, mm.
+
+    Returns
+    -------
+    float
+        mm3.
+    """
     area = 0.0
     for bead in (made_bead.bead for made_bead in made_beads):
         step = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)

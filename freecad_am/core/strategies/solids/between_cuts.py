@@ -51,8 +51,25 @@ class Uncut(NamedTuple):
 def uncut(
     solids: SolidsOnHub, strategy: FilledParameters, ranked: Sequence[RankedBead], width: float
 ) -> list[Uncut]:
-    """Uncut pieces of which beads, of a width in mm, leave more than LEAST_SHARE. Curved layers are not checked: they reach
-    everything connected with their start.
+    """Return the pieces of solids without a layer cut that beads do not cover either.
+
+    Curved layers are not checked: they reach everything connected with their start.
+
+    Parameters
+    ----------
+    solids : SolidsOnHub
+        The solids.
+    strategy : FilledParameters
+        Layer height and cut.
+    ranked : sequence of RankedBead
+        The beads.
+    width : float
+        Width of beads without their own, mm.
+
+    Returns
+    -------
+    list of Uncut
+        Pieces with more than LEAST_SHARE uncovered.
     """
     if strategy.has_curved_layers:
         return []

@@ -37,7 +37,26 @@ class Course:
     spread: Array | None = None
 
     def wrap_at(self, s: Array, arc: Array) -> tuple[Array, Array, Array, Array]:
-        """Flat positions (n, 2), points (n, 3), normals (n, 3) and the azimuth phi (n,) on the plane."""
+        """Return the bead at positions along it.
+
+        Parameters
+        ----------
+        s : (n,) array
+            Positions, mm.
+        arc : (m,) array
+            Positions of the bead's points, mm.
+
+        Returns
+        -------
+        flat : (n, 2) array
+            Points on the plane, mm.
+        points : (n, 3) array
+            Points on the surface, mm.
+        normals : (n, 3) array
+            Unit normals.
+        turn : (n,) array
+            Angle of the plane's x from the first axis of the surface, rad.
+        """
         flat = np.stack([np.interp(s, arc, column) for column in self.flat.T], axis=-1)
         points, normals, turn = self.surface.wrap(flat)
         if self.spread is not None:
@@ -59,15 +78,46 @@ class Evened(NamedTuple):
 
 
 def limit(surface: LayerSurface, build: BuildDirectionParameters, normal_rate: float) -> float:
-    """How fast (rad/mm) the torch may turn on a bead whose normals turn by `normal_rate` rad/mm."""
+    """Return how fast the torch may turn on a bead.
+
+    Parameters
+    ----------
+    surface : LayerSurface
+        The layer surface.
+    build : BuildDirectionParameters
+        Build direction with the largest turn.
+    normal_rate : float
+        Turn of the bead's normals, rad/mm.
+
+    Returns
+    -------
+    float
+        rad/mm.
+    """
     max_rate = build.turn(max(TURN_ON_HUBS, OF_NORMAL * normal_rate))
     return min(max_rate, build.turn()) if surface.bends_freely else max_rate
 
 
 def evened(course: Course, arc: Array, build: BuildDirectionParameters, leaning: bool) -> Evened:
-    """The bead with its normals spread where the surface allows it and they turn too fast, over as little length as possible.
+    """Spread the normals of a bead where they turn too fast.
 
-    leaning: whether the torch also turns against them. Normals that cannot be slowed enough stay.
+    This takes as little length as possible. Normals that cannot be slowed enough stay.
+
+    Parameters
+    ----------
+    course : Course
+        The flattened bead with its surface.
+    arc : (n,) array
+        Positions of its points, mm.
+    build : BuildDirectionParameters
+        Build direction with the largest turn.
+    leaning : bool
+        Whether the torch also turns against the normals.
+
+    Returns
+    -------
+    Evened
+        The bead, the departure of its normals and the length concerned.
     """
     max_rate = build.turn() / (OF_NORMAL if leaning else 1.0)
     if not course.surface.bends_freely or max_rate == math.inf:

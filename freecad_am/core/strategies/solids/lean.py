@@ -55,7 +55,22 @@ class Line(NamedTuple):
 
 
 def means(line: Line, s: Array, half: Array) -> Array:
-    """Means (n, c) of the values over s - half .. s + half (n,), the values themselves where half is 0."""
+    """Return the means of a line over stretches.
+
+    Parameters
+    ----------
+    line : Line
+        The line.
+    s : (n,) array
+        Middles of the stretches, mm.
+    half : (n,) array
+        Half their lengths, mm.
+
+    Returns
+    -------
+    (n, c) array
+        Means; the values themselves where half is 0.
+    """
     means_ = line(s)
     wide = np.flatnonzero(half > 1e-6)
     for rows in np.split(wide, np.arange(BLOCK, len(wide), BLOCK)) if len(wide) else ():
@@ -105,7 +120,18 @@ class Zones:
         return (0.0,) if self.length is None else (-self.length, 0.0, self.length)
 
     def stretches(self, s: Array) -> Array:
-        """Half the stretch (n,) at places (n,), rising: the same as far as its ramp goes, then less."""
+        """Return half the stretch over which values are spread.
+
+        Parameters
+        ----------
+        s : (n,) array
+            Rising positions, mm.
+
+        Returns
+        -------
+        (n,) array
+            mm; constant near a zone, then less along a ramp.
+        """
         half = np.zeros(len(s))
         moved = np.array(self._copies())[:, None]
         low, high = self.low + moved, self.high + moved
@@ -128,7 +154,18 @@ class Zones:
         return half
 
     def places(self, s: Array) -> Array:
-        """Positions to add to the positions (n,) of a bead, so that the ramps are followed."""
+        """Return positions to add to a bead, so that the ramps are followed.
+
+        Parameters
+        ----------
+        s : (n,) array
+            Positions of the bead's points, mm.
+
+        Returns
+        -------
+        (k,) array
+            New positions, mm.
+        """
         shares = np.arange(-PARTS, PARTS + 1) / PARTS
         ramps = []
         for low, high, half in zip(self.low.tolist(), self.high.tolist(), self.half.tolist()):
@@ -186,7 +223,26 @@ class Zones:
 def too_fast(
     line: Line, weights: Array, max_rate: float, length: float | None, end: float
 ) -> Zones:
-    """Where the values, weighted (c,), change by more than `max_rate` per mm from 0 to `end` mm; their stretches begin short."""
+    """Return where values change too fast.
+
+    Parameters
+    ----------
+    line : Line
+        The values along a bead.
+    weights : (c,) array
+        Weights of the values.
+    max_rate : float
+        Largest change per mm.
+    length : float or None
+        Length of a closed bead, mm; None for an open one.
+    end : float
+        End of the range to check, from 0, mm.
+
+    Returns
+    -------
+    Zones
+        The zones; their stretches begin short.
+    """
     step = np.diff(line.positions)
     change = np.linalg.norm(np.diff(line.values, axis=0) * weights, axis=1)
     middle = 0.5 * (line.positions[1:] + line.positions[:-1])
@@ -274,7 +330,28 @@ class Held(NamedTuple):
 def hold_torch(
     course: Course, lean: Lean, build: BuildDirectionParameters, chord_error: float
 ) -> Held:
-    """The bead with its tool axes, and points added where they turn."""
+    """Return a bead with its tool axes, and points added where they turn.
+
+    Parameters
+    ----------
+    course : Course
+        The flattened bead with its surface.
+    lean : Lean
+        The requested lean.
+    build : BuildDirectionParameters
+        Build direction with the largest turn.
+    chord_error : float
+        Chord error, mm.
+
+    Returns
+    -------
+    Held
+        The bead and how its torch turns.
+
+    References
+    ----------
+    Dai 2020, section 3.
+    """
     step = np.linalg.norm(np.diff(course.flat, axis=0), axis=1)
     arc = np.r_[0.0, np.cumsum(step)]
     requested = lean.most
@@ -500,8 +577,27 @@ def _needed(s: Array, values: Array, lead: float) -> Mask:
 def directed(
     surface: LayerSurface, normal: Array, heading: Array, lead: float, side: Array
 ) -> Array:
-    """Tool axes (n, 3): the normals turned by `lead` towards the heading (n,), counted from the first axis of the surface, then to
-    its right by `side` (n,), rad.
+    """Return tool axes that lean from the normals.
+
+    The normal is turned by `lead` towards the heading, then to its right by `side`.
+
+    Parameters
+    ----------
+    surface : LayerSurface
+        The layer surface.
+    normal : (n, 3) array
+        Unit normals.
+    heading : (n,) array
+        Heading of the bead from the first axis of the surface, rad.
+    lead : float
+        Angle, rad.
+    side : (n,) array
+        Angles, rad.
+
+    Returns
+    -------
+    (n, 3) array
+        Unit vectors.
     """
     around, up = surface.axes(normal)
     cos, sin = np.cos(heading)[:, None], np.sin(heading)[:, None]

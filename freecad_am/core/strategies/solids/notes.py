@@ -36,7 +36,28 @@ def notes(
     process: ProcessParameters,
     model: BeadModel | None,
 ) -> list[Issue]:
-    """All issues."""
+    """Return all issues about the beads of solids.
+
+    Parameters
+    ----------
+    made_beads : sequence of MadeBead
+        The beads with their reports.
+    layers : sequence of Layer
+        The layers in the order of deposit.
+    strategy : FilledParameters
+        Layer height, spacing and waits.
+    build : BuildDirectionParameters
+        Build direction with the largest turn.
+    process : ProcessParameters
+        Speeds and wire.
+    model : BeadModel or None
+        Bead model that sets the speeds; None without one.
+
+    Returns
+    -------
+    list of Issue
+        Speeds or model, single layers, waits and turns of the torch.
+    """
     height = strategy.layer_height
     issues = (
         _speeds(layers, strategy, process)

@@ -224,11 +224,39 @@ def plan(
     model: BeadModel | None,
     progress: Progress = silent,
 ) -> Toolpath:
-    """The toolpath of solids, in part coordinates; layer i is i layer heights above their base.
+    """Return the toolpath of solids: layer i is i layer heights above their base.
 
-    model: sets the speeds; with None the travel speed applies everywhere. progress(fraction, text) may raise to cancel. Raises
-    InputError APEX_INSIDE, TOO_FAR_ROUND, BEAD_SPACING, NOTHING_TO_DEPOSIT, NOT_FOR_FAMILY, TOO_MANY, InfeasibleError
-    THIN_REGION.
+    Parameters
+    ----------
+    solids : SolidsOnHub
+        The solids and their bases.
+    strategy : FilledParameters
+        Layers, filling, margin and order.
+    build : BuildDirectionParameters
+        Build direction and its limits.
+    process : ProcessParameters
+        Speeds and bead width.
+    model : BeadModel or None
+        Bead model that sets the speeds; None if the travel speed applies everywhere.
+    progress : callable, optional
+        Receives share and text; may raise to cancel.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath in part coordinates.
+
+    Raises
+    ------
+    InputError
+        APEX_INSIDE, TOO_FAR_ROUND, BEAD_SPACING, NOTHING_TO_DEPOSIT, NOT_FOR_FAMILY,
+        TOO_MANY.
+    InfeasibleError
+        THIN_REGION.
+
+    References
+    ----------
+    Dai 2020.
     """
     _refuse_mode(solids.has_plane_layers(), strategy, build)
     strategy = spaced(strategy, process)

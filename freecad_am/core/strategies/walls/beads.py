@@ -56,9 +56,24 @@ class Directions(NamedTuple):
 
 
 def symmetry_plane(wall: SurfaceWall | PatchWall, build: BuildDirectionParameters) -> Array | None:
-    """Unit normal (3,) of the plane that tool axes stay in, None if they may lean any way.
+    """Return the plane that tool axes stay in.
 
-    InputError NO_SYMMETRY_PLANE if a plane of symmetry is requested and the wall has no known one.
+    Parameters
+    ----------
+    wall : SurfaceWall or PatchWall
+        The wall, perhaps with a known plane of symmetry.
+    build : BuildDirectionParameters
+        Build direction with its mode and plane.
+
+    Returns
+    -------
+    (3,) array or None
+        Unit normal; None if tool axes may lean any way.
+
+    Raises
+    ------
+    InputError
+        NO_SYMMETRY_PLANE if a plane of symmetry is requested and the wall has no known one.
     """
     if build.mode != "symmetry-plane":
         return None
@@ -84,9 +99,34 @@ def directions(
     plane: Array | None,
     label: str,
 ) -> Directions:
-    """The directions at the points (n, 3) of a bead. plane: unit normal (3,) of the one they are projected onto, if any.
+    """Return build directions and tool axes of a bead.
 
-    InputError NO_DIRECTION where one is normal to that plane, TURN_LIMIT where they cannot be made to turn slower.
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points of the bead, mm.
+    closed : bool
+        Whether the bead is closed.
+    along : Along
+        Directions along the bead, up the wall and out of it.
+    build : BuildDirectionParameters
+        Mode, lead, tilt and limits.
+    plane : (3,) array or None
+        Unit normal of the plane onto which directions are projected; None for any
+        direction.
+    label : str
+        Name of the wall, for messages.
+
+    Returns
+    -------
+    Directions
+        The directions and how far they depart from the requested ones.
+
+    Raises
+    ------
+    InputError
+        NO_DIRECTION where one is normal to that plane, TURN_LIMIT where they cannot be made
+        to turn slower.
     """
     up = along.up
     if build.mode == "fixed":
@@ -156,8 +196,24 @@ class Traced(NamedTuple):
 
 
 def traced(curve: SpaceCurve, w: Array, closed: bool) -> Traced:
-    """The bead through the parameters w (n,) of a curve, points nearer than NEAREST made one; a closed one ends where it
-    starts, to the bit."""
+    """Return the bead through parameters of a curve.
+
+    Points that nearly coincide are merged; a closed bead ends exactly where it starts.
+
+    Parameters
+    ----------
+    curve : SpaceCurve
+        The curve.
+    w : (n,) array
+        Parameters of the points.
+    closed : bool
+        Whether the bead is closed.
+
+    Returns
+    -------
+    Traced
+        Points and tangents.
+    """
     points, out, _ = curve.at(w)
     if closed:
         points[-1] = points[0]
@@ -197,9 +253,21 @@ def _merge_points(points: Array, into: Array, out: Array) -> tuple[Array, Array,
 
 
 def directions_along(trace: Traced, normal: Array, up: Array) -> Along:
-    """Directions at the points of a bead, at a corner halfway between its two sides.
+    """Return the directions at the points of a bead, at a corner halfway between its two sides.
 
-    normal: (n, 3) out of the wall. up: (n, 3) any vectors away from the layer below that are not along the bead.
+    Parameters
+    ----------
+    trace : Traced
+        Points and tangents of the bead.
+    normal : (n, 3) array
+        Normals out of the wall.
+    up : (n, 3) array
+        Vectors away from the layer below that are not along the bead.
+
+    Returns
+    -------
+    Along
+        Unit vectors along the bead, up the wall and out of it.
     """
     into, out = trace.tangents[:, 0], trace.tangents[:, 1]
     return Along(unit(into + out), local_directions(normal, into, out, up), normal)
@@ -216,8 +284,28 @@ class BeadSettings(NamedTuple):
     def bead(
         self, trace: Traced, vectors: Along, layer: int, closing: bool = False
     ) -> tuple[Bead, Directions]:
-        """The bead of a layer and its directions; its polynomial's variable is the arc length, one turn (2 pi) from end to
-        end."""
+        """Return a bead and its directions.
+
+        The variable of its polynomial is the arc length, scaled to one turn (2 pi).
+
+        Parameters
+        ----------
+        trace : Traced
+            Points and tangents of the bead.
+        vectors : Along
+            Directions along the bead, up the wall and out of it.
+        layer : int
+            Number of the layer, for the bead's class.
+        closing : bool, optional
+            Whether the bead closes a gap between fronts.
+
+        Returns
+        -------
+        bead : Bead
+            The bead.
+        directions : Directions
+            Its directions.
+        """
         bead_class = classes.wall_bead_class(layer, closing)
         build = classes.leaning(self.build, self.process, bead_class)
         directions_ = directions(trace.points, trace.closed, vectors, build, self.plane, self.label)

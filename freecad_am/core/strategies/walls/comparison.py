@@ -58,7 +58,24 @@ class Refused:
 
 
 def compare(wall: SurfaceWall, strategy: SurfaceParameters) -> tuple[Compared | Refused, ...]:
-    """The wall cut by every method of METHODS with the layer height, band and largest turn of the strategy."""
+    """Cut a wall by every method of METHODS and compare the layers.
+
+    Parameters
+    ----------
+    wall : SurfaceWall
+        The wall.
+    strategy : SurfaceParameters
+        Layer height, band and largest turn.
+
+    Returns
+    -------
+    tuple[Compared or Refused, ...]
+        The figures of each method, or the reason why it does not apply.
+
+    References
+    ----------
+    Chalvin 2019, figures 6 and 8 to 10.
+    """
     surface = wall.surface()
     first_layer = interpolate_polyline(surface, wall.first, label=wall.label)
     results: list[Compared | Refused] = []

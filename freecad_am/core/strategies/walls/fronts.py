@@ -59,11 +59,25 @@ class Middle(NamedTuple):
 
 
 def seam(piece: Piece, angle: float, middles: dict[int, Middle]) -> float:
-    """The parameter at which a closed front begins, at `angle` (rad) about its middle.
+    """Return the parameter at which a closed front begins.
 
-    The angle's zero is X of the part, or Y where X is along the axis, at the first front; from there on it is carried with
-    the smallest rotation that takes one axis to the next. Of several positions at that angle the one nearest to the seam
-    below is taken. middles: of the fronts below by id; the new one is added.
+    The angle's zero is X of the part, or Y where X is along the axis, at the first front; from
+    there on it is carried with the smallest rotation that takes one axis to the next. Among
+    several positions at that angle the one nearest to the seam below is taken.
+
+    Parameters
+    ----------
+    piece : Piece
+        The front.
+    angle : float
+        Angle of the seam about the front's middle, rad.
+    middles : dict[int, Middle]
+        Middles of the fronts below by id; the new one is added.
+
+    Returns
+    -------
+    float
+        The parameter.
     """
     curve = piece.curve
     w = curve.refined(ANGLES_PER_ARC)[:-1]
@@ -214,7 +228,22 @@ def uncut_pieces(layers: list[list[Piece]]) -> list[list[Piece]]:
 
 
 def drop_short_pieces(layers: list[list[Piece]], shortest: float) -> tuple[list[list[Piece]], int]:
-    """Remove the pieces shorter than `shortest` mm without a piece above, and count them."""
+    """Remove short pieces without a piece above.
+
+    Parameters
+    ----------
+    layers : list[list[Piece]]
+        The pieces of each layer.
+    shortest : float
+        Smallest length kept, mm.
+
+    Returns
+    -------
+    layers : list of list of Piece
+        The remaining pieces; layers without any are left out.
+    count : int
+        Number of removed pieces.
+    """
     dropped: set[Piece] = set()
     for layer in reversed(layers):
         dropped.update(
@@ -250,12 +279,36 @@ def plan(
     process: ProcessParameters,
     progress: Progress = silent,
 ) -> Toolpath:
-    """The toolpath of a wall of any connected smooth pieces, in part coordinates.
+    """Return the toolpath of a wall with any connected smooth pieces.
 
-    Closed beads start at the seam's angle about the middle line of the wall, which runs through the centres of the closed
-    beads, from the X of the part carried along it without twist. Counter-clockwise is meant as seen against the
-    build direction of a tube; on any wall it keeps the layer below on the right, seen from outside. Raises InputError
-    'NO_PARAMETER', 'LAYER_HEIGHT', 'TOO_LOW', 'TOO_MANY', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION', 'TURN_LIMIT'.
+    Closed beads start at the seam's angle about the middle line of the wall, which runs through
+    the centres of the closed beads, from the X of the part carried along it without twist.
+    Counter-clockwise is meant as seen against the build direction of a tube; on any wall it
+    keeps the layer below on the right, seen from outside.
+
+    Parameters
+    ----------
+    wall : PatchWall
+        The wall.
+    strategy : SurfaceParameters
+        Layer height, spacing and chord error.
+    build : BuildDirectionParameters
+        Build direction and its limits.
+    process : ProcessParameters
+        Speeds, seam and direction.
+    progress : callable, optional
+        Receives share and text; may raise to cancel.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath in part coordinates.
+
+    Raises
+    ------
+    InputError
+        NO_PARAMETER, LAYER_HEIGHT, TOO_LOW, TOO_MANY, NO_SYMMETRY_PLANE, NO_DIRECTION,
+        TURN_LIMIT.
     """
     _refuse(strategy)
     size.refuse_absurd(size.fronts_size(wall, strategy), strategy)

@@ -47,11 +47,39 @@ def plan(
     process: ProcessParameters,
     progress: Progress = silent,
 ) -> Toolpath:
-    """The toolpath of a wall around a closed direction, in part coordinates.
+    """Return the toolpath of a wall around a closed direction.
 
-    The first layer is where the wall leaves the substrate; closed beads start at the seam's angle around the wall. The
-    polynomial's variable is the arc length of the bead, one turn (2 pi) from end to end. Raises InputError 'NOT_YET',
-    'LAYER_HEIGHT', 'BAND', 'NOT_AROUND', 'TOO_LOW', 'TOO_MANY', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION'.
+    The first layer is where the wall leaves the substrate; closed beads start at the seam's
+    angle around the wall. The polynomial's variable is the arc length of the bead, scaled to
+    one turn (2 pi).
+
+    Parameters
+    ----------
+    wall : SurfaceWall
+        The wall.
+    strategy : SurfaceParameters
+        Layer height, spacing and chord error.
+    build : BuildDirectionParameters
+        Build direction and its limits.
+    process : ProcessParameters
+        Speeds, seam and direction.
+    progress : callable, optional
+        Receives share and text; may raise to cancel.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath in part coordinates.
+
+    Raises
+    ------
+    InputError
+        NOT_YET, LAYER_HEIGHT, BAND, NOT_AROUND, TOO_LOW, TOO_MANY, NO_SYMMETRY_PLANE,
+        NO_DIRECTION.
+
+    References
+    ----------
+    Chalvin 2019.
     """
     size.refuse_absurd(size.tube_size(wall, strategy), strategy)
     settings = BeadSettings(build, process, symmetry_plane(wall, build), wall.label)
@@ -83,7 +111,22 @@ def plan(
 
 
 def sliced(wall: SurfaceWall, surface: Placed, strategy: SurfaceParameters) -> list[WallLayer]:
-    """The fronts from the substrate up; the last is at or past the end of the wall somewhere."""
+    """Return the fronts of a wall from the substrate up.
+
+    Parameters
+    ----------
+    wall : SurfaceWall
+        The wall.
+    surface : Placed
+        Its surface.
+    strategy : SurfaceParameters
+        Layer height, spacing, band and largest turn.
+
+    Returns
+    -------
+    list of WallLayer
+        The fronts; the last one is at or past the end of the wall at some point.
+    """
     first_layer = interpolate_polyline(surface, wall.first, label=wall.label)
     if strategy.spacing == "smooth":
         smoothed_layers = smooth_spacing.layers(
@@ -269,7 +312,22 @@ class Stretch:
 
 
 def trimmed(surface: Placed, front: WallLayer, end: float) -> list[Stretch]:
-    """The stretches of a front below u = end, in the order of their parameter; empty if the front is above."""
+    """Return the stretches of a front below the end of the wall.
+
+    Parameters
+    ----------
+    surface : Placed
+        The wall.
+    front : WallLayer
+        The front.
+    end : float
+        End of the wall in u.
+
+    Returns
+    -------
+    list of Stretch
+        The stretches in the order of their parameter; empty if the front is above.
+    """
     curve = front.curve
     w = curve.refined(SAMPLES_PER_ARC)
     inside = _below(surface, front, w, end)
