@@ -21,7 +21,20 @@ class Implicit(Protocol):
     """A solid."""
 
     def value(self, points: Array) -> tuple[Array, Array]:
-        """Values (...,), negative inside, and gradients (..., 3) at points (..., 3)."""
+        """Evaluate the function of the solid.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            Points, mm.
+
+        Returns
+        -------
+        value : (...) array
+            Negative inside.
+        gradient : (..., 3) array
+            Its gradient.
+        """
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,12 +52,42 @@ class Round:
 
     @classmethod
     def cylinder(cls, radius: float, origin: Array, axis: Array) -> Round:
-        """The cylinder of the radius (mm) about the line through `origin` along `axis`."""
+        """Return a cylinder.
+
+        Parameters
+        ----------
+        radius : float
+            Radius, mm.
+        origin : (3,) array
+            A point of its axis, mm.
+        axis : (3,) array
+            Direction of the axis, of any length.
+
+        Returns
+        -------
+        Round
+            The cylinder.
+        """
         return cls(np.asarray(origin, float), _unit(axis), radius, 0.0, 0.0)
 
     @classmethod
     def cone(cls, half_angle: float, apex: Array, axis: Array) -> Round:
-        """The cone (rad) that opens from `apex` along `axis`; only where the axial coordinate is positive."""
+        """Return a cone; it is valid only where the axial coordinate is positive.
+
+        Parameters
+        ----------
+        half_angle : float
+            Half the opening angle, rad.
+        apex : (3,) array
+            Apex, mm.
+        axis : (3,) array
+            Direction in which it opens, of any length.
+
+        Returns
+        -------
+        Round
+            The cone.
+        """
         return cls(np.asarray(apex, float), _unit(axis), 0.0, float(np.tan(half_angle)), 0.0)
 
     @classmethod
@@ -85,15 +128,36 @@ MIN_COLUMN_ROWS = 1000  # rows from which on columns are sooner done
 
 
 def columns(vectors: Array) -> Array:
-    """Return the components (k, ...) of vectors (..., k), each contiguous."""
+    """Return the components of vectors, each contiguous.
+
+    Parameters
+    ----------
+    vectors : (..., k) array
+        Vectors.
+
+    Returns
+    -------
+    (k, ...) array
+        Their components.
+    """
     component_axis = vectors.ndim - 1
     return np.ascontiguousarray(vectors.transpose(component_axis, *range(component_axis)))
 
 
 def dots(u: Array, v: Array) -> Array:
-    """Return the scalar products (k,) of vectors (k, 3), row by row.
+    """Return the scalar products of vectors, row by row.
 
-    Takes half of einsum's time for many rows, and adds in the same order.
+    This takes half of einsum's time for many rows, and adds in the same order.
+
+    Parameters
+    ----------
+    u, v : (k, 3) array
+        Vectors.
+
+    Returns
+    -------
+    (k,) array
+        Products.
     """
     if len(u) < MIN_COLUMN_ROWS:
         products: Array = np.einsum("ij,ij->i", u, v)
@@ -105,8 +169,17 @@ def dots(u: Array, v: Array) -> Array:
 
 
 def crosses(u: Array, v: Array) -> Array:
-    """Return the cross products (k, 3) of vectors (k, 3), equal to np.cross, in a quarter of its
-    time for few rows.
+    """Return the cross products of vectors, in a quarter of the time of np.cross for few rows.
+
+    Parameters
+    ----------
+    u, v : (k, 3) array
+        Vectors.
+
+    Returns
+    -------
+    (k, 3) array
+        Products, equal to np.cross.
     """
     product = np.empty_like(u)
     for column, (following, preceding) in enumerate(((1, 2), (2, 0), (0, 1))):
@@ -116,8 +189,17 @@ def crosses(u: Array, v: Array) -> Array:
 
 
 def lengths(vectors: Array) -> Array:
-    """Return the lengths (n,) of vectors (n, k), equal to np.linalg.norm of rows, in a fraction
-    of its time for short rows.
+    """Return the lengths of vectors, in a fraction of the time of np.linalg.norm for short rows.
+
+    Parameters
+    ----------
+    vectors : (n, k) array
+        Vectors.
+
+    Returns
+    -------
+    (n,) array
+        Lengths, equal to np.linalg.norm.
     """
     total = vectors[:, 0] * vectors[:, 0]
     for column in range(1, vectors.shape[1]):
@@ -127,10 +209,17 @@ def lengths(vectors: Array) -> Array:
 
 
 def sides(corners: Array) -> Array:
-    """Return the lengths (n, 3) of the sides of triangles (n, 3, 3), from each corner to the
-    next.
+    """Return the lengths of the sides of triangles, in a fraction of the time of np.linalg.norm.
 
-    Equal to np.linalg.norm, in a fraction of its time.
+    Parameters
+    ----------
+    corners : (n, 3, 3) array
+        Corners.
+
+    Returns
+    -------
+    (n, 3) array
+        Lengths from each corner to the next.
     """
     along = np.empty_like(corners)
     np.subtract(corners[:, 1:], corners[:, :-1], out=along[:, :-1])
@@ -143,7 +232,18 @@ def sides(corners: Array) -> Array:
 
 
 def unit_rows(vectors: Array) -> Array:
-    """Return vectors (n, k) at unit length; vectors of zero length are unchanged."""
+    """Return vectors at unit length.
+
+    Parameters
+    ----------
+    vectors : (n, k) array
+        Vectors; those of zero length are unchanged.
+
+    Returns
+    -------
+    (n, k) array
+        Unit vectors.
+    """
     size = lengths(vectors)[:, None]
     unit: Array = vectors / np.where(size > 0.0, size, 1.0)
     return unit

@@ -57,8 +57,17 @@ class Developable:
         return Developable(self.radius + distance / math.cos(a), height)
 
     def distance(self, points: Array) -> Array:
-        """Return how far (...,) mm points (..., 3) are outside the surface, along its normal;
-        negative inside.
+        """Return how far points are outside the surface, along its normal.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            Points in the frame of the surface, mm.
+
+        Returns
+        -------
+        (...) array
+            mm; negative inside.
         """
         a = self.taper
         rho = np.hypot(points[..., 0], points[..., 1])
@@ -70,10 +79,18 @@ class Developable:
         return self.radius + distance
 
     def normals(self, points: Array) -> Array:
-        """Return the outward unit normals (..., 3) at points (..., 3), the same for all equidistant
-        surfaces.
+        """Return the outward normals at points, the same for all equidistant surfaces.
 
-        On the axis, which has no radial direction, only the axial component remains.
+        Parameters
+        ----------
+        points : (..., 3) array
+            Points in the frame of the surface, mm.
+
+        Returns
+        -------
+        (..., 3) array
+            Unit normals; on the axis, which has no radial direction, only the axial
+            component.
         """
         a = self.taper
         rho = np.hypot(points[..., 0], points[..., 1])
@@ -84,8 +101,21 @@ class Developable:
         )
 
     def distance_rate(self, position: Array, direction: Array) -> tuple[Array, Array]:
-        """Return `distance` (n,) of points, and its rate (n,) along vectors, both given by
-        components (3, n).
+        """Return `distance` and its rate along vectors.
+
+        Parameters
+        ----------
+        position : (3, n) array
+            Components of points, mm.
+        direction : (3, n) array
+            Components of the vectors.
+
+        Returns
+        -------
+        distance : (n,) array
+            mm.
+        rate : (n,) array
+            Per unit of the vectors.
         """
         a = self.taper
         x, y, z = position
@@ -107,20 +137,59 @@ class Developable:
         return TURN * math.sin(self.taper)
 
     def azimuth(self, points: Array) -> Array:
-        """Return the azimuth (...,) rad of points (..., 3), in (-pi, pi]."""
+        """Return the azimuth of points.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            Points in the frame of the surface.
+
+        Returns
+        -------
+        (...) array
+            From -pi to pi, rad.
+        """
         x, y = columns(points[..., :2])
         azimuth: Array = np.arctan2(y, x)
         return azimuth
 
     def unroll(self, points: Array, middle: float = 0.0) -> Array:
-        """Unroll points (..., 3) of the surface to (..., 2) mm; the cut is half a turn from the
-        azimuth `middle`.
+        """Unroll points of the surface.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            Points of the surface, mm.
+        middle : float, optional
+            Azimuth of x = 0, rad; the cut is half a turn from there.
+
+        Returns
+        -------
+        (..., 2) array
+            Points of the plane, mm.
+
+        References
+        ----------
+        Dai 2020, section 2.2.
         """
         theta = np.remainder(self.azimuth(points) - middle + math.pi, TURN) - math.pi
         return self.unroll_at(theta, points[..., 2])
 
     def unroll_at(self, theta: Array, z: Array) -> Array:
-        """The same from azimuths past the cutting line's middle, which need not be within one turn, and heights."""
+        """Unroll points given by azimuth and height.
+
+        Parameters
+        ----------
+        theta : (...) array
+            Azimuths from the middle, rad, which need not be within one turn.
+        z : (...) array
+            Heights, mm.
+
+        Returns
+        -------
+        (..., 2) array
+            Points of the plane, mm.
+        """
         if self.is_cylinder:
             return np.stack([self.radius * theta, z], axis=-1)
         a = self.taper
@@ -130,7 +199,20 @@ class Developable:
         )
 
     def from_unrolled(self, flat: Array) -> tuple[Array, Array]:
-        """Return the azimuth past `middle` and the height z, (...,), of unrolled points (..., 2)."""
+        """Return azimuth and height of unrolled points.
+
+        Parameters
+        ----------
+        flat : (..., 2) array
+            Points of the plane, mm.
+
+        Returns
+        -------
+        theta : (...) array
+            Azimuths from the middle, rad.
+        z : (...) array
+            Heights, mm.
+        """
         x, y = columns(flat)
         if self.is_cylinder:
             return x / self.radius, y.copy()
@@ -143,7 +225,20 @@ class Developable:
         return np.arctan2(x, to_apex) / math.sin(a), lower * math.cos(a)
 
     def wrap(self, flat: Array, middle: float = 0.0) -> Array:
-        """Return the points (..., 3) of the surface at unrolled (..., 2): the inverse of `unroll`."""
+        """Return the points of the surface at unrolled points: the inverse of `unroll`.
+
+        Parameters
+        ----------
+        flat : (..., 2) array
+            Points of the plane, mm.
+        middle : float, optional
+            Azimuth of x = 0, rad.
+
+        Returns
+        -------
+        (..., 3) array
+            Points of the surface, mm.
+        """
         theta, z = self.from_unrolled(flat)
         rho = self.radius if self.is_cylinder else (self.height - z) * math.tan(self.taper)
         angle = theta + middle
@@ -165,7 +260,18 @@ class Plane:
         return Plane(self.height + distance)
 
     def distance(self, points: Array) -> Array:
-        """Return how far (...,) mm points (..., 3) are above the plane; negative below."""
+        """Return how far points are above the plane.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            Points in the frame of the plane, mm.
+
+        Returns
+        -------
+        (...) array
+            mm; negative below.
+        """
         above: Array = points[..., 2] - self.height
         return above
 

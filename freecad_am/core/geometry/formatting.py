@@ -20,7 +20,22 @@ def format_deviation(distance: float) -> str:
 
 
 def format_differing(value: float, reference: float, digits: int = 6) -> str:
-    """Format a number with enough digits that its text differs from the text of the reference."""
+    """Format a number so that its text differs from the text of another.
+
+    Parameters
+    ----------
+    value : float
+        The number.
+    reference : float
+        The other number.
+    digits : int, optional
+        Fewest significant digits.
+
+    Returns
+    -------
+    str
+        The text.
+    """
     return next(
         (
             text

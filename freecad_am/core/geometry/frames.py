@@ -15,7 +15,20 @@ from ..types import Array, ArrayLike
 
 
 def pose(rotation: ArrayLike, origin: ArrayLike) -> Array:
-    """The pose (..., 4, 4) of a rotation (..., 3, 3) and an origin (..., 3)."""
+    """Return poses of rotations and origins.
+
+    Parameters
+    ----------
+    rotation : (..., 3, 3) array
+        Rotations.
+    origin : (..., 3) array
+        Origins, mm.
+
+    Returns
+    -------
+    (..., 4, 4) array
+        Poses.
+    """
     rotation, origin = np.asarray(rotation, float), np.asarray(origin, float)
     lead = np.broadcast_shapes(rotation.shape[:-2], origin.shape[:-1])
     result = np.zeros(lead + (4, 4))
@@ -26,24 +39,60 @@ def pose(rotation: ArrayLike, origin: ArrayLike) -> Array:
 
 
 def inverse(poses: ArrayLike) -> Array:
-    """The inverse of rigid poses (..., 4, 4)."""
+    """Return the inverse of rigid poses.
+
+    Parameters
+    ----------
+    poses : (..., 4, 4) array
+        Poses.
+
+    Returns
+    -------
+    (..., 4, 4) array
+        Their inverses.
+    """
     poses = np.asarray(poses, float)
     turned = np.swapaxes(poses[..., :3, :3], -1, -2)
     return pose(turned, -(turned @ poses[..., :3, 3:])[..., 0])
 
 
 def transform_point(poses: Array, point: Array) -> Array:
-    """Return the positions (k, 3) of a point (3,) in poses (k, 4, 4).
+    """Return the positions of a point in poses.
 
     One product over the rows of all poses takes a third of the time of k products, and so may
     differ in the last digit.
+
+    Parameters
+    ----------
+    poses : (k, 4, 4) array
+        Poses.
+    point : (3,) array
+        The point, mm.
+
+    Returns
+    -------
+    (k, 3) array
+        mm.
     """
     rows = np.ascontiguousarray(poses).reshape(-1, 4)
     return np.asarray((rows @ np.append(point, 1.0)).reshape(-1, 4)[:, :3])
 
 
 def rotate_vector(poses: Array, vector: Array) -> Array:
-    """Return a vector (3,) rotated by poses (k, 4, 4), computed as in `transform_point`."""
+    """Return a vector rotated by poses, computed as in `transform_point`.
+
+    Parameters
+    ----------
+    poses : (k, 4, 4) array
+        Poses.
+    vector : (3,) array
+        The vector.
+
+    Returns
+    -------
+    (k, 3) array
+        The rotated vectors.
+    """
     rows = np.ascontiguousarray(poses).reshape(-1, 4)
     return np.asarray((rows @ np.append(vector, 0.0)).reshape(-1, 4)[:, :3])
 
@@ -64,7 +113,20 @@ def about_z(angle: ArrayLike) -> Array:
 
 
 def rotation_about(axis: ArrayLike, angle: ArrayLike) -> Array:
-    """The rotation (..., 3, 3) by `angle` (...) about the unit vectors `axis` (..., 3), right-handed."""
+    """Return right-handed rotations about axes.
+
+    Parameters
+    ----------
+    axis : (..., 3) array
+        Unit vectors.
+    angle : (...) array
+        Angles, rad.
+
+    Returns
+    -------
+    (..., 3, 3) array
+        Rotations.
+    """
     axis, angle = np.asarray(axis, float), np.asarray(angle, float, order="C")
     sine, cosine = np.sin(angle), np.cos(angle)
     versine = 1.0 - cosine
@@ -83,20 +145,41 @@ def rotation_about(axis: ArrayLike, angle: ArrayLike) -> Array:
 
 
 def bryant(six: ArrayLike) -> Array:
-    """The pose (..., 4, 4) of x y z RX RY RZ (..., 6), mm and rad, R = Rx(RX) Ry(RY) Rz(RZ).
+    """Return poses of six numbers each, R = Rx(RX) Ry(RY) Rz(RZ).
 
-    Source: Chalvin 2020, eqs. 9 and 11.
+    Parameters
+    ----------
+    six : (..., 6) array
+        x y z in mm and RX RY RZ in rad.
+
+    Returns
+    -------
+    (..., 4, 4) array
+        Poses.
+
+    References
+    ----------
+    Chalvin 2020, eqs. 9 and 11.
     """
     six = np.asarray(six, float)
     return pose(about_x(six[..., 3]) @ about_y(six[..., 4]) @ about_z(six[..., 5]), six[..., :3])
 
 
 def to_bryant(rotation: ArrayLike) -> Array:
-    """Return RX RY RZ (..., 3) of rotations (..., 3, 3): RX and RZ in [-pi, pi], RY in [-pi/2,
-    pi/2].
+    """Return RX RY RZ of rotations.
 
-    Where RY is a right angle RX and RZ are not unique (gimbal lock); RX is 0 there. Near it
-    RZ is computed with the RX obtained, so that the three always reproduce the rotation.
+    Where RY is a right angle RX and RZ are not unique (gimbal lock); RX is 0 there. Near it RZ
+    is computed with the RX obtained, so that the three always reproduce the rotation.
+
+    Parameters
+    ----------
+    rotation : (..., 3, 3) array
+        Rotations.
+
+    Returns
+    -------
+    (..., 3) array
+        RX and RZ in -pi to pi, RY in -pi/2 to pi/2, rad.
     """
     entries = np.moveaxis(np.asarray(rotation, float), (-2, -1), (0, 1))
     # each entry contiguous, see `columns`
@@ -114,17 +197,43 @@ def to_bryant(rotation: ArrayLike) -> Array:
 
 
 def from_rpy(origin: ArrayLike, rpy: ArrayLike) -> Array:
-    """The pose (..., 4, 4) with roll, pitch, yaw (..., 3) rad, R = Rz(yaw) Ry(pitch) Rx(roll), as URDF has it."""
+    """Return poses with roll, pitch and yaw, R = Rz(yaw) Ry(pitch) Rx(roll), as in URDF.
+
+    Parameters
+    ----------
+    origin : (..., 3) array
+        Origins, mm.
+    rpy : (..., 3) array
+        Roll, pitch and yaw, rad.
+
+    Returns
+    -------
+    (..., 4, 4) array
+        Poses.
+    """
     rpy = np.asarray(rpy, float)
     return pose(about_z(rpy[..., 2]) @ about_y(rpy[..., 1]) @ about_x(rpy[..., 0]), origin)
 
 
 def smallest_rotation(start: ArrayLike, end: ArrayLike) -> Array:
-    """The rotation (..., 3, 3) by the smallest angle that takes unit vectors `start` to `end` (..., 3).
+    """Return the rotations by the smallest angle between unit vectors.
 
-    Opposite vectors have no such rotation: they get a half turn about an axis normal to both. Built of two
-    reflections, first in the plane normal to `start`, then in that normal to their bisector, which
-    keeps all digits up to the half turn.
+    Opposite vectors have no such rotation: they get a half turn about an axis normal to both.
+
+    Parameters
+    ----------
+    start, end : (..., 3) array
+        Unit vectors.
+
+    Returns
+    -------
+    (..., 3, 3) array
+        Rotations that take `start` to `end`.
+
+    Notes
+    -----
+    Composed from two reflections, first in the plane normal to `start`, then in that normal to
+    their bisector, which keeps all digits up to the half turn.
     """
     start, end = np.broadcast_arrays(np.asarray(start, float), np.asarray(end, float))
     bisector = start + end
@@ -174,6 +283,17 @@ TURN = 2.0 * math.pi
 
 
 def shortest(angles: Array) -> Array:
-    """Angles brought within half a turn, rad, as short ways round are."""
+    """Bring angles within half a turn.
+
+    Parameters
+    ----------
+    angles : (...) array
+        Angles, rad.
+
+    Returns
+    -------
+    (...) array
+        From -pi to pi.
+    """
     brought: Array = angles - TURN * np.round(angles / TURN)
     return brought

@@ -106,16 +106,56 @@ MB = 1_000_000
 def read_content(path: str | Path, largest: int, code: str, where: str) -> bytes:
     """Return all bytes of a file.
 
-    largest: maximum size, MB. Raises InputError `code` at `where` for larger files and for
-    devices, pipes and folders, which could be read without end; OSError and ValueError if the
-    file cannot be opened.
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+    largest : int
+        Largest size, MB.
+    code : str
+        Code of the error for larger files.
+    where : str
+        Position of the error, for messages.
+
+    Returns
+    -------
+    bytes
+        The content.
+
+    Raises
+    ------
+    InputError
+        `code` for larger files and for devices, pipes and folders, which could be read
+        without end.
+    OSError, ValueError
+        If the file cannot be opened.
     """
     return b"".join(_read_blocks(path, largest, code, where))
 
 
 def digest(path: str | Path, largest: int, code: str, where: str) -> str:
-    """Return the SHA-256 of a file, in hexadecimal, without holding all its bytes. Arguments and
-    errors as `content`.
+    """Return the SHA-256 of a file, without holding all its bytes.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+    largest : int
+        Largest size, MB.
+    code : str
+        Code of the error for larger files.
+    where : str
+        Position of the error, for messages.
+
+    Returns
+    -------
+    str
+        The digest in hexadecimal.
+
+    Raises
+    ------
+    InputError, OSError, ValueError
+        As `read_content`.
     """
     checksum = hashlib.sha256()
     for block in _read_blocks(path, largest, code, where):

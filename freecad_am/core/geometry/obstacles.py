@@ -27,7 +27,13 @@ class Body:
     triangles: Integers
 
     def corners(self) -> Array:
-        """(m, 3, 3) the three corners of each triangle."""
+        """Return the corners of each triangle.
+
+        Returns
+        -------
+        (m, 3, 3) array
+            mm.
+        """
         corners: Array = self.vertices[self.triangles]
         return corners
 
@@ -37,7 +43,22 @@ class Body:
 
 
 def box(size: tuple[float, float, float], pose: Array, name: str) -> Body:
-    """A box of `size` mm about the origin of a pose (4, 4), its edges along the pose's axes."""
+    """Return a box about the origin of a pose.
+
+    Parameters
+    ----------
+    size : tuple[float, float, float]
+        Lengths of its edges, mm.
+    pose : (4, 4) array
+        The pose; the edges are along its axes.
+    name : str
+        Name for messages.
+
+    Returns
+    -------
+    Body
+        The box as triangles.
+    """
     corners = (
         np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]) * size
     )
@@ -50,7 +71,22 @@ def box(size: tuple[float, float, float], pose: Array, name: str) -> Body:
 
 
 def disc(diameter: float, frame: Array, name: str = "platform") -> Body:
-    """A flat disc in the plane z = 0 of the frame (4, 4), as a polygon about its circle."""
+    """Return a flat disc, as a polygon about its circle.
+
+    Parameters
+    ----------
+    diameter : float
+        Diameter, mm.
+    frame : (4, 4) array
+        Pose of the disc, in whose plane z = 0 it is.
+    name : str, optional
+        Name for messages.
+
+    Returns
+    -------
+    Body
+        The disc as triangles.
+    """
     angle = np.linspace(0.0, 2.0 * np.pi, DISC_SIDES, endpoint=False)
     radius = 0.5 * diameter / np.cos(np.pi / DISC_SIDES)
     flat = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros(DISC_SIDES)], axis=1)
@@ -64,7 +100,20 @@ def disc(diameter: float, frame: Array, name: str = "platform") -> Body:
 
 
 def enclosed_volume(around: Sequence[Body]) -> tuple[float, Array]:
-    """Return the total volume of all closed bodies, mm3, and its centroid (3,)."""
+    """Return the volume of all closed bodies.
+
+    Parameters
+    ----------
+    around : sequence of Body
+        The bodies; open ones do not count.
+
+    Returns
+    -------
+    volume : float
+        Total volume, mm3.
+    centroid : (3,) array
+        Its centroid, mm; zero without volume.
+    """
     volume, weighted = 0.0, np.zeros(3)
     for body in around:
         edges = np.concatenate(

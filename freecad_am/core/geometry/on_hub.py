@@ -33,17 +33,50 @@ class Base:
     frame: Array
 
     def inside(self, points: Array) -> Array:
-        """Points (..., 3) of the part in the base's frame."""
+        """Return points of the part in the base's frame.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            Points in part coordinates, mm.
+
+        Returns
+        -------
+        (..., 3) array
+            mm.
+        """
         local: Array = (points - self.frame[:3, 3]) @ self.frame[:3, :3]
         return local
 
     def to_part(self, points: Array) -> Array:
-        """Return points (..., 3) of the base's frame in part coordinates."""
+        """Return points of the base's frame in part coordinates.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            Points in the base's frame, mm.
+
+        Returns
+        -------
+        (..., 3) array
+            mm.
+        """
         in_part: Array = points @ self.frame[:3, :3].T + self.frame[:3, 3]
         return in_part
 
     def rotate_to_part(self, vectors: Array) -> Array:
-        """Return vectors (..., 3) of the base's frame in part coordinates."""
+        """Return vectors of the base's frame in part coordinates.
+
+        Parameters
+        ----------
+        vectors : (..., 3) array
+            Vectors in the base's frame.
+
+        Returns
+        -------
+        (..., 3) array
+            The rotated vectors.
+        """
         in_part: Array = vectors @ self.frame[:3, :3].T
         return in_part
 
@@ -61,8 +94,22 @@ class Stretch(NamedTuple):
     span: float = TURN
 
     def near(self, points: Array, margin: float, all_round: bool = False) -> Mask:
-        """Which of points (n, 3) of the base's frame are on the face, or within `margin` mm past its ends; all_round:
-        whatever their azimuths."""
+        """Return which points are on the face, or near it along the axis.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            Points in the base's frame, mm.
+        margin : float
+            Distance past its ends that still counts, mm.
+        all_round : bool, optional
+            Whether azimuths do not matter.
+
+        Returns
+        -------
+        (n,) bool array
+            True for points on the face.
+        """
         x, y, z = columns(points)
         along = (z > self.low - margin) & (z < self.high + margin)
         if all_round or self.span >= TURN:
@@ -137,11 +184,16 @@ class SolidsOnHub:
 
     @property
     def frame(self) -> Array:
-        """The frame of the feature (interface.md, mount).
+        """Return the frame of the feature.
 
-        Z is the axis of the first base, upwards in the part; the origin is at the lowest end of
-        the solids; X is the part's X seen along Z. For planes Z is the stacking direction,
-        wherever it points.
+        Z is the axis of the first base, upwards in the part; the origin is at the lowest
+        end of the solids; X is the part's X seen along Z. For planes Z is the stacking
+        direction, wherever it points.
+
+        Returns
+        -------
+        (4, 4) array
+            Pose in part coordinates, mm.
         """
         base = self.groups[0].base
         if self.has_plane_layers():
@@ -164,7 +216,20 @@ def middle_azimuth(base: Base, points: Array) -> float:
 
 
 def sector(azimuths: Array) -> tuple[float, float]:
-    """Where the sector of azimuths (n,) rad begins, and how wide it is: all but their widest gap."""
+    """Return the sector of azimuths: all but their widest gap.
+
+    Parameters
+    ----------
+    azimuths : (n,) array
+        Azimuths, rad.
+
+    Returns
+    -------
+    start : float
+        Where it begins, from 0 to a turn, rad.
+    span : float
+        Its width, rad.
+    """
     angle = np.sort(np.remainder(azimuths, TURN))
     gaps = np.diff(angle, append=angle[0] + TURN)
     k = int(np.argmax(gaps))
@@ -181,7 +246,20 @@ def downwards(z: Array) -> bool:
 
 
 def upright(origin: Array, z: Array) -> Array:
-    """The frame (4, 4) with an origin and unit Z (3,); its X is the part's X seen along Z, or Y where X is along it."""
+    """Return the frame with an origin and Z.
+
+    Parameters
+    ----------
+    origin : (3,) array
+        Origin, mm.
+    z : (3,) array
+        Unit vector.
+
+    Returns
+    -------
+    (4, 4) array
+        Its X is the part's X seen along Z, or Y where X is along it.
+    """
     x = np.eye(3)[0] - z[0] * z
     if np.linalg.norm(x) < 1e-6:
         x = np.eye(3)[1] - z[1] * z
@@ -196,8 +274,21 @@ PLACES = 10_000  # of the solid's surface, if its triangles were squares
 
 
 def volume_beyond(surface: Developable, vertices: Array, triangles: Integers) -> float:
-    """Return the volume, mm3, of a closed mesh (n, 3), (m, 3) outside a hub, in the hub's frame;
-    accurate to about 1e-4.
+    """Return the volume of a closed mesh outside a hub.
+
+    Parameters
+    ----------
+    surface : Developable
+        The hub.
+    vertices : (n, 3) array
+        Vertices in the hub's frame, mm.
+    triangles : (m, 3) int array
+        Triangles.
+
+    Returns
+    -------
+    float
+        mm3, accurate to about 1e-4.
     """
     corner = vertices[triangles]
     area = doubled_areas(corner) / 2.0

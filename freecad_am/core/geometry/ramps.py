@@ -8,11 +8,24 @@ from .step_count import round_down, round_up
 
 
 def limit_growth(ceiling: Array, growth: Array) -> Array:
-    """Return the largest values (n,) below a ceiling (n,) that change between neighbours by no
-    more than `growth` (n,).
+    """Return the largest values below a ceiling that change no faster than a limit.
 
-    For squares of speeds, the growth is twice the acceleration times the length along the
-    path.
+    Parameters
+    ----------
+    ceiling : (n,) array
+        Upper bounds.
+    growth : (n,) array
+        Accumulated change allowed from the start to each point; its differences limit
+        neighbours.
+
+    Returns
+    -------
+    (n,) array
+        The values.
+
+    Notes
+    -----
+    For squares of speeds, the growth is twice the acceleration times the length along the path.
     """
     rising = np.minimum.accumulate(ceiling - growth) + growth
     falling = np.minimum.accumulate((ceiling + growth)[::-1])[::-1] - growth
@@ -31,11 +44,21 @@ MIN_STEP = 0.5  # mm of a step
 
 
 def ramp(length: float, start: float, end: float) -> Array:
-    """Return the speeds (k,) of k equal parts of `length` mm, between the speeds at its start and
-    its end.
+    """Return the speeds of equal parts of a ramp.
 
-    Each is the speed of a steady ramp in the middle of the part. Empty if the length is 0 or the
-    speed does not change: a speed of 0 mm/s means that of the other end.
+    Each is the speed of a steady ramp in the middle of the part.
+
+    Parameters
+    ----------
+    length : float
+        Length of the ramp, mm.
+    start, end : float
+        Speeds at its ends, mm/s; 0 means that of the other end.
+
+    Returns
+    -------
+    (k,) array
+        Speeds, mm/s; empty if the length is 0 or the speed does not change.
     """
     if length <= 0.0 or start == end or not start or not end:
         return np.zeros(0)

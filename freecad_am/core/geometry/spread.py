@@ -11,10 +11,27 @@ _ROUNDS = 64  # of an iteration that halves its error and more each time
 
 
 def spread_points(count: int, dimensions: int) -> Array:
-    """Return points (count, dimensions) from 0 to 1, spread evenly.
+    """Return points spread evenly over the unit cube.
 
-    They step by powers of the root of x^(dimensions + 1) = x + 1 (Roberts 2018); any first
-    points are as evenly spread as all.
+    Parameters
+    ----------
+    count : int
+        Number of points.
+    dimensions : int
+        Number of dimensions.
+
+    Returns
+    -------
+    (count, dimensions) array
+        From 0 to 1; any first points are as evenly spread as all.
+
+    Notes
+    -----
+    They step by powers of the root of x^(dimensions + 1) = x + 1.
+
+    References
+    ----------
+    Roberts 2018.
     """
     root = 1.0
     for _ in range(_ROUNDS):

@@ -18,14 +18,42 @@ TOLERANCE = 1e-9  # of a part, and of the number of parts
 
 
 def step_count(length: float, step: float, min_count: int = 1) -> int:
-    """Return the number of equal parts, none longer than `step`, of a length; at least
-    `min_count`.
+    """Return the number of equal parts of a length.
+
+    Parameters
+    ----------
+    length : float
+        The length.
+    step : float
+        Longest part.
+    min_count : int, optional
+        Smallest number.
+
+    Returns
+    -------
+    int
+        The number; rounding errors do not add a part.
     """
     return max(min_count, round_up(length / step))
 
 
 def step_counts(lengths: Array, steps: Array | float, min_count: int = 1) -> Index:
-    """Return the step counts of many lengths."""
+    """Return the number of equal parts of many lengths, as `step_count`.
+
+    Parameters
+    ----------
+    lengths : (n,) array
+        The lengths.
+    steps : float or (n,) array
+        Longest parts.
+    min_count : int, optional
+        Smallest number.
+
+    Returns
+    -------
+    (n,) int array
+        The numbers.
+    """
     ratio = np.asarray(lengths, dtype=np.float64) / steps
     counts = np.ceil(ratio - TOLERANCE * np.maximum(np.abs(ratio), 1.0))
     return np.asarray(np.maximum(counts, min_count), dtype=np.intp)
@@ -45,12 +73,32 @@ def round_down(number: float) -> int:
 
 
 def turn_segments(radius: float, chord_error: float, turn: float, min_full_turn: int) -> int:
-    """Return the number of equal segments for an arc of `turn` rad that keeps within the chord
-    error (mm).
+    """Return the number of equal segments of an arc within a chord error.
 
+    Parameters
+    ----------
+    radius : float
+        Radius, mm.
+    chord_error : float
+        Chord error, mm.
+    turn : float
+        Extent of the arc, rad.
+    min_full_turn : int
+        Fewest segments of a full turn; a part of a turn has its share.
+
+    Returns
+    -------
+    int
+        The number, at least 2.
+
+    Notes
+    -----
     A segment of angle u leaves the circle by radius (1 - cos(u/2)), hence u <= 2 acos(1 -
-    chord_error/radius) (Chalvin 2020, section 2.1). `min_full_turn` is the fewest segments of
-    a full turn; a part of a turn has its share.
+    chord_error/radius).
+
+    References
+    ----------
+    Chalvin 2020, section 2.1.
     """
     share = min(1.0, turn / (2.0 * math.pi))
     fewest = max(2, math.ceil(min_full_turn * share - 1e-9))

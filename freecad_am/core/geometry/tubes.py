@@ -56,9 +56,21 @@ class Mesh(NamedTuple):
 def frames(points: Array, build: Array, starts: Index, closed: Mask) -> Frames:
     """Return the frames of consecutive beads.
 
-    points, build: (n, 3). starts: (m + 1,) first row of each bead, and n. closed: (m,),
-    whether the last point is the first. The turns (n,) rad are those of the course at each
-    point.
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points of all beads, mm.
+    build : (n, 3) array
+        Build directions, unit vectors.
+    starts : (m + 1,) int array
+        First row of each bead, and n.
+    closed : (m,) bool array
+        Whether the last point of a bead is its first.
+
+    Returns
+    -------
+    Frames
+        Vectors across the course, mitres and turns.
     """
     step = np.diff(points, axis=0)
     length = np.linalg.norm(step, axis=1, keepdims=True)
@@ -87,8 +99,23 @@ def frames(points: Array, build: Array, starts: Index, closed: Mask) -> Frames:
 
 
 def select_sections(turn: Array, starts: Index, stride: int) -> Mask:
-    """Return which points (n,) get a section: each `stride`-th, the ends of beads, and more
-    where the course turns.
+    """Return which points get a section.
+
+    These are each `stride`-th point, the ends of beads, and more where the course turns.
+
+    Parameters
+    ----------
+    turn : (n,) array
+        Turns of the course, rad.
+    starts : (m + 1,) int array
+        First row of each bead, and n.
+    stride : int
+        Distance of sections in points.
+
+    Returns
+    -------
+    (n,) bool array
+        True for a section.
     """
     keep: Mask = np.arange(len(turn)) % stride == 0
     turned = np.floor(np.cumsum(turn) / TURN)
@@ -100,10 +127,25 @@ def select_sections(turn: Array, starts: Index, stride: int) -> Mask:
 def mesh(
     points: Array, across: Frames, width: Array, height: Array, ends: Mask, sides: int
 ) -> Mesh:
-    """Return tubes through points (k, 3), which are the middles of their feet.
+    """Return tubes through points, which are the middles of their feet.
 
-    across: frames at these points. width, height: (k,) mm. ends: (k,) True at the last point
-    of a tube. sides: a key of SECTIONS.
+    Parameters
+    ----------
+    points : (k, 3) array
+        Points, mm.
+    across : Frames
+        Frames at these points.
+    width, height : (k,) array
+        Size of the tubes, mm.
+    ends : (k,) bool array
+        True at the last point of a tube.
+    sides : int
+        Number of sides, a key of SECTIONS.
+
+    Returns
+    -------
+    Mesh
+        Points, normals and triangles.
     """
     section = np.array(SECTIONS[sides])
     half_width, half_height = 0.5 * width * across.mitre, 0.5 * height

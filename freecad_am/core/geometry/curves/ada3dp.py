@@ -89,14 +89,48 @@ class _Seen:
 
 
 def curves_of(data: bytes, where: str, roles: str = roles_of.PART) -> tuple[BeadCurve, ...]:
-    """A bead for each segment that deposits, in the coordinates of the file; directions where all of its points have one.
-    Raises InputError BAD_ADA3DP."""
+    """Return only the beads of `read`.
+
+    Parameters
+    ----------
+    data : bytes
+        Content of the file.
+    where : str
+        Name of the file, for messages.
+    roles : str, optional
+        Roles that are deposited.
+
+    Returns
+    -------
+    tuple of BeadCurve
+        The beads; directions where all points of a segment have one.
+
+    Raises
+    ------
+    InputError
+        As `read`.
+    """
     return read(data, where, roles).curves
 
 
 def read(data: bytes, where: str, roles: str = roles_of.PART) -> ReadCurves:
-    """Read the beads of the segments that deposit and have these roles, as `gcode.read` does,
-    and report unread content.
+    """Return the beads of an AdaOne toolpath.
+
+    The beads are the segments that deposit and have the requested roles.
+
+    Parameters
+    ----------
+    data : bytes
+        Content of the file.
+    where : str
+        Name of the file, for messages.
+    roles : str, optional
+        Roles that are deposited, as in `gcode.read`.
+
+    Returns
+    -------
+    ReadCurves
+        The beads in the coordinates of the file, and issues about unread content.
 
     Raises
     ------

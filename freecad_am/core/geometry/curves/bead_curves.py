@@ -83,10 +83,26 @@ FORM = "give a table with the columns x,y,z, then i,j,k for directions, then bea
 
 
 def curves_of(text: str, where: str) -> tuple[BeadCurve, ...]:
-    """Read the curves of a table, one for each bead number, in the order of the lines.
+    """Return the curves of a table, one for each bead number, in the order of the lines.
 
     Cells are separated by commas or semicolons; the first line holds column names or numbers.
-    Raises InputError BAD_TABLE with the line.
+
+    Parameters
+    ----------
+    text : str
+        The table.
+    where : str
+        Name of the file, for messages.
+
+    Returns
+    -------
+    tuple of BeadCurve
+        The curves.
+
+    Raises
+    ------
+    InputError
+        BAD_TABLE with the line.
     """
     lines = text.lstrip("\ufeff").splitlines()
     while lines and not lines[-1].strip():

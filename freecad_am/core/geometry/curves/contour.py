@@ -50,15 +50,37 @@ Chain = list[Piece]
 
 
 def ends(chain: Chain) -> tuple[Array, Array]:
-    """First and last point (2,) of a chain."""
+    """Return the ends of a chain.
+
+    Parameters
+    ----------
+    chain : Chain
+        The pieces in order.
+
+    Returns
+    -------
+    first, last : (2,) array
+        Points, mm.
+    """
     return chain[0].points[0], chain[-1].points[-1]
 
 
 def chains(segments: Sequence[Piece]) -> tuple[list[Chain], float]:
-    """Join the segments end to end, nearest ends first; also returns the widest gap (mm)
-    bridged.
+    """Join segments end to end, nearest ends first.
 
     A closed contour is one chain whose last end meets its first.
+
+    Parameters
+    ----------
+    segments : sequence of Piece
+        The segments.
+
+    Returns
+    -------
+    chains : list of Chain
+        The chains.
+    gap : float
+        Widest gap that was bridged, mm.
     """
     chains_so_far: list[Chain] = [[segment] for segment in segments]
     widest = 0.0
@@ -262,12 +284,21 @@ def meridian_of(chain: Chain) -> Meridian:
 
 
 def halfway(outer: Chain, inner: Chain) -> list[tuple[Array, Array]]:
-    """Return the wall in the middle, between points at the same share of the lengths of both
-    walls.
+    """Return the wall in the middle of two walls.
 
-    If both have the same number of pieces, shares count from piece to piece, else from kink
-    to kink, else over the whole length. Between parallel walls this is the parallel curve in
-    the middle. Returns pieces (points, tangents).
+    Points at the same share of the lengths of both walls correspond. If both have the same
+    number of pieces, shares count from piece to piece, else from kink to kink, else over the
+    full length. Between parallel walls this is the parallel curve in the middle.
+
+    Parameters
+    ----------
+    outer, inner : Chain
+        The walls.
+
+    Returns
+    -------
+    list of ((n, 2) array, (n, 2) array)
+        Points (mm) and tangents of each piece.
     """
     curves = meridian_of(outer), meridian_of(inner)
     if len(outer) == len(inner):

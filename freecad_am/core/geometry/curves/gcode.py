@@ -364,8 +364,31 @@ class _State:
 def curves_of(
     text: str, where: str, chord_error: float, roles: str = roles_of.PART, rotary: str = NO_ROTARY
 ) -> tuple[BeadCurve, ...]:
-    """The beads of a program in its coordinates, arcs within the chord error (mm).
-    Raises InputError BAD_GCODE with the line."""
+    """Return the beads of a program in its coordinates.
+
+    Parameters
+    ----------
+    text : str
+        The program.
+    where : str
+        Name of the file, for messages.
+    chord_error : float
+        Chord error of arcs, mm.
+    roles : str, optional
+        Roles of the slicer that are deposited.
+    rotary : str, optional
+        How words A, B and C turn the tool, if at all.
+
+    Returns
+    -------
+    tuple of BeadCurve
+        The beads in order.
+
+    Raises
+    ------
+    InputError
+        BAD_GCODE with the line.
+    """
     return read(text, where, chord_error, roles, rotary).curves
 
 

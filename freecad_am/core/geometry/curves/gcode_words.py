@@ -99,8 +99,24 @@ class Command:
 
 
 def split_comments(line: str) -> tuple[str, list[str]]:
-    """Split a line into its code and its comments. Raises BadWords for a bracket that does not
-    close.
+    """Split a line into its code and its comments.
+
+    Parameters
+    ----------
+    line : str
+        The line.
+
+    Returns
+    -------
+    code : str
+        The line without comments.
+    comments : list of str
+        The comments.
+
+    Raises
+    ------
+    BadWords
+        For a bracket that does not close.
     """
     if "(" not in line and '"' not in line:  # most lines
         plain, mark, comment = line.partition(";")

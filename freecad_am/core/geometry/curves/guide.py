@@ -44,7 +44,20 @@ class Guide:
     across: Array
 
     def at(self, s: Array) -> tuple[Array, Array]:
-        """Return points and unit tangents (k, 3) at arc lengths (k,) mm."""
+        """Evaluate the guide.
+
+        Parameters
+        ----------
+        s : (k,) array
+            Arc lengths, mm; beyond the ends it continues straight.
+
+        Returns
+        -------
+        points : (k, 3) array
+            Points, mm.
+        tangents : (k, 3) array
+            Unit tangents.
+        """
         clipped = np.clip(s, self.way[0], self.way[-1])
         points = self._curve(clipped)
         tangents = self._curve(clipped, 1)
@@ -52,8 +65,17 @@ class Guide:
         return points + (s - clipped)[:, None] * tangents, tangents
 
     def frame(self, s: float) -> Array:
-        """Return the pose (4, 4) of the plane normal to the guide at an arc length, mm; Z is along
-        the guide.
+        """Return the pose of the plane normal to the guide.
+
+        Parameters
+        ----------
+        s : float
+            Arc length, mm.
+
+        Returns
+        -------
+        (4, 4) array
+            Z is along the guide.
         """
         points, tangents = self.at(np.array([s]))
         z = tangents[0]
@@ -70,10 +92,17 @@ class Guide:
         return bool(self.way[0] <= s <= self.way[-1])
 
     def distance(self, points: Array) -> Array:
-        """Return the arc length (...,) mm of the plane normal to the guide through each point (...,
-        3).
+        """Return the arc length of the normal plane through each point.
 
-        Of several planes, the one with the nearest foot.
+        Parameters
+        ----------
+        points : (..., 3) array
+            Points, mm.
+
+        Returns
+        -------
+        (...) array
+            mm; among several planes the one with the nearest foot.
         """
         flat = points.reshape(-1, 3)
         nearest_node = np.asarray(self._tree.query(flat)[1], dtype=np.intp)
@@ -100,10 +129,19 @@ class Guide:
         return np.asarray(s.reshape(points.shape[:-1]))
 
     def curvature_share(self, points: Array, s: Array) -> Array:
-        """Return the relative loss (k,) of layer height at points (k, 3) of the planes at arc
-        lengths (k,).
+        """Return the relative loss of layer height off the guide.
 
-        It is 1 at the centre of curvature and negative on the other side of the guide.
+        Parameters
+        ----------
+        points : (k, 3) array
+            Points of the planes, mm.
+        s : (k,) array
+            Arc lengths of the planes, mm.
+
+        Returns
+        -------
+        (k,) array
+            1 at the centre of curvature, negative on the other side of the guide.
         """
         foot = self.at(s)[0]
         step = DIFFERENCE_SHARE * float(np.diff(self.way).min())
@@ -112,10 +150,24 @@ class Guide:
         return share
 
     def crossing(self, points: Array, triangles: Index, distances: Array) -> Array | None:
-        """Return a point (3,) where planes of the guide cross within a mesh; None if they do not.
+        """Return a point where planes of the guide cross within a mesh.
 
-        points: (n, 3) of the mesh, on the planes at `distances` (n,) mm. Planes cross near the
-        centre of curvature, or where the ends of an edge belong to planes far apart.
+        Planes cross near the centre of curvature, or where the ends of an edge belong to
+        planes far apart.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            Vertices of the mesh, mm.
+        triangles : (m, 3) int array
+            Triangles.
+        distances : (n,) array
+            Arc lengths of the planes of the vertices, mm.
+
+        Returns
+        -------
+        (3,) array or None
+            None if they do not cross.
         """
         bent = self.curvature_share(points, distances)
         if bent.max() > TIGHTEST:
@@ -151,11 +203,23 @@ class Guide:
 def fit_guide(
     points: Array, tangents: Array, first_across: Array | None = None, start: float = 0.0
 ) -> Guide:
-    """Return the guide through nodes (n, 3) with unit tangents.
+    """Return the guide through nodes.
 
-    start: mm along it from its first node to the origin of arc length. first_across: (3,)
-    direction to which the first vector across the guide is made as near as a normal vector
-    can be.
+    Parameters
+    ----------
+    points : (n, 3) array
+        Nodes, mm.
+    tangents : (n, 3) array
+        Unit tangents.
+    first_across : (3,) array or None, optional
+        Direction that the first vector across the guide approaches; None for any.
+    start : float, optional
+        Length from the first node to the origin of arc length, mm.
+
+    Returns
+    -------
+    Guide
+        The guide.
     """
     chord = np.linalg.norm(np.diff(points, axis=0), axis=1)
     half = 0.5 * np.arccos(np.clip((tangents[1:] * tangents[:-1]).sum(axis=1), -1.0, 1.0))

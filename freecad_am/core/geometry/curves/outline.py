@@ -29,8 +29,21 @@ class Outline:
     arriving: Array
 
     def at(self, segment: Index, share: Array | float) -> tuple[Array, Array]:
-        """Return points (k, 3) at a share (k,) of the length of segments (k,), and the unit tangents
-        (k, 3) there.
+        """Evaluate the outline.
+
+        Parameters
+        ----------
+        segment : (k,) int array
+            Numbers of the segments.
+        share : float or (k,) array
+            Shares of their length.
+
+        Returns
+        -------
+        points : (k, 3) array
+            Points, mm.
+        tangents : (k, 3) array
+            Unit tangents.
         """
         s = np.broadcast_to(np.asarray(share, dtype=np.float64), segment.shape)[:, None]
         start, chord = self.points[segment], self.points[segment + 1] - self.points[segment]
@@ -53,10 +66,21 @@ def outline(points: Array, tangents: Array) -> Outline:
 
 
 def derivatives(points: Array, leaving: Array, arriving: Array) -> tuple[Array, Array]:
-    """Return derivatives (n - 1, 3) at the ends of the cubics through points (n, 3) with unit
-    tangents (n - 1, 3).
+    """Return derivatives at the ends of the cubics through points.
 
     Their size makes the cubic meet the middle of a circular arc.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points, mm.
+    leaving, arriving : (n - 1, 3) array
+        Unit tangents at the start and end of each segment.
+
+    Returns
+    -------
+    leaving, arriving : (n - 1, 3) array
+        Derivatives by the share of the segment.
     """
     chord = np.diff(points, axis=0)
     length = lengths(chord)
@@ -96,7 +120,18 @@ def estimate_outline(points: Array, closed: bool) -> Outline:
 
 
 def at_points(leaving: Array, arriving: Array) -> Array:
-    """(n, 2, 3) what arrives at each point and leaves it, of (n - 1, 3) at the two ends of each segment."""
+    """Return the vectors that arrive at and leave each point.
+
+    Parameters
+    ----------
+    leaving, arriving : (n - 1, 3) array
+        Vectors at the start and end of each segment.
+
+    Returns
+    -------
+    (n, 2, 3) array
+        At the ends the only known vector counts twice.
+    """
     return np.stack([np.r_[leaving[:1], arriving], np.r_[leaving, arriving[-1:]]], axis=1)
 
 

@@ -37,18 +37,53 @@ def length(points: Array, closed: bool) -> float:
 
 
 def steps(points: Array, closed: bool) -> Array:
-    """Edges of a polyline as vectors, (n, 2) when closed and (n - 1, 2) when open."""
+    """Return the edges of a polyline as vectors.
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        The polyline.
+    closed : bool
+        Whether it is closed.
+
+    Returns
+    -------
+    (n, 2) or (n - 1, 2) array
+        One more for a closed polyline.
+    """
     return np.roll(points, -1, axis=0) - points if closed else np.diff(points, axis=0)
 
 
 def arcs(points: Array, closed: bool = False) -> Array:
-    """How far (n,) mm along a polyline (n, 2) its points are; (n + 1,) of a closed one, whose last is its first again."""
+    """Return the arc lengths of the points of a polyline.
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        The polyline, mm.
+    closed : bool, optional
+        Whether it is closed.
+
+    Returns
+    -------
+    (n,) or (n + 1,) array
+        mm; the last value of a closed one is at its first point again.
+    """
     return np.asarray(np.r_[0.0, np.cumsum(np.hypot(*steps(points, closed).T))])
 
 
 def sines(vectors: Array, references: Array) -> Array:
-    """Return the sines (n,) of the angles from vectors (n, 2) to references (n, 2): positive to
-    the left.
+    """Return the sines of the angles from vectors to others.
+
+    Parameters
+    ----------
+    vectors, references : (n, 2) array
+        The vectors.
+
+    Returns
+    -------
+    (n,) array
+        Positive if the reference is to the left.
     """
     cross = vectors[:, 0] * references[:, 1] - vectors[:, 1] * references[:, 0]
     return np.asarray(cross / np.maximum(np.hypot(*vectors.T) * np.hypot(*references.T), 1e-300))
@@ -90,7 +125,22 @@ def winding(rings: Sequence[Array], points: Array) -> Index:
 
 
 def nearest(curve: Array, points: Array, closed: bool) -> Nearest:
-    """Return the points of a polyline (m, 2) nearest to points (k, 2)."""
+    """Return the points of a polyline nearest to points.
+
+    Parameters
+    ----------
+    curve : (m, 2) array
+        The polyline, mm.
+    points : (k, 2) array
+        The points, mm.
+    closed : bool
+        Whether the polyline is closed.
+
+    Returns
+    -------
+    Nearest
+        Points, edges and distances.
+    """
     step = steps(curve, closed)
     start = curve[: len(step)]
     square = np.maximum((step**2).sum(axis=1), 1e-300)
@@ -110,11 +160,21 @@ def nearest(curve: Array, points: Array, closed: bool) -> Nearest:
 
 
 def nearest_among(lines: Sequence[tuple[Array, bool]], points: Array) -> tuple[Array, Array]:
-    """Return the nearest points (n, 2) on polylines to points (n, 2), and their distances (n,)
-    mm.
+    """Return the nearest points on several polylines.
 
-    lines: points (m, 2) and whether closed. Without lines, returns the points themselves at
-    infinite distance.
+    Parameters
+    ----------
+    lines : Sequence[tuple[Array, bool]]
+        Points (m, 2) of each polyline and whether it is closed.
+    points : (n, 2) array
+        The points, mm.
+
+    Returns
+    -------
+    feet : (n, 2) array
+        Nearest points; without lines the points themselves.
+    distance : (n,) array
+        Distances, mm; infinite without lines.
     """
     feet, distance = points, np.full(len(points), np.inf)
     for line, closed in lines:
@@ -130,9 +190,23 @@ def nearest_among(lines: Sequence[tuple[Array, bool]], points: Array) -> tuple[A
 def nearest_on_rings(
     rings: Sequence[Array], boxes: tuple[Array, Array], points: Array
 ) -> tuple[Array, Array]:
-    """Return the points (n, 2) on rings nearest to points (n, 2), and their distances (n,), mm.
+    """Return the nearest points on rings.
 
-    boxes: lowest and highest coordinates (r, 2) of each ring.
+    Parameters
+    ----------
+    rings : sequence of Array
+        Points (m, 2) of each ring, mm.
+    boxes : tuple of (r, 2) array
+        Lowest and highest coordinates of each ring.
+    points : (n, 2) array
+        The points, mm.
+
+    Returns
+    -------
+    feet : (n, 2) array
+        Nearest points, mm.
+    distance : (n,) array
+        Distances, mm.
     """
     low, high = boxes
     beyond = np.maximum(np.maximum(low - points[:, None], points[:, None] - high), 0.0)
@@ -156,17 +230,38 @@ def nearest_on_rings(
 
 
 def fractions(points: Array) -> Array:
-    """Return the arc lengths (n,) of the points of an open polyline (n, 2) as shares of its
-    length.
+    """Return the arc lengths of points as shares of the length of their polyline.
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        The open polyline.
+
+    Returns
+    -------
+    (n,) array
+        From 0 to 1.
     """
     s = arcs(points)
     return np.asarray(s / s[-1])
 
 
 def divide_edges(points: Array, count: Index) -> tuple[Array, Mask]:
-    """Divide each edge of an open polyline (n, 2) or (n, 3) into `count` (n - 1,) equal parts.
+    """Divide each edge of an open polyline into equal parts.
 
-    Also returns which points (m,) are original.
+    Parameters
+    ----------
+    points : (n, 2) or (n, 3) array
+        The polyline.
+    count : (n - 1,) int array
+        Number of parts of each edge.
+
+    Returns
+    -------
+    points : (m, 2) or (m, 3) array
+        All points.
+    original : (m,) bool array
+        Which of them are original.
     """
     edge = np.repeat(np.arange(len(count)), count)
     number = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
@@ -175,19 +270,58 @@ def divide_edges(points: Array, count: Index) -> tuple[Array, Mask]:
 
 
 def divided_by_step(points: Array, step: float) -> tuple[Array, Mask]:
-    """An open polyline (n, 2) with points at most `step` mm apart, and which points (m,) it had before."""
+    """Divide the edges of an open polyline so that none is too long.
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        The polyline, mm.
+    step : float
+        Longest edge, mm.
+
+    Returns
+    -------
+    points : (m, 2) array
+        All points.
+    original : (m,) bool array
+        Which of them are original.
+    """
     lengths = np.hypot(*np.diff(points, axis=0).T)
     return divide_edges(points, step_counts(lengths, step))
 
 
 def dense(ring: Array, step: float) -> Array:
-    """A ring (n, 2) with points at most `step` mm apart."""
+    """Divide the edges of a ring so that none is too long.
+
+    Parameters
+    ----------
+    ring : (n, 2) array
+        The ring, mm.
+    step : float
+        Longest edge, mm.
+
+    Returns
+    -------
+    (m, 2) array
+        The ring.
+    """
     return divided_by_step(np.vstack([ring, ring[:1]]), step)[0][:-1]
 
 
 def start_at(ring: Array, point: Array) -> Array:
-    """Return a ring (n, 2) that begins where it is nearest to a point (2,); that position
-    becomes one of its points.
+    """Start a ring where it is nearest to a point.
+
+    Parameters
+    ----------
+    ring : (n, 2) array
+        The ring, mm.
+    point : (2,) array
+        The point.
+
+    Returns
+    -------
+    (m, 2) array
+        The ring; the nearest position is its first point.
     """
     foot = nearest(ring, point[None], closed=True)
     edge, start = int(foot.edge[0]), foot.points[0]
@@ -201,7 +335,20 @@ def start_at(ring: Array, point: Array) -> Array:
 
 
 def cut_at_length(points: Array, length: float) -> Array:
-    """Return the first `length` mm of an open polyline (n, 2)."""
+    """Return the beginning of an open polyline.
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        The polyline, mm.
+    length : float
+        Length to keep, mm.
+
+    Returns
+    -------
+    (m, 2) array
+        The beginning; all points if it is shorter.
+    """
     s = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
     if length >= s[-1]:
         return points
@@ -212,7 +359,20 @@ def cut_at_length(points: Array, length: float) -> Array:
 
 
 def rotate_points(points: Array, angle: float) -> Array:
-    """Rotate points (..., 2) about the origin by an angle, rad."""
+    """Rotate points about the origin.
+
+    Parameters
+    ----------
+    points : (..., 2) array
+        Points.
+    angle : float
+        Angle, counter-clockwise, rad.
+
+    Returns
+    -------
+    (..., 2) array
+        The rotated points.
+    """
     cos, sin = np.cos(angle), np.sin(angle)
     return np.stack(
         [points[..., 0] * cos - points[..., 1] * sin, points[..., 0] * sin + points[..., 1] * cos],

@@ -29,10 +29,24 @@ ON_AXIS = 1e-6  # mm; a smaller radius is a point on the axis
 
 
 def arc_lengths(points: Array, tangents: Array) -> Array:
-    """Arc length of each arc between neighbouring samples, (n-1,) mm.
+    """Return the arc length of each arc between neighbouring samples.
 
-    points, tangents: (n, 2). The length of the cubic that leaves and meets its chord at the angles a and b is
-    chord (1 + (2 a^2 - a b + 2 b^2) / 30) to fourth order, relatively 1e-12 at 0.006 rad per arc.
+    Parameters
+    ----------
+    points : (n, 2) array
+        Samples, mm.
+    tangents : (n, 2) array
+        Their tangents.
+
+    Returns
+    -------
+    (n - 1,) array
+        mm.
+
+    Notes
+    -----
+    The length of the cubic that leaves and meets its chord at the angles a and b is chord (1 +
+    (2 a^2 - a b + 2 b^2) / 30) to fourth order, relatively 1e-12 at 0.006 rad per arc.
     """
     steps = np.diff(points, axis=0)
     chords = np.hypot(steps[:, 0], steps[:, 1])
@@ -43,7 +57,18 @@ def arc_lengths(points: Array, tangents: Array) -> Array:
 
 
 def turning_angle(a: Array, b: Array) -> Array:
-    """Return the angle (...,) rad from vectors a to b, (..., 2), counter-clockwise positive."""
+    """Return the angle from vectors to others.
+
+    Parameters
+    ----------
+    a, b : (..., 2) array
+        Vectors.
+
+    Returns
+    -------
+    (...) array
+        Counter-clockwise positive, rad.
+    """
     cross = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
     angle: Array = np.arctan2(cross, (a * b).sum(axis=-1))
     return angle
@@ -106,7 +131,13 @@ class Meridian:
 
     @property
     def kinks(self) -> Array:
-        """Arc lengths (k,) at which the tangent jumps, mm."""
+        """Return the arc lengths at which the tangent jumps.
+
+        Returns
+        -------
+        (k,) array
+            mm.
+        """
         node = np.flatnonzero(np.diff(self.s) == 0.0)
         kinks: Array = self.s[
             node[np.abs(turning_angle(self.tangents[node], self.tangents[node + 1])) > KINK]
@@ -119,10 +150,23 @@ class Meridian:
         return bool(self.points[-1, 0] == 0.0)
 
     def at(self, s: ArrayLike) -> tuple[Array, Array, Array]:
-        """Return radius (n,) mm, height (n,) mm and unit tangent (n, 2) at arc lengths s (n,),
-        clipped to the curve.
+        """Evaluate the meridian.
 
         At a kink the tangent is the one below, which carries the deposit.
+
+        Parameters
+        ----------
+        s : (n,) array
+            Arc lengths, clipped to the curve, mm.
+
+        Returns
+        -------
+        radius : (n,) array
+            mm.
+        height : (n,) array
+            mm.
+        tangent : (n, 2) array
+            Unit tangents, radius and height.
         """
         i, u, h = self._locate(np.clip(np.asarray(s, dtype=np.float64), 0.0, self.length))
         u, h = u[:, None], h[:, None]
@@ -142,8 +186,17 @@ class Meridian:
         return i, (s - self.s[i]) / h, h
 
     def s_at_height(self, heights: ArrayLike) -> list[Array]:
-        """Return, for each height (n,) mm, all arc lengths at which the curve crosses or reaches it,
-        rising, mm.
+        """Return all arc lengths at which the curve crosses or reaches heights.
+
+        Parameters
+        ----------
+        heights : (n,) array
+            Heights, mm.
+
+        Returns
+        -------
+        list of array
+            Rising arc lengths for each height, mm.
         """
         levels = np.atleast_1d(np.asarray(heights, dtype=np.float64))
         z = self.points[None, :, 1] - levels[:, None]
@@ -216,13 +269,39 @@ class RevolvedWall:
             raise ValueError("a wall needs a (4, 4) frame and a turn of positive angle")
 
     def points(self, radius: Array, height: Array, azimuth: Array) -> Array:
-        """(n, 3) mm in part coordinates from cylindrical coordinates (n,) of the feature frame."""
+        """Return points in part coordinates from cylindrical coordinates of the feature frame.
+
+        Parameters
+        ----------
+        radius, height : (n,) array
+            mm.
+        azimuth : (n,) array
+            rad.
+
+        Returns
+        -------
+        (n, 3) array
+            mm.
+        """
         local = np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), height], axis=-1)
         moved: Array = local @ self.frame[:3, :3].T + self.frame[:3, 3]
         return moved
 
     def directions(self, vectors: Array, azimuth: Array) -> Array:
-        """(n, 3) vectors in part coordinates from components (n, 3) along radius, azimuth and axis at the azimuths."""
+        """Return vectors in part coordinates from components of the feature frame.
+
+        Parameters
+        ----------
+        vectors : (n, 3) array
+            Components along radius, azimuth and axis.
+        azimuth : (n,) array
+            Azimuths at which they apply, rad.
+
+        Returns
+        -------
+        (n, 3) array
+            The vectors.
+        """
         c, s = np.cos(azimuth), np.sin(azimuth)
         r, t, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
         turned: Array = (
@@ -241,13 +320,29 @@ ROUNDS = (
 
 
 def sample_curve(curve: Curve, breaks: ArrayLike) -> tuple[Array, Array]:
-    """Sample points (n, 2) and unit tangents (n, 2) along the curve from the first break to the
-    last.
+    """Sample a curve finely enough for its arcs.
 
-    curve: parameters (n,) -> points (n, 2), tangents (n, 2) of any length. breaks: rising
-    parameters between which the curve is smooth. Intervals are halved until the middle of the
-    Hermite arc over the whole interval meets the curve, so the halves are better still (by 8
-    in the tangent, 16 in the point). Raises ValueError if the curve has no speed.
+    Intervals are halved until the middle of the Hermite arc over the full interval meets the
+    curve, so the halves are better still (by 8 in the tangent, 16 in the point).
+
+    Parameters
+    ----------
+    curve : Curve
+        Returns points (n, 2) and tangents (n, 2) of any length for parameters (n,).
+    breaks : (k,) array
+        Rising parameters between which the curve is smooth.
+
+    Returns
+    -------
+    points : (n, 2) array
+        Points from the first break to the last, mm.
+    tangents : (n, 2) array
+        Unit tangents.
+
+    Raises
+    ------
+    ValueError
+        If the curve has no speed.
     """
     t = _initial(np.asarray(breaks, dtype=np.float64))
     points, tangents = _evaluate(curve, t)
@@ -302,14 +397,44 @@ def _lengths(p: Array, a: Array, q: Array, b: Array) -> Array:
 
 
 def line(start: ArrayLike, end: ArrayLike) -> tuple[Array, Array]:
-    """Samples of a straight segment: its two ends with the tangent between them."""
+    """Return samples of a straight segment.
+
+    Parameters
+    ----------
+    start, end : (2,) array
+        Its ends, mm.
+
+    Returns
+    -------
+    points : (2, 2) array
+        The ends.
+    tangents : (2, 2) array
+        The tangent between them.
+    """
     points = np.array([start, end], dtype=np.float64)
     along = points[1] - points[0]
     return points, np.tile(along / np.linalg.norm(along), (2, 1))
 
 
 def arc(centre: ArrayLike, radius: float, start: float, end: float) -> tuple[Array, Array]:
-    """Samples of a circular arc from the angle start to the angle end (rad, either may be larger)."""
+    """Return samples of a circular arc.
+
+    Parameters
+    ----------
+    centre : (2,) array
+        Centre, mm.
+    radius : float
+        Radius, mm.
+    start, end : float
+        Angles of the ends, rad; either may be larger.
+
+    Returns
+    -------
+    points : (n, 2) array
+        Points, mm.
+    tangents : (n, 2) array
+        Unit tangents.
+    """
     middle = np.asarray(centre, dtype=np.float64)
     sign = 1.0 if end > start else -1.0
 

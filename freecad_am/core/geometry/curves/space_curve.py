@@ -67,7 +67,13 @@ class SpaceCurve:
 
     @cached_property
     def turns(self) -> Array:
-        """Angle (m,) rad by which the tangent turns at each node; nothing at ends, nor at the repeated last node."""
+        """Return the angle by which the tangent turns at each node.
+
+        Returns
+        -------
+        (m,) array
+            rad; 0 at ends and at the repeated last node.
+        """
         cross = np.linalg.norm(np.cross(self.into, self.out), axis=1)
         angle: Array = np.arctan2(cross, dot(self.into, self.out))
         angle[-1] = 0.0
@@ -104,7 +110,18 @@ class SpaceCurve:
         return arcs
 
     def wrap(self, w: Array) -> Array:
-        """Parameters brought into the range of the nodes, where the curve is closed."""
+        """Bring parameters of a closed curve into the range of its nodes.
+
+        Parameters
+        ----------
+        w : (n,) array
+            Parameters.
+
+        Returns
+        -------
+        (n,) array
+            Parameters; unchanged for an open curve.
+        """
         if not self.closed:
             return w
         past = np.mod(w - self.w[0], self.period)
@@ -112,8 +129,23 @@ class SpaceCurve:
         return np.asarray(self.w[0] + np.where(past < self.period, past, 0.0))
 
     def evaluate_arcs(self, arc: Index, t: Array) -> tuple[Array, Array, Array]:
-        """Return points, first and second derivatives along w, each (..., 3), on arcs at t in [0,
-        1].
+        """Evaluate arcs of the curve.
+
+        Parameters
+        ----------
+        arc : (...) int array
+            Numbers of the arcs.
+        t : (...) array
+            Shares of the arcs, from 0 to 1.
+
+        Returns
+        -------
+        point : (..., 3) array
+            Points, mm.
+        slope : (..., 3) array
+            First derivatives along w.
+        bend : (..., 3) array
+            Second derivatives along w.
         """
         c, t = self.cubics[arc], t[..., None]
         span = self.span[arc][..., None]
@@ -126,16 +158,38 @@ class SpaceCurve:
         )
 
     def at(self, w: Array) -> tuple[Array, Array, Array]:
-        """Return points, first and second derivatives along w at the parameters (n,), each (n, 3)."""
+        """Evaluate the curve.
+
+        Parameters
+        ----------
+        w : (n,) array
+            Parameters.
+
+        Returns
+        -------
+        point : (n, 3) array
+            Points, mm.
+        slope : (n, 3) array
+            First derivatives along w.
+        bend : (n, 3) array
+            Second derivatives along w.
+        """
         arc = self.arcs(w)
         return self.evaluate_arcs(arc, (self.wrap(w) - self.w[arc]) / self.span[arc])
 
     def interpolation_error(self) -> Array:
-        """Estimate the error (m - 1,) mm of each arc against the curve from which the nodes were
-        taken.
+        """Estimate the error of each arc against the curve from which the nodes were taken.
 
-        A cubic with exact ends has an error of span^4 / 384 times the fourth derivative, which is
-        the change of the third derivative from arc to arc. Changes across corners do not count.
+        Returns
+        -------
+        (m - 1,) array
+            mm.
+
+        Notes
+        -----
+        A cubic with exact ends has an error of span^4 / 384 times the fourth derivative,
+        which is the change of the third derivative from arc to arc. Changes across corners
+        do not count.
         """
         third = 6.0 * self.cubics[:, 3] / self.span[:, None] ** 3
         following = np.roll(third, -1, axis=0)
@@ -148,8 +202,17 @@ class SpaceCurve:
         return error
 
     def refined(self, times: int) -> Array:
-        """Return the parameters of the nodes and of `times` - 1 equal subdivisions of each arc,
-        rising.
+        """Return the parameters of the nodes and of equal subdivisions of each arc.
+
+        Parameters
+        ----------
+        times : int
+            Number of parts of each arc.
+
+        Returns
+        -------
+        (n,) array
+            Rising parameters.
         """
         t = np.arange(times) / times
         parameters: Array = np.r_[(self.w[:-1, None] + self.span[:, None] * t).ravel(), self.w[-1]]
@@ -164,7 +227,20 @@ class SpaceCurve:
         return float((np.linalg.norm(slope, axis=-1) * 0.5 * weight * self.span[:, None]).sum())
 
     def beyond_box(self, points: Array) -> Array:
-        """mm that points (n, 3) are beyond a box about it, by a hair less than they are, which its places are not nearer."""
+        """Return how far points are outside a box about the curve.
+
+        The value is slightly less than the distance, so no point of the curve is nearer.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            Points, mm.
+
+        Returns
+        -------
+        (n,) array
+            mm.
+        """
         low, high = self._box
         return (1.0 - 1e-9) * lengths(
             np.maximum(np.maximum(low - points, points - high), 0.0)
@@ -191,11 +267,24 @@ class SpaceCurve:
         return cKDTree(self.evaluate_arcs(arc, t)[0]), arc, t
 
     def nearest(self, points: Array) -> tuple[Array, Array, Array]:
-        """Return the distance (n,) mm of points (n, 3) from the curve, the nearest point (n, 3) and
-        its parameter (n,).
+        """Return the points of the curve nearest to points.
 
         Newton's method starts at the nearest samples and stays on their smooth pieces; the
         nearest result is chosen.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            Points, mm.
+
+        Returns
+        -------
+        distance : (n,) array
+            Distances, mm.
+        foot : (n, 3) array
+            Nearest points, mm.
+        w : (n,) array
+            Their parameters.
         """
         tree, arcs, sample_t = self._samples
         count = min(CANDIDATES, len(arcs))
@@ -209,8 +298,19 @@ class SpaceCurve:
         return distance[row, best], foot[row, best], self.wrap(w[row, best])
 
     def descend(self, points: Array, w: Array) -> Array:
-        """Descend from the parameters w (...,) along their smooth pieces to the points nearest to
-        `points` (..., 3).
+        """Descend along the curve to the points nearest to others.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            Points, mm.
+        w : (...) array
+            Parameters to start from; the search stays on their smooth pieces.
+
+        Returns
+        -------
+        (...) array
+            Parameters.
         """
         shape = w.shape
         result, goal = self.wrap(w).ravel(), points.reshape(-1, 3)

@@ -16,10 +16,17 @@ from .refined import Edges
 
 
 def doubled_areas(corners: Array) -> Array:
-    """Return outward vectors (n, 3) normal to triangles (n, 3, 3), each as long as twice the
-    area of its triangle.
+    """Return vectors normal to triangles, each twice as long as the area.
 
-    Corners are counter-clockwise seen from outside.
+    Parameters
+    ----------
+    corners : (n, 3, 3) array
+        Triangles, counter-clockwise seen from outside, mm.
+
+    Returns
+    -------
+    (n, 3) array
+        Outward vectors, mm2.
     """
     a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     normals: Array = np.cross(a, b)
@@ -64,7 +71,20 @@ class SmoothMesh:
         return normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300), area
 
     def project(self, points: Array) -> tuple[Array, Array]:
-        """Return the surface points near points (k, 3), and the unit normals there, each (k, 3)."""
+        """Project points onto the smooth surface.
+
+        Parameters
+        ----------
+        points : (k, 3) array
+            Points near the surface, mm.
+
+        Returns
+        -------
+        points : (k, 3) array
+            Points of the surface, mm.
+        normals : (k, 3) array
+            Unit normals there.
+        """
         feet = points.astype(np.float64, copy=True)
         normals = np.zeros_like(feet)
         busy = np.arange(len(feet))
@@ -129,11 +149,34 @@ MIN_NORMAL_COSINE = np.cos(np.radians(30.0))  # of a turn of a triangle when a c
 def collapse_edges(
     vertices: Array, triangles: Index, owner: Index, shortest: float, longest: float
 ) -> tuple[Index, Index]:
-    """Collapse edges shorter than `shortest` mm, without making any edge longer than `longest`
-    mm.
+    """Collapse short edges of a mesh.
 
     Vertices on boundaries and between owners move only along those curves. Vertices are not
-    renumbered. Returns the remaining triangles and their owners.
+    renumbered.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        Vertices, mm.
+    triangles : (m, 3) int array
+        Triangles.
+    owner : (m,) int array
+        Owner of each triangle.
+    shortest : float
+        Edges shorter than this are collapsed, mm.
+    longest : float
+        No edge becomes longer than this, mm.
+
+    Returns
+    -------
+    triangles : (k, 3) int array
+        The remaining triangles.
+    owner : (k,) int array
+        Their owners.
+
+    References
+    ----------
+    Hoppe et al. 1993.
     """
     for _ in range(ROUNDS):
         edges = Edges(triangles)

@@ -16,10 +16,22 @@ CORNER = np.radians(35.0)  # a curve turns less from edge to edge
 
 
 def tangents(vertices: Array, edges: Index) -> Array:
-    """Return unit tangents (k, 2, 3) at both ends of edges (k, 2), along each edge.
+    """Return unit tangents at both ends of edges.
 
     They belong to smooth curves through the chains that the edges form. A chain ends where it
     meets others and where it turns by more than CORNER.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        Vertices, mm.
+    edges : (k, 2) int array
+        Ends of the edges.
+
+    Returns
+    -------
+    (k, 2, 3) array
+        Tangents along each edge.
     """
     chord = vertices[edges[:, 1]] - vertices[edges[:, 0]]
     chord = chord / np.maximum(np.linalg.norm(chord, axis=1, keepdims=True), 1e-300)
@@ -43,11 +55,25 @@ def tangents(vertices: Array, edges: Index) -> Array:
 
 
 def runs(vertices: Array, edges: Index, corner: float = CORNER) -> list[tuple[Index, Mask, bool]]:
-    """Return the chains that edges (k, 2) form: edges in order, whether each runs forward,
-    whether the chain is closed.
+    """Return the chains that edges form.
 
-    A chain ends at vertices without exactly two edges, and where it turns by more than
-    `corner` rad.
+    A chain ends at vertices without exactly two edges, and where it turns by more than a
+    corner.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        Vertices, mm.
+    edges : (k, 2) int array
+        Ends of the edges.
+    corner : float, optional
+        Turn at which a chain ends, rad.
+
+    Returns
+    -------
+    list of tuple
+        For each chain its edges (int array) in order, whether each runs forward (bool
+        array), and whether the chain is closed.
     """
     count = len(edges)
     # half edge h < count leaves edges[h, 0]; h + count is the same edge backwards

@@ -33,7 +33,20 @@ _LENGTHS = {  # mm
 
 
 def stated_unit(data: bytes, suffix: str) -> tuple[str, float] | None:
-    """The unit that a remark of an OBJ file or the head of an STL file names, and its length in mm; None without."""
+    """Return the unit that a file states in a remark.
+
+    Parameters
+    ----------
+    data : bytes
+        Content of the file.
+    suffix : str
+        '.obj' or '.stl'.
+
+    Returns
+    -------
+    tuple of (str, float) or None
+        Name and length of the unit in mm; None without.
+    """
     head = data[:HEAD].decode("latin-1")
     if suffix == ".obj":
         lines = [line for line in head.splitlines() if line.lstrip().startswith("#")]
@@ -49,7 +62,24 @@ def stated_unit(data: bytes, suffix: str) -> tuple[str, float] | None:
 
 
 def unit_issues(data: bytes, suffix: str, scale: float, where: str) -> tuple[Issue, ...]:
-    """A warning where a file states another unit than mm, and no `scale` was given for it."""
+    """Return a warning where a file states another unit than mm.
+
+    Parameters
+    ----------
+    data : bytes
+        Content of the file.
+    suffix : str
+        '.obj' or '.stl'.
+    scale : float
+        Length of one unit of the file as set by the user, mm; 1 for none.
+    where : str
+        Name of the file, for messages.
+
+    Returns
+    -------
+    tuple of Issue
+        One warning, or none; none with a scale.
+    """
     stated = stated_unit(data, suffix)
     if stated is None or scale != 1.0:
         return ()
@@ -67,10 +97,21 @@ def unit_issues(data: bytes, suffix: str, scale: float, where: str) -> tuple[Iss
 
 
 def refuse_scale(scale: float, path: str, key: str) -> None:
-    """Reject `scale`, mm per unit of a file, if it is not a length or if the file states its
-    unit.
+    """Reject a scale that is not a length or that the file does not need.
 
-    Raises InputError BAD_VALUE that names `key`.
+    Parameters
+    ----------
+    scale : float
+        Length of one unit of the file, mm.
+    path : str
+        Path of the file; its ending shows whether the format states a unit.
+    key : str
+        Key of the scale, for messages.
+
+    Raises
+    ------
+    InputError
+        BAD_VALUE that names `key`.
     """
     if not (math.isfinite(scale) and scale > 0.0):
         raise InputError(

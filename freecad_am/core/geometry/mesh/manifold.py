@@ -144,8 +144,23 @@ def find_holes(mesh: Manifold) -> list[Hole]:
 
 
 def fill_holes(vertices: Array, triangles: Index, openings: list[Hole]) -> tuple[Array, Index]:
-    """Close holes, each by one triangle or by triangles about its middle; returns vertices and
-    triangles.
+    """Close holes, each by one triangle or by triangles about its middle.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        Vertices, mm.
+    triangles : (m, 3) int array
+        Triangles.
+    openings : list of Hole
+        The holes.
+
+    Returns
+    -------
+    vertices : array
+        Old and new vertices, mm.
+    triangles : int array
+        Old and new triangles.
     """
     vertex_blocks, added = [vertices], [triangles]
     count = len(vertices)

@@ -37,12 +37,25 @@ class _Level(NamedTuple):
 
 
 def near_pairs(corners: Array, normals: Array, deep: float) -> Iterator[Index]:
-    """Yield the pairs (k, 2) of triangles whose boxes overlap by more than `deep` mm along each
-    axis, each pair once.
+    """Yield the pairs of triangles whose boxes overlap, each pair once.
 
-    Triangles (m, 3, 3) have unit normals (m, 3). Coplanar triangles, as on a flat face, are
-    left out by their common normal. The axes are the principal axes of the normals, which
-    suit the long triangles of round shapes. Both kinds of pairs can be very numerous.
+    Coplanar triangles, as on a flat face, are left out by their common normal. The boxes are
+    along the principal axes of the normals, which suit the long triangles of round shapes. Both
+    kinds of pairs can be very numerous.
+
+    Parameters
+    ----------
+    corners : (m, 3, 3) array
+        Triangles, mm.
+    normals : (m, 3) array
+        Their unit normals.
+    deep : float
+        Overlap along each axis that is ignored, mm.
+
+    Yields
+    ------
+    (k, 2) int array
+        A block of pairs.
     """
     if len(corners) < 2:
         return
@@ -152,12 +165,25 @@ class Crossings(NamedTuple):
 
 
 def find_crossings(vertices: Array, triangles: Index, min_length: float) -> Crossings:
-    """Find where triangles (m, 3) of vertices (n, 3) cross by more than `min_length` mm.
+    """Find where triangles cross.
 
-    Each triangle of a pair must reach both sides of the other, and overlap it along their
-    line of intersection, by more than that. Triangles that only touch, such as neighbours
-    along an edge, and coplanar faces do not cross. A shared vertex is in both triangles,
-    whatever rounding says.
+    Each triangle of a pair must reach both sides of the other, and overlap it along their line
+    of intersection. Triangles that only touch, such as neighbours along an edge, and coplanar
+    faces do not cross. A shared vertex is in both triangles, whatever rounding says.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        Vertices, mm.
+    triangles : (m, 3) int array
+        Triangles.
+    min_length : float
+        Smallest length of a crossing, mm.
+
+    Returns
+    -------
+    Crossings
+        The pairs with lengths and positions.
     """
     corners = vertices[triangles]
     planes = _planes(corners)
@@ -249,11 +275,26 @@ class Uncrossed(NamedTuple):
 def remove_crossings(
     vertices: Array, triangles: Index, pairs: Index, widest: float, min_length: float
 ) -> Uncrossed | None:
-    """Cut crossing pairs (k, 2) of triangles out of a surface and close the holes.
+    """Cut crossing triangles out of a surface and close the holes.
 
-    Takes vertices (n, 3) and triangles (m, 3). Returns None if that leaves a hole wider than
-    `widest` mm, reaches an end of the surface, or if triangles still cross by more than
-    `min_length` mm.
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        Vertices, mm.
+    triangles : (m, 3) int array
+        Triangles.
+    pairs : (k, 2) int array
+        Crossing pairs.
+    widest : float
+        Largest hole that is closed, mm.
+    min_length : float
+        Smallest length of a crossing, mm.
+
+    Returns
+    -------
+    Uncrossed or None
+        None if that leaves a wider hole, reaches an end of the surface, or if triangles
+        still cross.
     """
     edges = Edges(triangles)
     at_end = np.zeros(len(vertices), dtype=bool)

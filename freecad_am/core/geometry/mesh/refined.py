@@ -66,14 +66,37 @@ def refine_mesh(
     max_triangles: int,
     flip: bool = True,
 ) -> tuple[Array, Index, Index] | None:
-    """Refine a mesh until no edge is longer than `longest` mm.
+    """Refine a mesh until no edge is longer than a limit.
 
-    Returns vertices, triangles and their owners (m,). Returns None if there would be more
-    than `max_triangles` triangles, if flipped edges repeatedly become long again, or if edges
-    are still too long after ROUNDS rounds.
+    Shared edges stay shared.
 
-    `place_points` moves new edge middles to their positions. Shared edges stay shared. `flip`
-    says whether edges are flipped after each round.
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        Vertices, mm.
+    triangles : (m, 3) int array
+        Triangles.
+    owner : (m,) int array
+        Owner of each triangle.
+    longest : float
+        Longest edge, mm.
+    place_points : Placement
+        Moves new edge middles to their positions.
+    max_triangles : int
+        Largest number of triangles.
+    flip : bool, optional
+        Whether edges are flipped after each round.
+
+    Returns
+    -------
+    tuple of array or None
+        Vertices, triangles and their owners. None if there would be more than
+        `max_triangles` triangles, if flipped edges repeatedly become long again, or if
+        edges are still too long after ROUNDS rounds.
+
+    References
+    ----------
+    Rivara 1984.
     """
     highest = fewest_since = (
         0  # numbers of too long edges: the maximum so far and the minimum since
@@ -130,10 +153,27 @@ def refine_mesh(
 def quarter_triangles(
     vertices: Array, triangles: Index, owner: Index, place_points: Placement
 ) -> tuple[Array, Index, Index]:
-    """Divide each triangle into four at its edge middles, which `place_points` moves to their
-    positions.
+    """Divide each triangle into four at its edge middles.
 
-    Returns vertices, triangles and their owners (m,).
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        Vertices, mm.
+    triangles : (m, 3) int array
+        Triangles.
+    owner : (m,) int array
+        Owner of each triangle.
+    place_points : Placement
+        Moves the edge middles to their positions.
+
+    Returns
+    -------
+    vertices : array
+        Old and new vertices, mm.
+    triangles : (4 m, 3) int array
+        The parts.
+    owner : (4 m,) int array
+        Their owners.
     """
     edges = Edges(triangles)
     adjacent = np.where(edges.faces >= 0, owner[edges.faces], -1)
@@ -223,8 +263,21 @@ def _halve_triangles(
 
 
 def flip_edges(vertices: Array, triangles: Index, owner: Index) -> Index:
-    """Flip the edges within one owner's area whose opposite angles sum to more than pi
-    (Delaunay).
+    """Flip edges within one owner's area whose opposite angles sum to more than pi.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        Vertices, mm.
+    triangles : (m, 3) int array
+        Triangles.
+    owner : (m,) int array
+        Owner of each triangle.
+
+    Returns
+    -------
+    (m, 3) int array
+        Triangles that are nearly Delaunay.
     """
     triangles = triangles.copy()
     open_ = np.ones(
@@ -290,8 +343,19 @@ def _cosine(u: Array, v: Array) -> Array:
 
 
 def boundary(triangles: Index) -> tuple[Index, Mask]:
-    """Return the edges (k, 2) with one triangle only, in its sense, and which edges more than
-    two triangles share.
+    """Return the edges with one triangle only.
+
+    Parameters
+    ----------
+    triangles : (m, 3) int array
+        Triangles.
+
+    Returns
+    -------
+    edges : (k, 2) int array
+        Ends of these edges, in the sense of their triangle.
+    shared : bool array
+        Which of all edges more than two triangles share.
     """
     edges = Edges(triangles)
     half = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
@@ -301,10 +365,27 @@ def boundary(triangles: Index) -> tuple[Index, Mask]:
 def split_edges(
     vertices: Array, triangles: Index, is_split: Callable[[Index], Mask]
 ) -> tuple[Array, Index, bool]:
-    """Halve every edge that `is_split` selects by its ends (2, k).
+    """Halve selected edges.
 
-    Takes vertices (n, 3) and triangles (m, 3); also returns whether any edge was halved. A
-    closed mesh stays closed: a triangle becomes two, three or four.
+    A closed mesh stays closed: a triangle becomes two, three or four.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        Vertices, mm.
+    triangles : (m, 3) int array
+        Triangles.
+    is_split : callable
+        Returns which edges to halve, by their ends (2, k).
+
+    Returns
+    -------
+    vertices : array
+        Old and new vertices, mm.
+    triangles : int array
+        The triangles.
+    changed : bool
+        Whether any edge was halved.
     """
     edges = Edges(triangles)
     halved = np.flatnonzero(is_split(edges.ends.T))

@@ -42,10 +42,25 @@ class Repaired(NamedTuple):
 def repair_mesh(
     points: Array, triangles: Index, label: str, hole: float = 0.0, crossing: bool = False
 ) -> Repaired:
-    """Convert points (n, 3) and triangles (m, 3) to solids.
+    """Convert a mesh to solids.
 
-    hole: mm, size of the largest hole that is closed. crossing: whether a solid may cut
-    itself; this is reported.
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points, mm; equal ones are merged.
+    triangles : (m, 3) int array
+        Triangles.
+    label : str
+        Name of the part, for messages.
+    hole : float, optional
+        Size of the largest hole that is closed, mm.
+    crossing : bool, optional
+        Whether a solid may cut itself; this is reported.
+
+    Returns
+    -------
+    Repaired
+        The solids and the issues of repairs.
 
     Raises
     ------
@@ -109,10 +124,29 @@ class Connected(NamedTuple):
 
 
 def connected_triangles(points: Array, triangles: Index, label: str, hole: float) -> Connected:
-    """Convert points (n, 3) and triangles (m, 3) to a surface that may be open.
+    """Convert a mesh to a surface that may be open.
 
-    hole: mm; holes up to this size are closed if they are smaller than MAX_HOLE_SHARE of the
-    largest opening of their component. Raises InputError NO_SOLID.
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points, mm; equal ones are merged.
+    triangles : (m, 3) int array
+        Triangles.
+    label : str
+        Name of the part, for messages.
+    hole : float
+        Size of the largest hole that is closed, mm; only if it is smaller than
+        MAX_HOLE_SHARE of the largest opening of its component.
+
+    Returns
+    -------
+    Connected
+        The surface and its repairs.
+
+    Raises
+    ------
+    InputError
+        NO_SOLID if all triangles cancel each other.
     """
     messages: list[str] = []
     mended: list[str] = []

@@ -47,11 +47,22 @@ class SolidMesh:
         return float(dot(a, np.cross(b, c)).sum() / 6.0)
 
     def refuse_unsound(self, label: str, of_shape: bool = False, touching: bool = False) -> None:
-        """Raise InputError OPEN_MESH, NON_MANIFOLD or INSIDE_OUT with a position, unless the mesh
-        bounds a solid.
+        """Reject a mesh that does not bound a solid.
 
-        of_shape: the mesh comes from a solid with exact faces, so there is no mesh to repair.
-        touching: the solid may touch itself along edges.
+        Parameters
+        ----------
+        label : str
+            Name of the part, for messages.
+        of_shape : bool, optional
+            Whether the mesh comes from a solid with exact faces, so there is no mesh to
+            repair.
+        touching : bool, optional
+            Whether the solid may touch itself along edges.
+
+        Raises
+        ------
+        InputError
+            OPEN_MESH, NON_MANIFOLD or INSIDE_OUT with a position.
         """
         edges = Edges(self.triangles)
         several = (edges.count > 2) & ~(touching & (edges.count % 2 == 0))
@@ -141,18 +152,26 @@ class SolidMesh:
 
     @cached_property
     def normals(self) -> Array:
-        """Twice the area of each triangle along its outer normal, (m, 3)."""
+        """Return the outer normals of the triangles, each as long as twice the area.
+
+        Returns
+        -------
+        (m, 3) array
+            mm2.
+        """
         a, b, c = (self.vertices[self.triangles[:, k]] for k in range(3))
         normals: Array = np.cross(b - a, c - a)
         return normals
 
     @cached_property
     def sagitta(self) -> Array:
-        """Estimate how far (m,) each triangle is off the round surface that it and its neighbours
-        approximate.
+        """Estimate how far each triangle is off the round surface that it approximates.
 
-        An eighth of its width across each edge times the turn there. Edges that turn by more than
-        SHARP_EDGE_RAD are real edges.
+        Returns
+        -------
+        (m,) array
+            An eighth of the triangle's width across each edge times the turn there, the
+            largest, mm. Edges that turn by more than SHARP_EDGE_RAD are real edges.
         """
         edges = Edges(self.triangles)
         two = edges.count == 2
@@ -173,7 +192,13 @@ class SolidMesh:
 
     @cached_property
     def units(self) -> Array:
-        """Outer unit normals (m, 3), nothing for triangles without an area."""
+        """Return the outer unit normals of the triangles.
+
+        Returns
+        -------
+        (m, 3) array
+            Zero for triangles without an area.
+        """
         length = np.linalg.norm(self.normals, axis=1, keepdims=True)
         units: Array = np.where(length > 1e-10, self.normals / np.maximum(length, 1e-300), 0.0)
         return units
@@ -199,11 +224,41 @@ class Search:
         return bool((np.abs(self.units @ self.units[0]) > 1.0 - PARALLEL).all())
 
     def distance(self, points: Array) -> Array:
-        """Distance (k,) of points (k, 3) from the triangles."""
+        """Return the distances of points from the triangles.
+
+        Parameters
+        ----------
+        points : (k, 3) array
+            Points, mm.
+
+        Returns
+        -------
+        (k,) array
+            mm.
+        """
         return self._nearest(points)[0]
 
     def signed(self, points: Array) -> tuple[Array, Array, Index]:
-        """Distance (k,) of points (k, 3), negative inside, the nearest points (k, 3) and triangles (k,) of the solid."""
+        """Return the signed distances of points from the solid.
+
+        Parameters
+        ----------
+        points : (k, 3) array
+            Points, mm.
+
+        Returns
+        -------
+        distance : (k,) array
+            Distances, negative inside, mm.
+        foot : (k, 3) array
+            Nearest points, mm.
+        triangle : (k,) int array
+            Nearest triangles of the solid.
+
+        References
+        ----------
+        Baerentzen 2005, for the side by pseudo-normals.
+        """
         distance, triangle, share = self._nearest(points)
         foot = np.einsum("nk,nkc->nc", share, self.vertices[self.triangles[triangle]])
         at_vertex, at_edge, edge_of = self._pseudo_normals
@@ -280,11 +335,24 @@ class Search:
 def divide_triangles(
     corners: Array, longest: float, is_kept: Callable[[Array], Mask] | None = None
 ) -> tuple[Array, Index]:
-    """Divide triangles (m, 3, 3) until no side is longer than `longest` mm.
+    """Divide triangles until no side is longer than a limit.
 
-    Returns the middles (k, 3) of the parts and the triangle (k,) of each. is_kept: takes
-    triangles (n, 3, 3), whole or parts, and returns which (n,) to divide further; the others
-    are dropped.
+    Parameters
+    ----------
+    corners : (m, 3, 3) array
+        Triangles, mm.
+    longest : float
+        Longest side, mm.
+    is_kept : callable, optional
+        Returns which triangles (n, 3, 3), complete or parts, to divide further; the others
+        are dropped. None for all.
+
+    Returns
+    -------
+    middles : (k, 3) array
+        Middles of the parts, mm.
+    triangle : (k,) int array
+        Triangle of each part.
     """
     return (
         _divide_triangles(corners, longest, is_kept)
@@ -334,9 +402,30 @@ def connected_pieces(corners: Index) -> Index:
 def orient_triangles(
     vertices: Array, corners: Index, edges: Edges, label: str, messages: list[str]
 ) -> Index:
-    """Return the triangles oriented so that neighbours agree.
+    """Orient triangles so that neighbours agree.
 
-    Raises InputError NOT_ORIENTABLE.
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        Vertices, mm.
+    corners : (m, 3) int array
+        Triangles.
+    edges : Edges
+        Their edges.
+    label : str
+        Name of the part, for errors.
+    messages : list of str
+        A message about flipped triangles is appended here.
+
+    Returns
+    -------
+    (m, 3) int array
+        The oriented triangles.
+
+    Raises
+    ------
+    InputError
+        NOT_ORIENTABLE if neighbours cannot agree.
     """
     turned = orient_across(corners, edges, np.arange(len(edges.ends)), messages)
     forward = turned < np.roll(turned, -1, axis=1)
@@ -361,8 +450,23 @@ def orient_triangles(
 
 
 def orient_across(corners: Index, edges: Edges, two: Index, messages: list[str]) -> Index:
-    """Return the triangles oriented so that neighbours across the two-sided edges (k,) agree, as
-    far as possible.
+    """Orient triangles so that neighbours agree, as far as possible.
+
+    Parameters
+    ----------
+    corners : (m, 3) int array
+        Triangles.
+    edges : Edges
+        Their edges.
+    two : (k,) int array
+        Edges with two sides across which neighbours should agree.
+    messages : list of str
+        A message about flipped triangles is appended here.
+
+    Returns
+    -------
+    (m, 3) int array
+        The oriented triangles.
     """
     forward = corners < np.roll(corners, -1, axis=1)
     face_a, face_b = edges.faces[two].T
@@ -406,6 +510,20 @@ def split_solids(vertices: Array, corners: Index, messages: list[str]) -> tuple[
     """Return the connected components as solids.
 
     Outer components are turned outside out; cavities belong to the solid around them.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        Vertices, mm.
+    corners : (m, 3) int array
+        Oriented triangles.
+    messages : list of str
+        Messages about removed and reversed components are appended here.
+
+    Returns
+    -------
+    tuple of SolidMesh
+        The solids, without components that enclose no volume.
     """
     component = connected_pieces(corners)
     components = np.split(

@@ -18,10 +18,21 @@ from ..walls.surface import dot
 
 
 def closest(a: Array, b: Array, c: Array, points: Array) -> tuple[Array, Array]:
-    """Return the distance (...,) of points (..., 3) to triangles with the corners a, b, c (...,
-    3).
+    """Return the distances of points from triangles.
 
-    Also returns the shares (..., 3) of the corners in the nearest point.
+    Parameters
+    ----------
+    a, b, c : (..., 3) array
+        Corners of the triangles, mm.
+    points : (..., 3) array
+        Points, mm.
+
+    Returns
+    -------
+    distance : (...) array
+        Distances, mm.
+    share : (..., 3) array
+        Shares of the corners in the nearest point.
     """
     ab, ac, ap = b - a, c - a, points - a
     d00, d01, d11 = dot(ab, ab), dot(ab, ac), dot(ac, ac)
@@ -53,10 +64,21 @@ def closest(a: Array, b: Array, c: Array, points: Array) -> tuple[Array, Array]:
 
 
 def cut_evenly(corners: Array, longest: float) -> tuple[Array, Index]:
-    """Cut triangles (m, 3, 3) evenly so that no edge is longer than `longest` mm.
+    """Cut triangles evenly so that no edge is longer than a limit.
 
-    Returns the points (m, k, 3) in each triangle, and the corner numbers (l, 3) of the parts,
-    the same for all triangles.
+    Parameters
+    ----------
+    corners : (m, 3, 3) array
+        Triangles, mm.
+    longest : float
+        Longest edge, mm.
+
+    Returns
+    -------
+    points : (m, k, 3) array
+        Points in each triangle, mm.
+    parts : (l, 3) int array
+        Corner numbers of the parts, the same for all triangles.
     """
     edge = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max()
     n = step_count(edge, longest)
@@ -135,14 +157,26 @@ class Mesh:
 
     @cached_property
     def area_vectors(self) -> Array:
-        """Normals (m, 3) of the faces, each as long as the area of its face, mm2."""
+        """Return the normals of the faces, each as long as the area of its face.
+
+        Returns
+        -------
+        (m, 3) array
+            mm2.
+        """
         a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
         vectors: Array = 0.5 * np.cross(b - a, c - a)
         return vectors
 
     @cached_property
     def areas(self) -> Array:
-        """Areas (m,) of the faces, mm2."""
+        """Return the areas of the faces.
+
+        Returns
+        -------
+        (m,) array
+            mm2.
+        """
         areas: Array = np.linalg.norm(self.area_vectors, axis=1)
         return areas
 
@@ -208,7 +242,20 @@ class Mesh:
         return reached
 
     def part(self, faces: Index) -> tuple[Mesh, Index]:
-        """Return the mesh of the faces (k,), and the numbers (m,) of its vertices in this mesh."""
+        """Return the mesh of some faces.
+
+        Parameters
+        ----------
+        faces : (k,) int array
+            Numbers of the faces.
+
+        Returns
+        -------
+        mesh : Mesh
+            Their mesh.
+        vertices : (m,) int array
+            Numbers of its vertices in this mesh.
+        """
         vertices, corners = np.unique(self.faces[faces], return_inverse=True)
         return Mesh(
             self.vertices[vertices], np.ravel(corners).reshape(-1, 3).astype(np.intp)
@@ -268,10 +315,18 @@ class Mesh:
 
 
 def chains(following: Index) -> list[tuple[Index, bool]]:
-    """Return the chains of successors (n,), -1 for none, in the order of their lowest members.
+    """Return the chains of successors, in the order of their lowest members.
 
-    Each has its members in order and whether it is closed. Closed chains begin with their
-    lowest member.
+    Parameters
+    ----------
+    following : (n,) int array
+        Successor of each member, -1 for none.
+
+    Returns
+    -------
+    list of ((k,) int array, bool)
+        Members in order and whether the chain is closed. Closed chains begin with their
+        lowest member.
     """
     ahead = following.tolist()
     arrives = np.zeros(len(ahead), dtype=bool)
@@ -292,8 +347,21 @@ def chains(following: Index) -> list[tuple[Index, bool]]:
 
 
 def thin_points(points: Array, closed: bool, min_step: float) -> Array:
-    """Drop points of a chain (n, 3) that are nearer than `min_step` mm to the one before; ends
-    of an open chain stay.
+    """Drop points of a chain that are too near to the one before.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        The chain, mm.
+    closed : bool
+        Whether it is closed; the ends of an open one stay.
+    min_step : float
+        Smallest distance, mm.
+
+    Returns
+    -------
+    (k, 3) array
+        The remaining points.
     """
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     keep = np.r_[True, np.diff(np.floor(length / min_step)) > 0]

@@ -26,18 +26,68 @@ class Ground(Protocol):
     facets: bool  # whether its pieces are flat facets of something round
 
     def signed(self, points: Array) -> Array:
-        """Distances (k,) mm, negative inside."""
+        """Return the signed distances of points.
+
+        Parameters
+        ----------
+        points : (k, 3) array
+            Points, mm.
+
+        Returns
+        -------
+        (k,) array
+            mm, negative inside.
+        """
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
-        """Nearest points of the boundary, outer unit normals, each (k, 3), and the smooth piece (k,)
-        of each.
+        """Return the nearest points of the boundary.
+
+        Parameters
+        ----------
+        points : (k, 3) array
+            Points, mm.
+
+        Returns
+        -------
+        feet : (k, 3) array
+            Nearest points, mm.
+        normals : (k, 3) array
+            Outer unit normals.
+        piece : (k,) int array
+            The smooth piece of each.
         """
 
     def on(self, piece_numbers: Index, points: Array) -> tuple[Array, Array]:
-        """Nearest points and normals, each (k, 3), on the pieces (k,) wherever these end."""
+        """Return the nearest points on given pieces, wherever these end.
+
+        Parameters
+        ----------
+        piece_numbers : (k,) int array
+            The pieces.
+        points : (k, 3) array
+            Points, mm.
+
+        Returns
+        -------
+        feet : (k, 3) array
+            Nearest points, mm.
+        normals : (k, 3) array
+            Outer unit normals.
+        """
 
     def sagitta(self, piece_numbers: Index) -> Array:
-        """Maximum distance (k,) of the pieces from the surface that they approximate, mm."""
+        """Return how far pieces are at most from the surface that they approximate.
+
+        Parameters
+        ----------
+        piece_numbers : (k,) int array
+            The pieces.
+
+        Returns
+        -------
+        (k,) array
+            mm.
+        """
 
 
 class ExactGround:
@@ -144,11 +194,25 @@ class PlaneGround:
 
 
 def distances(points: Array, ground: Ground, near_distance: float) -> Array:
-    """Return the distances (n,) of points from the ground, negative inside.
+    """Return the distances of points from the ground.
 
-    They are exact for points nearer than `near_distance` mm; others have the right sign and
-    at most the true size. A distance changes by no more than the distance travelled, so one
-    point is enough in a cube that is wholly farther than its size.
+    A distance changes by no more than the distance travelled, so one point is enough in a cube
+    that is wholly farther than its size.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points, mm.
+    ground : Ground
+        The ground.
+    near_distance : float
+        Distance up to which values are exact, mm.
+
+    Returns
+    -------
+    (n,) array
+        mm, negative inside. Values of farther points have the right sign and at most the
+        true size.
     """
     value, open_ = np.empty(len(points)), np.arange(len(points))
     size = float(np.ptp(points, axis=0).max(initial=0.0)) / 4.0
@@ -169,8 +233,23 @@ def distances(points: Array, ground: Ground, near_distance: float) -> Array:
 
 
 def nearest_point(points: Array, ground: Ground, value: Array) -> tuple[int, float]:
-    """Return the point nearest to the boundary of the ground, and its distance, given the values
-    of `distances`.
+    """Return the point nearest to the boundary of the ground.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points, mm.
+    ground : Ground
+        The ground.
+    value : (n,) array
+        Their `distances`.
+
+    Returns
+    -------
+    point : int
+        Number of the point.
+    distance : float
+        Its distance, mm.
     """
     order = np.argsort(np.abs(value), kind="stable")
     best, min_distance = int(order[0]), np.inf
@@ -200,10 +279,22 @@ THIRDS = np.array([1.0 / 3.0, 2.0 / 3.0])
 
 
 def ground_distances(wall: PatchWall, ground: Ground) -> Array:
-    """Return distances (n,) of the wall's vertices from the ground, negative inside.
+    """Return the distances of the wall's vertices from the ground.
 
     A boundary that ends just short of the ground counts as inside. Distances larger than an
-    edge of the wall's mesh may be underestimated, see `ground.distances`.
+    edge of the wall's mesh may be underestimated, see `distances`.
+
+    Parameters
+    ----------
+    wall : PatchWall
+        The wall with n vertices.
+    ground : Ground
+        The ground.
+
+    Returns
+    -------
+    (n,) array
+        mm, negative inside, never 0.
     """
     value = distances(wall.vertices, ground, 2.0 * wall.mesh.longest_edge)
     edge = np.zeros(len(value), dtype=bool)
@@ -216,16 +307,30 @@ def ground_distances(wall: PatchWall, ground: Ground) -> Array:
 def first_curves(
     wall: PatchWall, ground: Ground, value: Array, rims: tuple[Rim, ...]
 ) -> tuple[list[FirstCurve], float]:
-    """Return the curves where the wall leaves the ground, and the maximum error between their
-    points, mm.
+    """Return the curves where the wall leaves the ground.
 
-    The curves are the chains between negative and other values (n,) of the wall's vertices.
-    The error is about TOLERANCE_MM, on a ground of triangles measured to the surface that
-    they approximate.
+    Points are on wall and ground to rounding. Corners are where pieces of the ground meet at an
+    angle; facets that approximate a round surface (turns under SHARP_EDGE_RAD) are smoothed,
+    see `_round_curve`.
 
-    Points are on wall and ground to rounding. Corners are where pieces of the ground meet at
-    an angle; facets that approximate a round surface (turns under SHARP_EDGE_RAD) are
-    smoothed, see `_round_curve`.
+    Parameters
+    ----------
+    wall : PatchWall
+        The wall with n vertices.
+    ground : Ground
+        The ground.
+    value : (n,) array
+        Distances of the vertices; the curves separate negative from other values.
+    rims : tuple of Rim
+        Rims of the wall, on which open curves end.
+
+    Returns
+    -------
+    curves : list of FirstCurve
+        The curves.
+    error : float
+        Largest error between their points, mm: about TOLERANCE_MM, on a ground of triangles
+        measured to the surface that they approximate.
     """
     curves, max_error = [], 0.0
     for line in wall.mesh.level_lines(value, np.arange(len(wall.triangles))):
@@ -525,10 +630,23 @@ def _drop_coincident(
 
 
 def fit_splines(points: Array, sharp: Mask, closed: bool) -> tuple[Array, Array, Array]:
-    """Return the chain (n, 3) with unit tangents into and out of each point, from splines
-    between sharp corners (n,).
+    """Return a chain with unit tangents from splines between sharp corners.
 
-    A chain with a sharp corner starts at one.
+    Parameters
+    ----------
+    points : (n, 3) array
+        The chain, mm.
+    sharp : (n,) bool array
+        Its sharp corners.
+    closed : bool
+        Whether it is closed.
+
+    Returns
+    -------
+    points : (n, 3) array
+        The chain; if closed it starts at a sharp corner, if it has any.
+    into, out : (n, 3) array
+        Unit tangents before and after each point.
     """
     start = int(np.argmax(sharp)) if closed and sharp.any() else 0
     points, sharp = np.roll(points, -start, axis=0), np.roll(sharp, -start)

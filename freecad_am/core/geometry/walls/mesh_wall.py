@@ -45,12 +45,28 @@ def find_rims(wall: PatchWall) -> tuple[Rim, ...]:
 def mark_ends(
     wall: PatchWall, rims: tuple[Rim, ...], start_curves: tuple[FirstCurve, ...], behind: Mask
 ) -> tuple[Rim, ...]:
-    """Return the rims with the ends among them marked.
+    """Mark the rims at which layers finish.
 
-    A rim is an end unless it is behind, has an end of a start curve on it (a side), has a
-    start curve along it, or bounds an opening. At an opening the distance from the start
-    curves, measured along the wall, grows away from the rim on more than a quarter of its
-    length, because layers close again beyond it.
+    A rim is an end unless it is behind, has an end of a start curve on it (a side), has a start
+    curve along it, or bounds an opening. At an opening the distance from the start curves,
+    measured along the wall, grows away from the rim on more than a quarter of its length,
+    because layers close again beyond it.
+
+    Parameters
+    ----------
+    wall : PatchWall
+        The wall with n vertices.
+    rims : tuple of Rim
+        Its rims.
+    start_curves : tuple of FirstCurve
+        The curves at which layers start.
+    behind : (n,) bool array
+        Vertices on the substrate's side of these.
+
+    Returns
+    -------
+    tuple of Rim
+        The rims.
     """
     distance = _distance(wall, start_curves, behind)
     beyond = distance.max(initial=0.0, where=np.isfinite(distance))
@@ -123,10 +139,21 @@ def _inner_mean(wall: PatchWall, distance: Array) -> Array:
 
 
 def connected_parts(wall: PatchWall, members: Mask) -> tuple[int, Index]:
-    """Return the number of connected parts that the vertices `members` (n,) form along edges of
-    the mesh.
+    """Return the connected parts that some vertices form along edges of the mesh.
 
-    Also returns the part (n,) of each vertex, -1 for the others.
+    Parameters
+    ----------
+    wall : PatchWall
+        The wall with n vertices.
+    members : (n,) bool array
+        The vertices.
+
+    Returns
+    -------
+    count : int
+        Number of parts.
+    part : (n,) int array
+        Part of each vertex, -1 for the others.
     """
     edges = Edges(wall.triangles).ends
     edges = edges[members[edges].all(axis=1)]
@@ -226,10 +253,25 @@ class _Read(NamedTuple):
 
 
 def mesh_wall(points: Array, triangles: Index, edge: float, label: str, mend: float) -> MeshWall:
-    """Build the wall of points (n, 3) and triangles (m, 3), with edges of `edge` mm, that starts
-    nowhere yet.
+    """Return the smooth wall through a mesh, without a start yet.
 
-    mend: mm, size of the largest hole that is closed; see `repair.connected_triangles`.
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points, mm.
+    triangles : (m, 3) int array
+        Triangles.
+    edge : float
+        Length of the edges of the new mesh, mm.
+    label : str
+        Name of the wall, for messages.
+    mend : float
+        Size of the largest hole that is closed, mm; see `repair.connected_triangles`.
+
+    Returns
+    -------
+    MeshWall
+        The wall.
 
     Raises
     ------
@@ -412,13 +454,33 @@ EDGE_SPACING_SHARE = 0.5  # edges, of the bead spacing
 
 
 def clad_mesh(points: Array, triangles: Index, spacing: float, back: bool, label: str) -> CladFaces:
-    """Return a mesh of points (n, 3) and triangles (m, 3) as one sheet for beads `spacing` mm
-    apart.
+    """Return a mesh as one sheet to be clad.
 
     The sheet is the smooth surface through the facets. Layers grow on the side from which the
-    triangles are counter-clockwise; `back` selects the other side.
+    triangles are counter-clockwise.
 
-    Raises InputError NO_FACES for a closed mesh, and the errors of `mesh_wall`.
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points, mm.
+    triangles : (m, 3) int array
+        Triangles.
+    spacing : float
+        Distance between beads, mm.
+    back : bool
+        Whether layers grow on the other side.
+    label : str
+        Name of the part, for messages.
+
+    Returns
+    -------
+    CladFaces
+        The faces to be clad.
+
+    Raises
+    ------
+    InputError
+        NO_FACES for a closed mesh, and the errors of `mesh_wall`.
     """
     wall = mesh_wall(points, triangles, EDGE_SPACING_SHARE * spacing, label, 0.0)
     if not len(wall.mesh.border_edges):

@@ -23,9 +23,23 @@ from .surface import dot
 def derivatives(
     knots: tuple[Array, Array], poles: Array, u: Array, v: Array
 ) -> tuple[Array, Array, Array]:
-    """Return points and derivatives along u and v, each (n, 3), at the parameters u, v (n,).
+    """Evaluate a rational B-spline surface; outside its range it continues straight.
 
-    knots: for both directions, with the ends repeated. poles: (k, l, 4) as w x, w y, w z, w.
+    Parameters
+    ----------
+    knots : tuple of array
+        Knots in both directions, with the ends repeated.
+    poles : (k, l, 4) array
+        Poles as w x, w y, w z, w.
+    u, v : (n,) array
+        Parameters.
+
+    Returns
+    -------
+    point : (n, 3) array
+        Points, mm.
+    along, around : (n, 3) array
+        Derivatives along u and v.
     """
     inside = [
         np.clip(parameter, *bounds(knot, poles.shape[axis]))
@@ -40,7 +54,20 @@ def derivatives(
 
 
 def bounds(knots: Array, count: int) -> tuple[float, float]:
-    """The range of the parameter of a direction with `count` poles."""
+    """Return the range of a parameter of a B-spline.
+
+    Parameters
+    ----------
+    knots : (m,) array
+        Knots of the direction.
+    count : int
+        Number of its poles.
+
+    Returns
+    -------
+    low, high : float
+        The range.
+    """
     degree = len(knots) - count - 1
     return float(knots[degree]), float(knots[count])
 
@@ -136,10 +163,20 @@ class Patch:
     poles: Array | None = None
 
     def inverse(self, points: Array, start: Array | None = None) -> Array:
-        """Return (u, v) (n, 2) of the surface points nearest to points (n, 3).
+        """Return the parameters of the surface points nearest to points.
 
-        Where the search is iterative, `start` (n, 2) selects the local minimum downhill from
-        there.
+        Parameters
+        ----------
+        points : (n, 3) array
+            Points in part coordinates, mm.
+        start : (n, 2) array or None, optional
+            Where the search is iterative, parameters from which it goes downhill; None
+            for the nearest sample.
+
+        Returns
+        -------
+        (n, 2) array
+            u and v.
         """
         x, y, z = columns(self._local(points))
         if self.kind == PLANE:
@@ -162,7 +199,20 @@ class Patch:
         )
 
     def at(self, uv: Array) -> tuple[Array, Array]:
-        """Return points and unit normals to the outer side, each (n, 3), at (u, v) (n, 2)."""
+        """Evaluate the surface.
+
+        Parameters
+        ----------
+        uv : (n, 2) array
+            Parameters u and v.
+
+        Returns
+        -------
+        points : (n, 3) array
+            Points in part coordinates, mm.
+        normals : (n, 3) array
+            Unit normals to the outer side.
+        """
         if self.kind == SPLINE:
             point, along, around = self._derivatives(uv)
             return point, self.sign * self._spline_normal(uv, np.cross(along, around))
@@ -187,16 +237,34 @@ class Patch:
         return self._to_part(self.sizes[0] * out + self.sizes[1] * normal, normal)
 
     def area(self, uv: Array) -> Array:
-        """Return the area of a spline surface per step of u and v at (u, v) (n, 2), relative to its
-        typical value.
+        """Return the area of a spline surface per step of u and v.
+
+        Parameters
+        ----------
+        uv : (n, 2) array
+            Parameters u and v.
+
+        Returns
+        -------
+        (n,) array
+            Relative to its typical value.
         """
         _, along, around = self._derivatives(uv)
         share: Array = np.linalg.norm(np.cross(along, around), axis=1) / self._typical_area
         return share
 
     def unwrap(self, uv: Array) -> Array:
-        """Return (u, v) of the corners of triangles (m, 3, 2), shifted by periods next to each first
-        corner.
+        """Shift the parameters of triangles by periods next to each first corner.
+
+        Parameters
+        ----------
+        uv : (m, 3, 2) array
+            Parameters of the corners.
+
+        Returns
+        -------
+        (m, 3, 2) array
+            The shifted parameters.
         """
         uv = uv.copy()
         for axis, period in enumerate(self.periods):

@@ -100,8 +100,12 @@ class PatchWall:
 
     @property
     def frame(self) -> Array:
-        """The wall's frame (4, 4) in part coordinates: the part frame, raised to the ground of the
-        wall.
+        """Return the wall's frame: the part frame, raised to the ground of the wall.
+
+        Returns
+        -------
+        (4, 4) array
+            Pose in part coordinates, mm.
         """
         frame = np.eye(4)
         frame[2, 3] = 0.0 if self.ground is None else self.ground
@@ -109,7 +113,13 @@ class PatchWall:
 
     @property
     def symmetry_normal(self) -> Array | None:
-        """Unit normal (3,) of the bend plane of a torus that closes around; None for other walls."""
+        """Return the normal of the bend plane of a torus that closes around.
+
+        Returns
+        -------
+        (3,) array or None
+            Unit normal; None for other walls.
+        """
         is_full_torus = (
             len(self.patches) == 1
             and self.patches[0].kind == TORUS
@@ -133,15 +143,42 @@ class PatchWall:
         return Mesh(self.vertices, self.triangles)
 
     def project(self, points: Array) -> tuple[Array, Array]:
-        """Return nearest points of the wall and unit normals to its outer side, each (k, 3).
+        """Project points onto the wall.
 
-        Beyond an edge of the wall they belong to the surface that ends there.
+        Beyond an edge of the wall the result belongs to the surface that ends there.
+
+        Parameters
+        ----------
+        points : (k, 3) array
+            Points, mm.
+
+        Returns
+        -------
+        feet : (k, 3) array
+            Nearest points, mm.
+        normals : (k, 3) array
+            Unit normals to the outer side.
         """
         points, normals, _ = self.located(points)
         return points, normals
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
-        """As `project`, with the patch number (k,) of each point."""
+        """Project points onto the wall, as `project`, with their patches.
+
+        Parameters
+        ----------
+        points : (k, 3) array
+            Points, mm.
+
+        Returns
+        -------
+        feet : (k, 3) array
+            Nearest points, mm.
+        normals : (k, 3) array
+            Unit normals to the outer side.
+        patch : (k,) int array
+            Patch number of each point.
+        """
         triangle, share = self._nearest(points)
         patch = self._across_joints(points, triangle)
         feet, normals = np.empty_like(points), np.empty_like(points)

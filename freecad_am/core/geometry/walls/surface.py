@@ -30,13 +30,48 @@ class Surface(Protocol):
         """Period of u where the wall comes back to itself in that direction too, else None; `inverse` knows u up to it."""
 
     def point(self, u: Array, v: Array) -> Array:
-        """Points (..., 3), mm."""
+        """Return points of the wall.
+
+        Parameters
+        ----------
+        u, v : (...) array
+            Parameters.
+
+        Returns
+        -------
+        (..., 3) array
+            mm.
+        """
 
     def derivatives(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
-        """Points and the first derivatives along u and along v, each (..., 3)."""
+        """Return points and first derivatives.
+
+        Parameters
+        ----------
+        u, v : (...) array
+            Parameters.
+
+        Returns
+        -------
+        point : (..., 3) array
+            Points, mm.
+        along, around : (..., 3) array
+            Derivatives along u and v.
+        """
 
     def inverse(self, points: Array) -> tuple[Array, Array]:
-        """(u, v) of the points of the wall nearest to points (n, 3); v within one period from -period / 2 on."""
+        """Return the parameters of the points of the wall nearest to points.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            Points, mm.
+
+        Returns
+        -------
+        u, v : (n,) array
+            Parameters; v within one period from -period / 2 on.
+        """
 
 
 @dataclass(frozen=True)
@@ -132,7 +167,20 @@ def cylinder(radius: float) -> Cone:
 
 
 def normals(surface: Surface, u: Array, v: Array) -> Array:
-    """Unit normals (..., 3), along the cross product of the derivatives along u and v."""
+    """Return unit normals of a wall.
+
+    Parameters
+    ----------
+    surface : Surface
+        The wall.
+    u, v : (...) array
+        Parameters.
+
+    Returns
+    -------
+    (..., 3) array
+        Along the cross product of the derivatives along u and v.
+    """
     _, along, around = surface.derivatives(u, v)
     normal = np.cross(along, around)
     unit: Array = normal / np.linalg.norm(normal, axis=-1, keepdims=True)

@@ -150,7 +150,33 @@ def own_surface(
     table: Array | None = None,
     period: float = 2.0 * np.pi,
 ) -> Surface:
-    """The surface of a kind in its own frame, see `SurfaceWall`."""
+    """Return the surface of a wall in its own frame.
+
+    Parameters
+    ----------
+    kind : str
+        TORUS, CONE or TABLE, see `SurfaceWall`.
+    sizes : tuple of float
+        Sizes of the kind, mm and rad.
+    u : (n,) array or None, optional
+        Parameters of a table.
+    v : (m,) array or None, optional
+        Parameters of a table.
+    table : (n, m, 3) array or None, optional
+        Points of a table, mm.
+    period : float, optional
+        Period of v of a table.
+
+    Returns
+    -------
+    Surface
+        The surface.
+
+    Raises
+    ------
+    ValueError
+        For a TABLE without its arrays.
+    """
     if kind == TORUS:
         return Torus(*sizes)
     if kind == CONE:
