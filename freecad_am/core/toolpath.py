@@ -22,6 +22,7 @@ from .geometry.columns import lengths
 from .geometry.curves.outline import Outline, estimate_outline, outline
 from .geometry.fitted import Fitted, PredictedShape
 from .geometry.obstacles import Body
+from .geometry.section import Coverage, Section
 from .issues import Issue
 from .types import Array, Index
 
@@ -332,14 +333,17 @@ class Layer:
 
     wait: pause of the machine before the layer, s, for the deposit below to cool. first: no layer
     of the feature is below, as at the start of another solid. feature: number of the layer's
-    feature, in a toolpath with several. A layer without room for a bead is empty and keeps its
-    number.
+    feature, in a toolpath with several. section: of the part in its plane, None if not known;
+    coverage: how well the beads fill it, once measured. A layer without room for a bead is empty
+    and keeps its number.
     """
 
     beads: tuple[Bead, ...]
     wait: float = 0.0
     first: bool = False
     feature: int = 0
+    section: Section | None = None
+    coverage: Coverage | None = None
 
 
 @dataclass(frozen=True, eq=False)

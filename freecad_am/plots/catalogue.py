@@ -49,6 +49,11 @@ PICTURES = {
         lacking="none of these layers rests on another",
     ),
     "volumes": Entry("Volume by layer", from_layers=joints.by_layer, lacking=_NO_PLANES),
+    "infill": Entry(
+        "Void and double deposit",
+        from_layers=joints.infill,
+        lacking="only solids in planar layers are measured for void and double deposit",
+    ),
     "section": Entry("Section of the last layer", from_layers=joints.section, lacking=_NO_PLANES),
     "heights": Entry("Predicted heights", from_layers=joints.heights, lacking=_NO_MODEL),
     "spread": Entry(

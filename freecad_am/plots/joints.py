@@ -276,6 +276,7 @@ def _cell(source: Source) -> Cell:
 BINS = 48
 # g/s in kg/h, and mm^3 in cm^3
 KG_PER_HOUR, MM3_PER_CM3 = 3.6, 1000.0
+VOID_COLOUR, DOUBLE_COLOUR = "#d42020", "#2050d0"
 LEAST_PART = 1e-3  # of the largest layer; a share of less means nothing
 
 
@@ -476,6 +477,33 @@ def by_layer(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
             Quantity("share", "%"),
             (Curve("share", x, share, 0, MARKED),),
             marks=((100.0, ""),),
+        ),
+    )
+
+
+def infill(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
+    """Chart void and double deposit of plane layers; empty if none was measured."""
+    measured = [
+        (number, layer.coverage)
+        for number, layer in enumerate(source.toolpath.layers)
+        if layers[0] <= number <= layers[1] and layer.coverage is not None
+    ]
+    if not measured:
+        return ()
+    x = np.array([number for number, _ in measured], dtype=float)
+    void, over = (
+        100.0 * np.array([getattr(coverage, name) for _, coverage in measured])
+        for name in ("void", "over")
+    )
+    curves = (Curve("double deposit", x, over, DOUBLE_COLOUR, MARKED),)
+    if np.isfinite(void).any():
+        curves = (Curve("void", x, void, VOID_COLOUR, MARKED), *curves)
+    return (
+        Chart(
+            "Void and double deposit by layer",
+            Quantity("layer"),
+            Quantity("share of the section", "%"),
+            curves,
         ),
     )
 

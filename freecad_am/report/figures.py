@@ -27,6 +27,7 @@ from ..core.planning.joint_path import JointPath
 from ..core.planning.task import Task
 from ..core.process import model_notes
 from ..core.process.deposit import balance as deposit_balance
+from ..core.process.deposit import infill
 from ..core.process.deposit import spacing as layer_spacing
 from ..core.process.deposit.balance import Balance
 from ..core.simulation import timeline as totals
@@ -123,6 +124,7 @@ def build(
                 strict=True,
             )
         ),
+        "infill": infill.as_dict(toolpath),
         "scan": _scan(toolpath),
         "predicted_shape": _predicted_shape(toolpath),
         "joints": None,

@@ -104,7 +104,7 @@ class Pictures:
         return draw_charts(charts, FULL_WIDTH)
 
     def process(self, features: Sequence[OfFeature]) -> list[str]:
-        """Distances between the layers of each feature, speed along the path, deposit rate and mass."""
+        """Distances between the layers of each feature, void and double deposit, speed along the path, deposit rate and mass."""
         source = self.source
         distances = [
             joints.distances(
@@ -117,7 +117,12 @@ class Pictures:
             if feature.spacing
         ]
         return self._half(
-            (*distances, *joints.travel(source, self.rows), *joints.deposit(source, self.rows))
+            (
+                *distances,
+                *joints.infill(source, self.layers),
+                *joints.travel(source, self.rows),
+                *joints.deposit(source, self.rows),
+            )
         )
 
     def beads(self) -> list[str]:

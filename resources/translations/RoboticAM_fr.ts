@@ -399,6 +399,11 @@
         <translation>Plus grand angle entre la direction d&apos;empilement et une paroi en surplomb, avant un avertissement ; 90 deg : aucun.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Largest share of a plane layer&apos;s section without a bead before there is a warning; 100 %: no warning. (%)</source>
+        <translation>Plus grande part de la section d&apos;une couche plane sans cordon, avant un avertissement ; 100 % : aucun. (%)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>Largest turn of build direction and tool axis along a bead, on walls on an existing part, on hubs and in curved layers; faster turns, as at corners, are spread out, and the deviation is reported. (deg/mm)</source>
         <translation>Plus grande rotation de la direction de dépôt et de l&apos;axe de l&apos;outil le long d&apos;un cordon, sur les parois d&apos;une pièce existante, sur les moyeux et dans les couches courbes ; là où ils tourneraient plus vite, aux angles, ils sont étalés, et leur écart est dit. (deg/mm)</translation>
@@ -2647,6 +2652,11 @@
         <translation>Document (*.pdf)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>Double deposit: {:.2f} % of the section</source>
+        <translation>Double dépôt : {:.2f} % de la section</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Down</source>
         <translation>Descendre</translation>
@@ -2655,6 +2665,11 @@
         <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>Draw beads as lines, or as tubes of their width and layer height</source>
         <translation>Dessiner les cordons en lignes, ou en tubes de leur largeur et hauteur de couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>Draw the section: red without a bead, blue with double deposit, grey otherwise</source>
+        <translation>Dessine la section : en rouge sans cordon, en bleu avec un double dépôt, en gris ailleurs</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/saving.py"/>
@@ -3202,6 +3217,16 @@
         <translation>Polynômes donnés</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>Go to the layer with most double deposit</source>
+        <translation>Va à la couche qui a le plus de double dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>Go to the layer with most void</source>
+        <translation>Va à la couche qui a le plus de vide</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Go to {}</source>
         <translation>Aller à {}</translation>
@@ -3330,6 +3355,11 @@
         <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>Infeasible:</source>
         <translation>Irréalisable :</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>Infill</source>
+        <translation>Remplissage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -3562,6 +3592,11 @@
         <translation>Plus grand angle entre la direction d&apos;empilement et une paroi en surplomb, avant un avertissement ; 90 deg : aucun.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Largest share of a plane layer&apos;s section without a bead before there is a warning; 100 %: no warning.</source>
+        <translation>Plus grande part de la section d&apos;une couche plane sans cordon, avant un avertissement ; 100 % : aucun.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>Largest thickness</source>
         <translation>Plus grande épaisseur</translation>
@@ -3587,7 +3622,7 @@
         <translation>Déposez d&apos;abord les couches à la hauteur qu&apos;elles ont réellement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
         <source>Layer</source>
         <translation>Couche</translation>
     </message>
@@ -4005,6 +4040,11 @@
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>Max turn</source>
         <translation>Rotation max</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Max void</source>
+        <translation>Vide max.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -4520,6 +4560,11 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Output</source>
         <translation>Sortie</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>Outside: {:.2f} % of the section</source>
+        <translation>Dehors : {:.2f} % de la section</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -5442,6 +5487,11 @@
         <translation>Montrer ce travail seul</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>Show voids</source>
+        <translation>Afficher les vides</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>Shown on the map</source>
         <translation>Montré sur la carte</translation>
@@ -5465,6 +5515,11 @@
         <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Shows the path and the tool rotation as a map; the curve can be edited by hand</source>
         <translation>Montre la trajectoire en fonction de la rotation autour de l&apos;outil ; la courbe peut être tracée à la main</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <source>Shows voids and double deposit of any layer of a solid over its section</source>
+        <translation>Affiche les vides et le double dépôt de toute couche d&apos;un solide sur sa section</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -6037,6 +6092,11 @@
         <translation>Le dernier point montré, compté à partir de 0 dans la dernière couche</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>The layer shown, from 0</source>
+        <translation>La couche affichée, à partir de 0</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>The layer shown; -1 for all layers</source>
         <translation>La couche montrée ; -1 pour toutes les couches</translation>
@@ -6252,6 +6312,11 @@
         <translation>La trajectoire d&apos;outil à exécuter.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>The toolpath whose layers are shown</source>
+        <translation>La trajectoire d&apos;outil dont les couches sont affichées</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>The toolpath, joint path or program to export</source>
         <translation>La trajectoire d&apos;outil, la trajectoire articulaire ou le programme à exporter</translation>
@@ -6337,6 +6402,11 @@
         <translation>Il n&apos;y a pas de trajectoire d&apos;outil avec une cellule à placer ; faites-en d&apos;abord une.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>There is no toolpath yet: make one of a solid.</source>
+        <translation>Il n&apos;y a pas encore de trajectoire d&apos;outil : créez-en une pour un solide.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/dock.py"/>
         <source>There is nothing to plot yet: make a toolpath or a joint path.</source>
         <translation>Il n&apos;y a encore rien à tracer : faites une trajectoire d&apos;outil ou articulaire.</translation>
@@ -6370,6 +6440,11 @@
         <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>This is an earlier plan; recompute the document to update it.</source>
         <translation>C&apos;est une planification antérieure ; recalculez le document pour l&apos;actuelle.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>This layer is not measured.</source>
+        <translation>Cette couche n&apos;est pas mesurée.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/program_window.py"/>
@@ -6702,6 +6777,26 @@
         <translation>Axe vertical</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/plots/catalogue.py"/>
+        <source>Void and double deposit</source>
+        <translation>Vides et double dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/plots/joints.py"/>
+        <source>Void and double deposit by layer</source>
+        <translation>Vides et double dépôt par couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>Void: left open on purpose</source>
+        <translation>Vide : laissé exprès</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>Void: {:.2f} % of the section</source>
+        <translation>Vide : {:.2f} % de la section</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>Volume</source>
         <translation>Volume</translation>
@@ -6895,6 +6990,16 @@
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>World up</source>
         <translation>Verticale du monde</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>Worst overlap</source>
+        <translation>Pire double dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>Worst void</source>
+        <translation>Pire vide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/context_menu.py"/>
@@ -7982,6 +8087,11 @@
         <translation>les cordons changent de programme de soudage, et ce contrôleur met les sorties entre les mouvements en avance sur le mouvement, autant qu&apos;on sache ; ne donnez à start et end que d&apos;autres vitesses, ou prenez un autre contrôleur</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/deposit/infill.py"/>
+        <source>beads leave {0} % of the section void, the largest place {1} mm wide at {2}; strategy.max_void allows {3} %; set strategy.widths to adaptive, use fill: contours, narrower beads, or another fill_angle</source>
+        <translation>les cordons laissent {0} % de la section vide, l&apos;endroit le plus large, de {1} mm, en {2} ; strategy.max_void permet {3} % ; mettez strategy.widths à adaptive, prenez fill: contours, des cordons plus étroits ou un autre fill_angle</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
         <source>beads leave {0} gap(s), the widest {1} mm at {2}; strategy.gap allows {3} mm</source>
         <translation>les cordons laissent {0} jour(s) ouverts, le plus large de {1} mm en {2} ; strategy.gap permet {3} mm</translation>
@@ -8510,6 +8620,11 @@
         <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>distance of {0} bead points to the original shape, less the layer shift from a scan</source>
         <translation>distance de {0} endroits des cordons à la forme elle-même, moins ce dont un scan a déplacé leurs couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/plots/joints.py"/>
+        <source>double deposit</source>
+        <translation>double dépôt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/cladding.py"/>
@@ -11142,6 +11257,11 @@
         <translation>un autre programme de soudage à l&apos;intérieur d&apos;un cordon n&apos;est transmis que par une sortie : les appels arrêtent la machine, et que les instructions d&apos;arc ne le fassent pas n&apos;a pas été confirmé ; prenez output, ou omettez les programmes de start et end</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/plots/catalogue.py"/>
+        <source>only solids in planar layers are measured for void and double deposit</source>
+        <translation>les vides et le double dépôt ne se mesurent que sur des solides en couches planes</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>only solids in planar layers have sections and volumes of layers</source>
         <translation>seuls les solides en couches planes ont des sections et des volumes de couche</translation>
@@ -11755,6 +11875,11 @@
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>share of the points</source>
         <translation>part des points</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/plots/joints.py"/>
+        <source>share of the section</source>
+        <translation>part de la section</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -12620,6 +12745,11 @@
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>the kinematics changes while the deposit is on</source>
         <translation>la cinématique change pendant que le dépôt est en marche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>the largest place {:.2g} mm wide at {}</source>
+        <translation>l&apos;endroit le plus large, de {:.2g} mm, en {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
@@ -14190,6 +14320,11 @@
         <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>violet to orange</source>
         <translation>violet à orange</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
+        <source>void</source>
+        <translation>vide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
@@ -17167,6 +17302,11 @@
         <translation>{} n&apos;a pas de trajectoire articulaire à simuler ; faites-en d&apos;abord une, ou sélectionnez un autre travail.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/path/infill_dock.py"/>
+        <source>{} has no measured layers: solids in plane layers have some, once they are computed again.</source>
+        <translation>{} n&apos;a pas de couche mesurée : les solides en couches planes en ont, une fois recalculés.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/tools/whats_this.py"/>
         <source>{} has no result: {}</source>
         <translation>{} n&apos;a pas de résultat : {}</translation>
@@ -17475,6 +17615,19 @@
         <location filename="../../freecad_am/gui/families/revolution.py"/>
         <source>Feature…</source>
         <translation>Élément…</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_Infill</name>
+    <message>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <source>Infill</source>
+        <translation>Remplissage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <source>Shows voids and double deposit of any layer of a solid over its section</source>
+        <translation>Affiche les vides et le double dépôt de toute couche d&apos;un solide sur sa section</translation>
     </message>
 </context>
 <context>

@@ -91,7 +91,7 @@ def test_every_picture_is_seen(person, planned, panel):
                 and "bead model" in dock.canvas.text
                 and not person.field(panel, "save").isEnabled()
             )
-        elif name in ("volumes", "section"):
+        elif name in ("volumes", "section", "infill"):
             assert dock.picture is None and "planar layers" in dock.canvas.text
         else:
             assert dock.picture.title == entry.title and colours(person, dock.canvas) > 200, name

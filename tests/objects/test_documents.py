@@ -36,6 +36,8 @@ ADDED = (
     "features",
     "feature",
     "uneven",
+    "section",
+    "coverage",
     "twice",
     "external",
     "max_from_vertical",

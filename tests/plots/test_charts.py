@@ -200,7 +200,7 @@ def test_every_picture_is_there_or_says_why(dome, modelled):
         assert bool(of_dome.charts) != bool(of_dome.lacking) and bool(of_path.charts) != bool(
             of_path.lacking
         )
-        filled = name in ("volumes", "section")
+        filled = name in ("volumes", "section", "infill")
         assert bool(of_dome.charts) == (name not in ("heights", "spread", "fit") and not filled), (
             name
         )

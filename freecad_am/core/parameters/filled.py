@@ -313,6 +313,12 @@ class FilledParameters(LayerParameters):
         )
 
     @property
+    def is_sparse(self) -> bool:
+        """Whether beads leave a part of the regions open on purpose."""
+        only_contours = not FILLS[self.fill].follows_border and self.rounds == math.inf
+        return self.fill_density < 1.0 and not only_contours
+
+    @property
     def thick(self) -> int:
         """Return how many layers above and below decide which regions count as solid; 0 to fill all
         regions.
@@ -376,6 +382,15 @@ class SolidParameters(FilledParameters):
         "Share of the layer height by which the local height of layers along a guide may differ.",
         low=0.0,
         high=0.9,
+    )
+    max_void: float = f.parameter(
+        0.03,
+        f.RATIO,
+        "Largest share of a plane layer's section without a bead before there is a warning; "
+        "100 %: no warning.",
+        low=0.0,
+        high=1.0,
+        advanced=True,
     )
     fuse: str = f.parameter(
         "auto",

@@ -64,6 +64,11 @@ class Row:
             grid.addWidget(widget, row, column)
         grid.setColumnStretch(2, 1)
 
+    def enable(self, is_enabled: bool) -> None:
+        """Whether it can be moved."""
+        for widget in (self.label, self.back, self.slider, self.on, self.box):
+            widget.setEnabled(is_enabled)
+
     def _slid(self, value: int) -> None:
         if value != self.box.value():
             self.box.setValue(value)  # emits the change
@@ -99,9 +104,9 @@ class PathForm(QtGui.QWidget):
         column, self.controls = QtGui.QVBoxLayout(self), QtGui.QWidget()
         column.setContentsMargins(9, 4, 9, 4)
         column.setSpacing(3)
-        self.choice = _combo("path", tr("The toolpath or joint path to show"))
-        self.colouring = _combo("colouring", tr("Quantity shown by the colours of the beads"))
-        self.look = _combo(
+        self.choice = make_combo("path", tr("The toolpath or joint path to show"))
+        self.colouring = make_combo("colouring", tr("Quantity shown by the colours of the beads"))
+        self.look = make_combo(
             "look", tr("Draw beads as lines, or as tubes of their width and layer height")
         )
         self.directions = QtGui.QCheckBox(tr("Build directions"))
@@ -172,7 +177,7 @@ def offer(combo: Any, names: list[str], current: int, label: Callable[[str], str
     combo.setCurrentIndex(current)
 
 
-def _combo(name: str, help: str) -> Any:
+def make_combo(name: str, help: str) -> Any:
     combo = QtGui.QComboBox()
     combo.setObjectName(name)
     combo.setToolTip(help)

@@ -60,6 +60,7 @@ WORDS = (
     marked("deposit"),
     marked("as the axes can"),
     marked("lowest"),
+    marked("void"),
     marked("mean"),
     marked("highest"),
     marked("drift"),

@@ -14,7 +14,7 @@ GROUPS = (
     ("OpenPart", "NewJob"),
     ("Cell", *(name for window in feature_windows() for name in window.tools())),
     ("Toolpath", "JointPath", "SpinMap", "Placement"),
-    ("Path", "Simulate"),
+    ("Path", "Infill", "Simulate"),
     ("Program", "Plots", "Inspect", "ExportPath"),
     ("NewMachine",),
 )
@@ -78,6 +78,14 @@ TOOLS = {
         marked("Path"),
         marked("Shows a toolpath or joint path layer by layer and point by point"),
         openers.path,
+        whats_this.path,
+        True,
+    ),
+    "Infill": Tool(
+        "infill",
+        marked("Infill"),
+        marked("Shows voids and double deposit of any layer of a solid over its section"),
+        openers.infill,
         whats_this.path,
         True,
     ),

@@ -126,6 +126,13 @@ def path() -> None:
     dock.show()
 
 
+def infill() -> None:
+    """The dock of infill."""
+    from ..path import infill_dock
+
+    infill_dock.show()
+
+
 def simulate() -> None:
     """The dock of a simulation."""
     from ..simulation import tool

@@ -34,6 +34,7 @@ from .toolpaths import (
     bases_of,
     kept_clear,
     layers_of,
+    measure_infill,
     over_edge,
 )
 
@@ -120,7 +121,7 @@ def planned_in_sequence(
         inputs = dataclasses.replace(entry.inputs, stands=stands if cell is not None else None)
         try:
             with progress.one_of(number, len(members), 0.0, STRATEGY):
-                layers = add_wire_speed(layers_of(inputs), inputs)
+                layers = measure_infill(add_wire_speed(layers_of(inputs), inputs), inputs)
         except InputError as error:
             raise InputError(error.code, f"{entry.label}: {error.where}", error.message) from None
         planned_parts.append(layers)

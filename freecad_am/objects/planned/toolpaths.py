@@ -46,7 +46,7 @@ def planned(
         toolpath = kept_clear(
             toolpath, inputs, (*inputs.wall.surroundings, *platforms(inputs.cell, toolpath))
         )
-    toolpath = add_wire_speed(toolpath, inputs)
+    toolpath = measure_infill(add_wire_speed(toolpath, inputs), inputs)
     progress.report(CHECKED, "looking for beads over nothing")
     plates = platforms(inputs.cell, toolpath)
     if toolpath.traits.has_axis:
@@ -138,6 +138,16 @@ def add_wire_speed(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:
     range.
     """
     return check_speeds(set_wire_feed(toolpath, inputs.process, inputs.model), inputs.process)
+
+
+def measure_infill(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:
+    """The toolpath with void and double deposit of plane layers, and issues where beads leave too much void."""
+    max_void = getattr(inputs.strategy, "max_void", None)
+    if max_void is None:
+        return toolpath
+    from ...core.process.deposit import infill  # other families need none of it
+
+    return infill.measure(toolpath, max_void)
 
 
 def bases_of(inputs: Given) -> list[Any]:

@@ -17,6 +17,7 @@ from ...geometry.mesh.collapsed import doubled_areas
 from ...geometry.mesh.solid import SolidMesh
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import SolidsOnHub, solids_beyond
+from ...geometry.section import Section
 from ...issues import WARNING, InputError, Issue, Text
 from ...layers import field
 from ...layers.field import Stack
@@ -35,6 +36,7 @@ from .between_cuts import issues as uncut_issues
 from .between_cuts import uncut
 from .filling import Bare, Pictures, bead_width, over_fed, spaced
 from .notes import notes
+from .sections import add_sections, section_of
 
 FINER = 8.0  # times, where a solid cuts another one
 INWARDS = 1e-3  # of the distance to its middle, by which a corner of a triangle is moved inwards
@@ -273,6 +275,7 @@ def plan(
     bare: list[BareLayer] = []
     covers: list[Cover] = []
     numbers: list[int] = []  # of the layers of the covers
+    sections: list[tuple[Stack, int, Section]] = []
     heights: dict[
         int, list[float]
     ] = {}  # least and largest of each layer in all stacks, where it is not as high everywhere
@@ -292,6 +295,9 @@ def plan(
             if layer.heights is not None:
                 heights.setdefault(layer.number, []).extend(layer.heights[::2])
             numbers.append(layer.number)
+            section = section_of(layer, strategy)
+            if section is not None:
+                sections.append((stack, layer.number, section))
             covers.append(
                 picture.cover.scaled(
                     1.0 if layer.heights is None else layer.heights[1] / strategy.layer_height
@@ -321,6 +327,7 @@ def plan(
         )
     course = order_beads(ranked, strategy.order)
     layers = add_waits(course, strategy.wait, process.rapid_speed, strategy.min_layer_time)
+    layers = add_sections(layers, sections, course)
     missed = uncut(solids, strategy, ranked, width)
     all_issues = [
         *solids.issues,
