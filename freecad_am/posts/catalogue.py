@@ -77,7 +77,22 @@ class Naming:
             return False
 
     def refused(self, name: str, where: str, why: str) -> InputError:
-        """The error for a name that is none, with one that is."""
+        """Build the error for an invalid name, with a valid proposal.
+
+        Parameters
+        ----------
+        name : str
+            The name.
+        where : str
+            Key of the name, for messages.
+        why : str
+            Why it is invalid.
+
+        Returns
+        -------
+        InputError
+            Error PROGRAM_NAME.
+        """
         return InputError(
             "PROGRAM_NAME",
             where,
@@ -195,9 +210,23 @@ class Post(Protocol):
         external: tuple[str, ...] = (),
         carried: tuple[float, ...] | None = None,
     ) -> None:
-        """Raises InputError, with the reason, if the controller does not support a motion in a
-        set-up with external axes of given kinds, as in programs, and with the flange's load
-        `carried`, None if not known yet.
+        """Reject a set-up that the controller does not support.
+
+        Parameters
+        ----------
+        motion : str
+            'joint' or 'cartesian'.
+        setup : str
+            Set-up of the cell, such as 'tool-on-robot'.
+        external : tuple of str, optional
+            Kinds of the external axes, as in programs.
+        carried : tuple[float, ...] or None, optional
+            The flange's load as X Y Z RX RY RZ, mm and rad; None if not known yet.
+
+        Raises
+        ------
+        InputError
+            With the reason.
         """
 
     def refuse_process(self, request: Asked) -> None:
@@ -236,7 +265,22 @@ def reads_nc(post: str, parameter: str) -> bool:
 
 
 def fitting(posts: Iterable[str], motion: str, setup: str) -> tuple[str, ...]:
-    """The posts, by name, that support a motion in a set-up."""
+    """Return the posts that support a motion in a set-up.
+
+    Parameters
+    ----------
+    posts : iterable of str
+        Names of posts.
+    motion : str
+        'joint' or 'cartesian'.
+    setup : str
+        Set-up of the cell.
+
+    Returns
+    -------
+    tuple of str
+        The names that fit.
+    """
     names = []
     for name in posts:
         with contextlib.suppress(InputError):
@@ -278,7 +322,20 @@ class Lines:
         return len(self.line)
 
     def of(self, row: int) -> tuple[str, int]:
-        """File and line of a move."""
+        """Return where a move is in the files.
+
+        Parameters
+        ----------
+        row : int
+            Number of the move.
+
+        Returns
+        -------
+        file : str
+            Name of the file.
+        line : int
+            Number of the line, from 0.
+        """
         return self.files[self.file[row]], int(self.line[row])
 
     def move_at(self, name: str, line: int) -> int | None:

@@ -108,8 +108,21 @@ def refuse_wire_output(program: Program, highest: int) -> None:
 
 
 def refuse_setup(post: str, motion: str, setup: str) -> None:
-    """Raises InputError UNSUPPORTED_SETUP for other machines than ones with rotary axes; both
-    motions are supported.
+    """Reject machines without rotary axes; both motions are supported.
+
+    Parameters
+    ----------
+    post : str
+        Name of the post, for messages.
+    motion : str
+        'joint' or 'cartesian', for messages.
+    setup : str
+        Set-up of the cell.
+
+    Raises
+    ------
+    InputError
+        UNSUPPORTED_SETUP.
     """
     if setup != "rotary-table":
         raise InputError(
@@ -140,7 +153,20 @@ TIME, PATH = "G93", "G94"
 
 
 def controller_values(joints: Array, kinds: Sequence[str]) -> Array:
-    """Joint values (n, axes) in mm and deg, as the text has them."""
+    """Return joint values as the text has them.
+
+    Parameters
+    ----------
+    joints : (n, axes) array
+        Joint values, rad or mm.
+    kinds : sequence of str
+        Kind of each axis, 'linear' or 'rotary'.
+
+    Returns
+    -------
+    (n, axes) array
+        mm and degrees, rounded.
+    """
     factor = np.array([1.0 if kind == LINEAR else math.degrees(1.0) for kind in kinds])
     values: Array = np.round(joints * factor, DECIMALS) + 0.0
     return values
@@ -180,9 +206,25 @@ def wire(program: Program, speeds: Sequence[float]) -> list[str]:
 def insert_wire_statements(
     program: Program, moves: Moves, lines: Sequence[str], statement: str
 ) -> list[str]:
-    """The lines of a run of moves, the last ones one per move, with the statement that sets the
-    analogue output in front of each move at which its value changes. The first value was set before
-    the run.
+    """Insert statements for the wire before the moves at which its value changes.
+
+    The first value was set before the run.
+
+    Parameters
+    ----------
+    program : Program
+        The program, with the gain of the output.
+    moves : Moves
+        The moves of the run.
+    lines : sequence of str
+        Its lines, the last ones one per move.
+    statement : str
+        Template of the statement that sets the analogue output.
+
+    Returns
+    -------
+    list of str
+        The lines with the statements.
     """
     if moves.wire is None:
         return list(lines)

@@ -100,14 +100,44 @@ class Track:
         self.stops[-1:] = [True] * len(self.stops[-1:])
 
     def set_wire(self, output: int, value: str, where: str) -> None:
-        """The analogue output from the next move on. Raises InputError UNREADABLE_PROGRAM for a second one."""
+        """Set the analogue output from the next move on.
+
+        Parameters
+        ----------
+        output : int
+            Number of the output.
+        value : str
+            Its value as in the text.
+        where : str
+            File and line, for messages.
+
+        Raises
+        ------
+        InputError
+            UNREADABLE_PROGRAM for a second output.
+        """
         if self.output not in (0, output):
             raise unreadable(where, "a second analogue output is set")
         self.output, self.wire = output, value
 
     def add(self, sort: str, words: dict[str, str], where: str, stops: bool = False) -> None:
-        """Add a move with words, F among them; `stops` if it ends with a stop. Raises InputError
-        UNREADABLE_PROGRAM.
+        """Add a move.
+
+        Parameters
+        ----------
+        sort : str
+            Kind of the move.
+        words : dict[str, str]
+            Its words by name, F among them.
+        where : str
+            File and line, for messages.
+        stops : bool, optional
+            Whether it ends with a stop.
+
+        Raises
+        ------
+        InputError
+            UNREADABLE_PROGRAM for a move that cannot be understood.
         """
         if float(words.get("F", "0")) <= 0.0:
             raise unreadable(where, "a move without a feed of its own")

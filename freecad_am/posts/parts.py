@@ -45,10 +45,24 @@ def grouped(
     words: Callable[[Moves], Sequence[str]],
     instructions: Callable[[Block], list[str]],
 ) -> Iterator[list[Piece]]:
-    """The blocks as pieces, in groups that belong to one bead each: files are cut between groups,
-    with the deposit off.
+    """Yield the blocks of a program in groups that belong to one bead each.
 
-    words: of the moves of each block, asked for in the order of motion. instructions: the lines of every other block.
+    Files are cut between groups, with the deposit off.
+
+    Parameters
+    ----------
+    program : Program
+        The program.
+    words : callable
+        Returns the words of the moves of a block, which are asked for in the order of
+        motion.
+    instructions : callable
+        Returns the lines of every other block.
+
+    Yields
+    ------
+    list of Piece
+        A group.
     """
     group: list[Piece] = []
     bead: tuple[int, int] | None = None
@@ -85,8 +99,23 @@ def packed(
     most_lines: int,
     cut: Callable[[list[Piece], int, int], Iterator[list[Piece]]],
 ) -> list[list[Piece]]:
-    """The groups in files with limits of points and lines, in order. cut: divides a group that is
-    too large.
+    """Put groups into files with limits of points and lines, in order.
+
+    Parameters
+    ----------
+    groups : Sequence[list[Piece]]
+        The groups.
+    most_points : int
+        Largest number of points in a file.
+    most_lines : int
+        Largest number of lines in a file.
+    cut : callable
+        Divides a group that is too large.
+
+    Returns
+    -------
+    list[list[Piece]]
+        The content of each file.
     """
     everything = [entry for group in groups for entry in group]
     points, lines = size(everything)
@@ -129,7 +158,20 @@ def move_retracts(files: list[list[Piece]]) -> list[list[Piece]]:
 
 
 def size(entries: Sequence[Piece]) -> tuple[int, int]:
-    """How many points the pieces have, and how many lines a file with one line per move takes for them."""
+    """Return the size of pieces in a file.
+
+    Parameters
+    ----------
+    entries : sequence of Piece
+        The pieces.
+
+    Returns
+    -------
+    points : int
+        Their points.
+    lines : int
+        Their lines, with one line per move.
+    """
     return sum(len(entry) for entry in entries if isinstance(entry, Run)), sum(
         len(entry) for entry in entries
     )
@@ -179,14 +221,41 @@ def continued(
 
 
 def keep_whole(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
-    """A bead longer than a file gets its own file, if files may have any length: changing files
-    within a bead would stop the machine while it deposits.
+    """Put a bead that is longer than a file into its own file.
+
+    For files of any length: changing files within a bead would stop the machine while it
+    deposits.
+
+    Parameters
+    ----------
+    group : list of Piece
+        The bead.
+    most_points, most_lines : int
+        Limits of a file; not used.
+
+    Yields
+    ------
+    list of Piece
+        The group itself.
     """
     yield group
 
 
 def unbroken(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
-    """Raises InputError BEAD_TOO_LONG for a bead longer than a file, where files have to be loaded one after the other."""
+    """Reject a bead that is longer than a file, where files have to be loaded one after the other.
+
+    Parameters
+    ----------
+    group : list of Piece
+        The bead.
+    most_points, most_lines : int
+        Limits of a file; not used.
+
+    Raises
+    ------
+    InputError
+        BEAD_TOO_LONG.
+    """
     moves = next(
         entry.moves for entry in group if isinstance(entry, Run) and entry.moves.kind == DEPOSIT
     )
@@ -203,7 +272,20 @@ def unbroken(group: list[Piece], most_points: int, most_lines: int) -> Iterator[
 
 
 def switching(program: Program) -> Iterator[tuple[Moves, DepositOn | DepositOff]]:
-    """The switching blocks of the deposit, in order, with the moves before each."""
+    """Yield the switching blocks of the deposit, in order.
+
+    Parameters
+    ----------
+    program : Program
+        The program.
+
+    Yields
+    ------
+    moves : Moves
+        The moves before the switch.
+    block : DepositOn or DepositOff
+        The switch.
+    """
     moves_before: Moves | None = None
     for block in program.blocks:
         if isinstance(block, Moves):

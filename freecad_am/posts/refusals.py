@@ -66,8 +66,22 @@ def wire_refused(no_wire: str) -> InputError:
 
 
 def refuse_cooling(program: Program, last_input: int, why: str = "") -> None:
-    """Raises InputError where the program waits for a temperature: NO_ANALOGUE_INPUT for the reason
-    `why`, or ANALOGUE_INPUT for an input outside 1 to `last_input`.
+    """Reject waits for a temperature that the controller cannot express.
+
+    Parameters
+    ----------
+    program : Program
+        The program.
+    last_input : int
+        Largest number of an analogue input.
+    why : str, optional
+        Why the controller has none; empty if it has.
+
+    Raises
+    ------
+    InputError
+        NO_ANALOGUE_INPUT for the reason `why`, or ANALOGUE_INPUT for an input outside 1 to
+        `last_input`.
     """
     waits = [block for block in program.blocks if isinstance(block, WaitBelow)]
     if waits and why:
@@ -95,9 +109,25 @@ def refuse_schedules(
     max_arc_schedule: int = 0,
     inside: bool = False,
 ) -> None:
-    """Raises InputError SCHEDULE for a schedule beyond `max_schedule`, or beyond `max_arc_schedule`
-    in arc instructions, or one set on an output outside 1 to `last_output`. inside: the schedule
-    can change within a bead.
+    """Reject schedules that the controller cannot express.
+
+    Parameters
+    ----------
+    program : Program
+        The program.
+    last_output : int
+        Largest number of an output.
+    max_schedule : int
+        Largest number of a schedule.
+    max_arc_schedule : int, optional
+        Largest number in arc instructions; 0 for `max_schedule`.
+    inside : bool, optional
+        Whether the schedule can change within a bead.
+
+    Raises
+    ------
+    InputError
+        SCHEDULE.
     """
     if not inside and any(isinstance(block, Schedule) and block.inside for block in program.blocks):
         raise InputError(
@@ -256,7 +286,22 @@ def _whole_steps(seconds: float, steps: int) -> float:
 
 
 def refuse_incomplete(program: Program, post: str, axes: int) -> None:
-    """Raises InputError NOTHING_TO_WRITE, UNSUPPORTED_AXES (other than `axes` axes) or UNREACHABLE."""
+    """Reject a program without moves, or with the wrong axes.
+
+    Parameters
+    ----------
+    program : Program
+        The program.
+    post : str
+        Name of the post, for messages.
+    axes : int
+        Number of axes that the post writes.
+
+    Raises
+    ------
+    InputError
+        NOTHING_TO_WRITE, UNSUPPORTED_AXES or UNREACHABLE.
+    """
     moves = program.moves
     if not sum(len(run) for run in moves):
         raise InputError("NOTHING_TO_WRITE", "program", "the program has no moves; check its start")
@@ -277,8 +322,23 @@ def refuse_incomplete(program: Program, post: str, axes: int) -> None:
 
 
 def refuse_external(program: Program, last_axis: int, unit: str, form: str) -> None:
-    """Raises InputError UNSUPPORTED_AXES for external axes beyond the controller's `last_axis`, or
-    a positioner's name outside the pattern `unit`, described by `form`.
+    """Reject external axes that the controller cannot address.
+
+    Parameters
+    ----------
+    program : Program
+        The program.
+    last_axis : int
+        Largest number of an external axis.
+    unit : str
+        Pattern of a positioner's name.
+    form : str
+        Description of this pattern, for messages.
+
+    Raises
+    ------
+    InputError
+        UNSUPPORTED_AXES.
     """
     if not program.external_kinds:
         return
@@ -362,8 +422,21 @@ def refuse_without_positions(program: Program, straight: bool = False) -> None:
 def refuse_calls_of_own(
     program: Program, names: set[str], program_name: Callable[[str, str], str]
 ) -> None:
-    """Raises InputError PROGRAM_NAME where a program called between layers has the name of one of
-    its parts.
+    """Reject calls of programs that have the name of a part of the job.
+
+    Parameters
+    ----------
+    program : Program
+        The program.
+    names : set[str]
+        Names of its parts.
+    program_name : callable
+        Returns the controller's name of a program.
+
+    Raises
+    ------
+    InputError
+        PROGRAM_NAME.
     """
     own_names = {
         name.upper() for name in names
@@ -382,8 +455,22 @@ def refuse_calls_of_own(
 
 
 def refuse_names_of_data(program: Program, names: Collection[str], data: Collection[str]) -> None:
-    """Raises InputError PROGRAM_NAME where the files of a program, or one that is called, have the name of `data` of the
-    controller that it uses: it would name two things."""
+    """Reject names of files or called programs that the controller's data already have.
+
+    Parameters
+    ----------
+    program : Program
+        The program.
+    names : iterable of str
+        Names of its files.
+    data : iterable of str
+        Names of data that the program uses.
+
+    Raises
+    ------
+    InputError
+        PROGRAM_NAME.
+    """
     reserved = {name.upper() for name in data}
     called = {block.program: block.where for block in program.blocks if isinstance(block, Call)}
     for name, where in {**called, **dict.fromkeys(sorted(names), "name")}.items():
@@ -397,7 +484,25 @@ def refuse_names_of_data(program: Program, names: Collection[str], data: Collect
 
 
 def speeds_within(moves: Moves, min_speed: float, max_speed: float) -> Array:
-    """(n,) mm/s of the moves. Raises InputError MOVE_SPEED for one that is not between the two."""
+    """Return the speeds of moves, if the controller supports them.
+
+    Parameters
+    ----------
+    moves : Moves
+        The n moves.
+    min_speed, max_speed : float
+        Range of speeds, mm/s.
+
+    Returns
+    -------
+    (n,) array
+        mm/s.
+
+    Raises
+    ------
+    InputError
+        MOVE_SPEED for a speed outside the range.
+    """
     fits = (moves.speed >= min_speed) & (moves.speed <= max_speed)
     if not fits.all():
         raise InputError(

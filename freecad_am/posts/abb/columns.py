@@ -92,7 +92,20 @@ class Run:
     def happens(
         self, kind: str, *value: float | str, digits: float = 0.0, before: float | None = None
     ) -> None:
-        """Add an event before the next move, or at a distance `before` the end of the last one."""
+        """Add an event before the next move, or ahead of the end of the last one.
+
+        Parameters
+        ----------
+        kind : str
+            Kind of the event.
+        *value : float or str
+            Its values.
+        digits : float, optional
+            Half of the last digit of a number.
+        before : float or None, optional
+            Distance before the end of the last move, mm; None for an event before the
+            next move.
+        """
         self.events.append(Event(len(self.time_or_speed), kind, value, digits, before=before))
 
     def keep_switch(
@@ -104,14 +117,51 @@ class Run:
         digits: float = 0.0,
         before: float | None = None,
     ) -> None:
-        """The deposit is switched by an output, or by a seam of the arc where it is ARC."""
+        """Record that the deposit is switched by an output or by the arc.
+
+        Parameters
+        ----------
+        output : str
+            Number of the output.
+        on : bool
+            Whether it is switched on.
+        word : str
+            Instruction that switches it; ARC for the arc.
+        where : str
+            File and line, for messages.
+        digits : float, optional
+            Half of the last digit of `before`.
+        before : float or None, optional
+            Distance before the end of the last move, mm; None for a switch before the
+            next move.
+
+        Raises
+        ------
+        InputError
+            UNREADABLE_PROGRAM for a second output.
+        """
         if self.output not in ("", output if word != ARC else ARC):
             raise unreadable(where, "a second output is switched")
         self.output, self.on, self.fed = ARC if word == ARC else output, on, False
         self.happens("on" if on else "off", float(output), word, digits=digits, before=before)
 
     def keep_move(self, module: Module, move: Move, where: str) -> None:
-        """Keep a move."""
+        """Record a move.
+
+        Parameters
+        ----------
+        module : Module
+            The module, with its zones.
+        move : Move
+            The move as in its line.
+        where : str
+            File and line, for messages.
+
+        Raises
+        ------
+        InputError
+            UNREADABLE_PROGRAM for a move that cannot be understood.
+        """
         if move.linear and not self.nearest:
             raise unreadable(
                 where, "the configurations that its positions name are supervised, and are none"

@@ -74,7 +74,25 @@ class Module:
     _paired: dict[tuple[str, str], Frames] = field(default_factory=dict)
 
     def tool_and_object(self, tool: str, work_object: str, where: str) -> Frames:
-        """The frames of a tool and a work object; the robot carries one."""
+        """Return the frames of a tool and a work object.
+
+        Parameters
+        ----------
+        tool, work_object : str
+            Their names.
+        where : str
+            File and line, for messages.
+
+        Returns
+        -------
+        Frames
+            The frames; the robot carries one.
+
+        Raises
+        ------
+        InputError
+            UNREADABLE_PROGRAM for unknown names, or if the robot carries both or none.
+        """
         if (tool, work_object) not in self._paired:
             if tool not in self.tools or work_object not in self.objects:
                 raise unreadable(
@@ -214,7 +232,18 @@ def _pose(value: Any) -> Array:
 
 
 def rotation_of_quaternions(quaternion: Array) -> Array:
-    """(n, 3, 3) rotations of unit quaternions w x y z (n, 4)."""
+    """Return the rotations of unit quaternions.
+
+    Parameters
+    ----------
+    quaternion : (n, 4) array
+        w x y z.
+
+    Returns
+    -------
+    (n, 3, 3) array
+        Rotations.
+    """
     w, v = quaternion[:, 0], quaternion[:, 1:]
     across = np.zeros((len(v), 3, 3))
     across[:, 0, 1], across[:, 0, 2], across[:, 1, 2] = -v[:, 2], v[:, 1], -v[:, 0]
@@ -277,8 +306,26 @@ class ProcessData:
     triggers: dict[str, Switch | Feed] = field(default_factory=dict)
 
     def understood(self, line: str, module: Module, where: str) -> bool:
-        """Keep the process data of a line; return whether it had any. Raises InputError
-        UNREADABLE_PROGRAM.
+        """Read the process data of a line.
+
+        Parameters
+        ----------
+        line : str
+            The line.
+        module : Module
+            Its module.
+        where : str
+            File and line, for messages.
+
+        Returns
+        -------
+        bool
+            Whether the line has any.
+
+        Raises
+        ------
+        InputError
+            UNREADABLE_PROGRAM for wrong data.
         """
         if taken_weld := _TAKEN.match(line):
             if taken_weld[1] not in module.welds or taken_weld[1] in self.welds:

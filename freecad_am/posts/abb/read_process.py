@@ -76,7 +76,29 @@ _EXTRA_TRIGGER = re.compile(r"\\T(\d):=(\w+)")
 
 
 def process_move(line: str, module: Module, run: Run, where: str) -> bool:
-    """Whether the line is such a move, which then is carried out. Raises InputError UNREADABLE_PROGRAM."""
+    """Carry out a move with process data.
+
+    Parameters
+    ----------
+    line : str
+        The line.
+    module : Module
+        Its module.
+    run : Run
+        The state, which is updated.
+    where : str
+        File and line, for messages.
+
+    Returns
+    -------
+    bool
+        Whether the line is such a move.
+
+    Raises
+    ------
+    InputError
+        UNREADABLE_PROGRAM for a move that cannot be understood.
+    """
     if arc := _ARC.match(line):
         _arc_move(arc, module, run, where)
     elif trigg := _TRIGG_J.match(line):

@@ -39,21 +39,55 @@ class Pose(NamedTuple):
 
 
 def controller_values(joints: Array, slides: Mask) -> Array:
-    """Joint values (n, axes) as in the text: degrees, mm for prismatic axes `slides` (axes,)."""
+    """Return joint values as the text has them.
+
+    Parameters
+    ----------
+    joints : (n, axes) array
+        Joint values, rad or mm.
+    slides : (axes,) bool array
+        Prismatic axes.
+
+    Returns
+    -------
+    (n, axes) array
+        Degrees, mm for prismatic axes, rounded.
+    """
     values = np.where(slides, joints, np.degrees(joints))
     rounded: Array = np.asarray(np.round(values, ANGLE_DECIMALS) + 0.0, dtype=np.float64)
     return rounded
 
 
 def positions(position: Array) -> Array:
-    """Positions (n, 3) as the text has them."""
+    """Return positions as the text has them.
+
+    Parameters
+    ----------
+    position : (n, 3) array
+        mm.
+
+    Returns
+    -------
+    (n, 3) array
+        mm, rounded.
+    """
     rounded: Array = np.asarray(np.round(position, LENGTH_DECIMALS) + 0.0, dtype=np.float64)
     return rounded
 
 
 def quaternions(rotation: Array) -> Array:
-    """(n, 4) w x y z of rotations (n, 3, 3), as in the text: of the two equivalent quaternions the
-    one whose first nonzero number is positive.
+    """Return rotations as the text has them.
+
+    Parameters
+    ----------
+    rotation : (n, 3, 3) array
+        Rotations.
+
+    Returns
+    -------
+    (n, 4) array
+        w x y z, rounded; of the two equivalent quaternions the one whose first nonzero
+        number is positive.
     """
     numbers = np.round(QUATERNION.numbers(rotation), TURN_DECIMALS)
     leading = numbers[np.arange(len(numbers)), np.argmax(numbers != 0.0, axis=1)]
@@ -143,8 +177,25 @@ _POSITION = f"    %s [{_POSE},[0,0,0,0],<axes>],%s,{TOOL}\\WObj:={WORK_OBJECT};"
 def module(
     name: str, routine: str, remarks: Iterable[str], data: Iterable[str], lines: Iterable[str]
 ) -> bytes:
-    """One file: a module with one routine. remarks: its description; data, lines: unchanged, the
-    lines indented.
+    """Return a file: a module with one routine.
+
+    Parameters
+    ----------
+    name : str
+        Name of the module.
+    routine : str
+        Name of its routine.
+    remarks : iterable of str
+        Its description.
+    data : iterable of str
+        Declarations.
+    lines : iterable of str
+        Lines of the routine, indented already.
+
+    Returns
+    -------
+    bytes
+        The content of the file.
     """
     text = [
         f"MODULE {name}",
@@ -165,9 +216,23 @@ def data(
     zones: Sequence[tuple[str, float]],
     unit: str = "",
 ) -> list[str]:
-    """Declarations of tool, work object, speed and zones. part_held: the robot carries the work
-    object, and the tool is fixed. unit: the mechanical unit that carries the work object, '' for a
-    fixed one.
+    """Return the declarations of tool, work object, speed and zones.
+
+    Parameters
+    ----------
+    tool, work_object : Pose
+        Their frames.
+    part_held : bool
+        Whether the robot carries the work object, and the tool is fixed.
+    zones : Sequence[tuple[str, float]]
+        Names and sizes of the zones, mm.
+    unit : str, optional
+        The mechanical unit that carries the work object, '' for a fixed one.
+
+    Returns
+    -------
+    list of str
+        The lines.
     """
     tool_held, object_held = ("FALSE", "TRUE") if part_held else ("TRUE", "FALSE")
     tool_pose, object_pose = (
@@ -199,8 +264,21 @@ def _zone(size: float) -> str:
 
 
 def joint_moves(degrees: Array, words: Sequence[str], first_external: int = 1) -> list[str]:
-    """Joint moves to values (n, 6 + external axes), rounded already. words: speed and zone of each.
-    first_external: the number of the first external axis, from 1.
+    """Return joint moves.
+
+    Parameters
+    ----------
+    degrees : (n, 6 + k) array
+        Values of the robot and k external axes, rounded.
+    words : sequence of str
+        Speed and zone of each move.
+    first_external : int, optional
+        Number of the first external axis, from 1.
+
+    Returns
+    -------
+    list of str
+        One line per move.
     """
     line = _JOINTS.replace("<axes>", _axes(degrees.shape[1] - 6, first_external))
     return _move_lines(line, "MoveAbsJ", degrees, words)
@@ -213,7 +291,26 @@ def linear_moves(
     words: Sequence[str],
     first_external: int = 1,
 ) -> list[str]:
-    """Moves straight in space to positions (n, 3), quaternions (n, 4) and external axes (n, k), rounded already."""
+    """Return moves that are straight in space.
+
+    Parameters
+    ----------
+    position : (n, 3) array
+        Positions, mm, rounded.
+    quaternion : (n, 4) array
+        Orientations w x y z, rounded.
+    external : (n, k) array
+        Values of external axes, rounded.
+    words : sequence of str
+        Speed and zone of each move.
+    first_external : int, optional
+        Number of the first external axis, from 1.
+
+    Returns
+    -------
+    list of str
+        One line per move.
+    """
     line = _POSITION.replace("<axes>", _axes(external.shape[1], first_external))
     return _move_lines(line, "MoveL", np.hstack((position, quaternion, external)), words)
 

@@ -67,9 +67,25 @@ _POSE_RECORD = (
 def listing(
     name: str, comment: str, instructions: Sequence[str], records: str, group: int = 1
 ) -> bytes:
-    """One whole file. instructions: the text after the colon of each line, with its semicolon;
-    records: the text of joint_records or pose_records, or ''. group: the motion group that moves
-    together with the first one.
+    """Return a complete file.
+
+    Parameters
+    ----------
+    name : str
+        Name of the program.
+    comment : str
+        Its comment.
+    instructions : sequence of str
+        Text after the colon of each line, with its semicolon.
+    records : str
+        Text of joint_records or pose_records, or ''.
+    group : int, optional
+        The motion group that moves together with the first one.
+
+    Returns
+    -------
+    bytes
+        The content of the file.
     """
     groups = ",".join("1" if number in (1, group) else "*" for number in range(1, GROUPS + 1))
     comment = plain(comment)[:COMMENT_WIDTH]
@@ -121,8 +137,25 @@ def weave(number: int) -> str:
 def joint_records(
     degrees: Array, track: Array, external: Array, user_frame: int, tool_frame: int, group: int = 1
 ) -> str:
-    """Records P[1], P[2] and on, with joint values (n, 6), of the track (n, 0 or 1) and of another
-    group (n, k), degrees and mm already rounded to 3 decimals.
+    """Return position records with joint values.
+
+    Parameters
+    ----------
+    degrees : (n, 6) array
+        Values of the robot, degrees, rounded to 3 decimals.
+    track : (n, 0) or (n, 1) array
+        Values of the track, mm, rounded.
+    external : (n, k) array
+        Values of another group, degrees, rounded.
+    user_frame, tool_frame : int
+        Numbers of the frames.
+    group : int, optional
+        Number of the other group.
+
+    Returns
+    -------
+    str
+        Records P[1], P[2] and on.
     """
     values = ",".join(f"\tJ{axis}=%s deg" for axis in range(1, external.shape[1] + 1))
     second_group = f"   GP{group}:\r\n\t<frame>\t\r\n{values}\r\n}};" if values else "};"
@@ -134,8 +167,21 @@ def joint_records(
 def pose_records(
     pose: Array, configuration: Sequence[str], user_frame: int, tool_frame: int
 ) -> str:
-    """Records P[1], P[2] and on, with positions (n, 6) X Y Z mm, W P R deg, already rounded to 3
-    decimals, with their CONFIG.
+    """Return position records with poses.
+
+    Parameters
+    ----------
+    pose : (n, 6) array
+        X Y Z mm, W P R degrees, rounded to 3 decimals.
+    configuration : sequence of str
+        CONFIG of each position.
+    user_frame, tool_frame : int
+        Numbers of the frames.
+
+    Returns
+    -------
+    str
+        Records P[1], P[2] and on.
     """
     return _records(_POSE_RECORD, user_frame, tool_frame, [configuration], pose)
 
@@ -153,9 +199,23 @@ def _records(
 
 
 def right_aligned(value: float, decimals: int, width: int) -> str:
-    """A number as the controller lists it, in a field of `width` or more characters.
+    """Format a number as the controller lists it.
 
     No 0 before the point, except for 0 itself: .250, -.250, 0.000. -0.0 keeps its sign: -.000.
+
+    Parameters
+    ----------
+    value : float
+        The number.
+    decimals : int
+        Number of decimals.
+    width : int
+        Smallest number of characters.
+
+    Returns
+    -------
+    str
+        The text.
     """
     text = f"{value:.{decimals}f}"
     if float(text) != 0.0 or text.startswith("-"):

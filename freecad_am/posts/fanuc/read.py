@@ -197,7 +197,20 @@ class Run:
     def happens(
         self, kind: str, *value: float | str, digits: float = 0.0, ahead: float | None = None
     ) -> None:
-        """Something happens before the next move, or ahead of the end of the last one."""
+        """Add an event before the next move, or ahead of the end of the last one.
+
+        Parameters
+        ----------
+        kind : str
+            Kind of the event.
+        *value : float or str
+            Its values.
+        digits : float, optional
+            Half of the last digit of a number.
+        ahead : float or None, optional
+            Time before the end of the last move, s; None for an event before the next
+            move.
+        """
         self.events.append(Event(len(self.duration), kind, value, digits, ahead))
 
     def begin(self, listing: Listing) -> None:

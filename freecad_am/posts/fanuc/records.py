@@ -74,13 +74,37 @@ def time_words(moves: Moves) -> list[str]:
 
 
 def within_half_turn(degrees: Array) -> Array:
-    """The same angles in (-180, 180], to 3 decimals."""
+    """Bring angles into the range that records use.
+
+    Parameters
+    ----------
+    degrees : (...) array
+        Angles in degrees.
+
+    Returns
+    -------
+    (...) array
+        In (-180, 180], to 3 decimals.
+    """
     wrapped: Array = np.round(degrees - 360.0 * np.ceil((degrees - 180.0) / 360.0), 3)
     return wrapped
 
 
 def poses(position: Array, rotation: Array) -> Array:
-    """X Y Z in mm and W P R in degrees, 3 decimals, (n, 6). The rotation (n, 3, 3) is Rz(R) Ry(P) Rx(W)."""
+    """Return poses as records have them; the rotation is Rz(R) Ry(P) Rx(W).
+
+    Parameters
+    ----------
+    position : (n, 3) array
+        mm.
+    rotation : (n, 3, 3) array
+        Rotations.
+
+    Returns
+    -------
+    (n, 6) array
+        X Y Z in mm and W P R in degrees, 3 decimals.
+    """
     angles = within_half_turn(np.round(np.degrees(FIXED_XYZ.numbers(rotation)), 3))
     return np.hstack((np.round(position, 3), angles)) + 0.0
 
@@ -175,9 +199,28 @@ class Records(NamedTuple):
 
 
 def records_of(file: str, lines: list[str], text: str, positions: int) -> Records:
-    """The positions, by number, in the text after the first lines of a file; the line that begins
-    them is numbered from 0. Raises InputError UNREADABLE_PROGRAM for text that is not understood, or
-    positions recorded twice.
+    """Return the positions of a file.
+
+    Parameters
+    ----------
+    file : str
+        Name of the file, for messages.
+    lines : list of str
+        Lines of its header and instructions.
+    text : str
+        Text of the positions.
+    positions : int
+        Number of the line that begins them, from 0.
+
+    Returns
+    -------
+    Records
+        The positions in the order of their numbers.
+
+    Raises
+    ------
+    InputError
+        UNREADABLE_PROGRAM for text that is not understood, or positions recorded twice.
     """
     # counting is many times as fast as checking every line
     several = text.count("GP") > text.count("GP1:") and re.search(

@@ -131,7 +131,20 @@ class Run:
     def happens(
         self, kind: str, *value: float | str, digits: float = 0.0, ahead: float | None = None
     ) -> None:
-        """Add an event before the next move, or `ahead` s before the end of the last one."""
+        """Add an event before the next move, or ahead of the end of the last one.
+
+        Parameters
+        ----------
+        kind : str
+            Kind of the event.
+        *value : float or str
+            Its values.
+        digits : float, optional
+            Half of the last digit of a number.
+        ahead : float or None, optional
+            Time before the end of the last move, s; None for an event before the next
+            move.
+        """
         self.events.append(Event(len(self.speed), kind, value, digits, ahead))
 
     def note_digits(self, what: str, texts: tuple[str, ...]) -> None:

@@ -194,14 +194,40 @@ def wait(seconds: float) -> list[str]:
 
 
 def controller_values(joints: Array, slides: Mask) -> Array:
-    """Axis values (n, axes) as in the text: degrees, mm for prismatic axes `slides` (axes,)."""
+    """Return axis values as the text has them.
+
+    Parameters
+    ----------
+    joints : (n, axes) array
+        Joint values, rad or mm.
+    slides : (axes,) bool array
+        Prismatic axes.
+
+    Returns
+    -------
+    (n, axes) array
+        Degrees, mm for prismatic axes, rounded.
+    """
     values = np.where(slides, joints, np.degrees(joints))
     rounded: Array = np.asarray(np.round(values, ANGLE_DECIMALS) + 0.0, dtype=np.float64)
     return rounded
 
 
 def frames(position: Array, rotation: Array) -> Array:
-    """X Y Z in mm and A B C in degrees, (n, 6), of positions (n, 3) and rotations (n, 3, 3) = Rz(A) Ry(B) Rx(C)."""
+    """Return poses as the text has them; the rotation is Rz(A) Ry(B) Rx(C).
+
+    Parameters
+    ----------
+    position : (n, 3) array
+        mm.
+    rotation : (n, 3, 3) array
+        Rotations.
+
+    Returns
+    -------
+    (n, 6) array
+        X Y Z in mm and A B C in degrees, rounded.
+    """
     angles = np.round(np.degrees(MOVING_ZYX.numbers(rotation)), ANGLE_DECIMALS)
     values: Array = np.hstack((np.round(position, LENGTH_DECIMALS), angles)) + 0.0
     return values

@@ -129,8 +129,28 @@ def _data(file: str, files: dict[str, bytes]) -> dict[str, Data]:
 
 
 def numbers(data: Data, names: Sequence[str], where: str) -> tuple[Array, float]:
-    """The attributes `names` of the values, (n, names), absent ones 0, and half of the last digit
-    written.
+    """Return attributes of values as numbers.
+
+    Parameters
+    ----------
+    data : Data
+        The values.
+    names : sequence of str
+        Names of the attributes; absent ones are 0.
+    where : str
+        Position of the data, for messages.
+
+    Returns
+    -------
+    values : (n, names) array
+        The numbers.
+    digits : float
+        Half of the last digit written.
+
+    Raises
+    ------
+    InputError
+        UNREADABLE_PROGRAM for a value that is not a plain number.
     """
     texts = [value.get(name, "0") for value in data.values for name in names]
     together = " ".join(texts) + " "
@@ -141,7 +161,18 @@ def numbers(data: Data, names: Sequence[str], where: str) -> tuple[Array, float]
 
 
 def rotations(degrees: Array) -> Array:
-    """(n, 3, 3) rotations Rx Ry Rz of RX, RY, RZ (n, 3) in degrees."""
+    """Return the rotations Rx Ry Rz.
+
+    Parameters
+    ----------
+    degrees : (n, 3) array
+        RX, RY, RZ in degrees.
+
+    Returns
+    -------
+    (n, 3, 3) array
+        Rotations.
+    """
     cx, cy, cz = np.cos(np.radians(degrees)).T
     sx, sy, sz = np.sin(np.radians(degrees)).T
     rows = (
@@ -153,7 +184,18 @@ def rotations(degrees: Array) -> Array:
 
 
 def poses(values: Array) -> Array:
-    """(n, 4, 4) of x y z rx ry rz (n, 6), mm and degrees."""
+    """Return poses of six numbers each.
+
+    Parameters
+    ----------
+    values : (n, 6) array
+        x y z in mm, rx ry rz in degrees.
+
+    Returns
+    -------
+    (n, 4, 4) array
+        Poses, mm.
+    """
     result = np.zeros((len(values), 4, 4))
     result[:, :3, :3], result[:, :3, 3], result[:, 3, 3] = (
         rotations(values[:, 3:]),

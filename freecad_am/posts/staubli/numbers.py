@@ -22,7 +22,18 @@ SLOWEST, LEAST_PERCENT = 0.01, 0.001
 
 
 def degrees(joints: Array) -> Array:
-    """Joint values (n, axes) in degrees as the text has them."""
+    """Return joint values as the text has them.
+
+    Parameters
+    ----------
+    joints : (n, axes) array
+        rad.
+
+    Returns
+    -------
+    (n, axes) array
+        Degrees, rounded.
+    """
     rounded: Array = np.asarray(
         np.round(np.degrees(joints), ANGLE_DECIMALS) + 0.0, dtype=np.float64
     )
@@ -30,7 +41,20 @@ def degrees(joints: Array) -> Array:
 
 
 def frames(position: Array, rotation: Array) -> Array:
-    """X Y Z in mm and RX RY RZ in degrees, (n, 6), of positions (n, 3) and rotations (n, 3, 3) = Rx Ry Rz."""
+    """Return poses as the text has them; the rotation is Rx Ry Rz.
+
+    Parameters
+    ----------
+    position : (n, 3) array
+        mm.
+    rotation : (n, 3, 3) array
+        Rotations.
+
+    Returns
+    -------
+    (n, 6) array
+        X Y Z in mm and RX RY RZ in degrees, rounded.
+    """
     angles = MOVING_XYZ.numbers(rotation)
     values: Array = (
         np.hstack(

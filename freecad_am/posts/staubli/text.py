@@ -52,7 +52,22 @@ _FRAME = " ".join(
 
 
 def project(name: str, programs: Sequence[str], libraries: dict[str, str]) -> bytes:
-    """The project of an application. programs: their names; libraries: path of each alias."""
+    """Return the project of an application.
+
+    Parameters
+    ----------
+    name : str
+        Name of the application.
+    programs : sequence of str
+        Names of its programs.
+    libraries : dict[str, str]
+        Path of each library by alias.
+
+    Returns
+    -------
+    bytes
+        The content of the file.
+    """
     files = "".join(f'    <Program file="{program}.pgx" />\n' for program in programs)
     library_files = "".join(
         f'    <Library alias="{alias}" path="{path}" />\n' for alias, path in libraries.items()

@@ -163,8 +163,20 @@ def _speeds(moves: Moves) -> Array:
 
 
 def poses(position: Array, rotation: Array) -> Array:
-    """Return positions in m and rotation vectors in rad (n, 6), rounded as in the program, from
-    positions (n, 3) mm and rotations (n, 3, 3)."""
+    """Return poses as the program has them.
+
+    Parameters
+    ----------
+    position : (n, 3) array
+        mm.
+    rotation : (n, 3, 3) array
+        Rotations.
+
+    Returns
+    -------
+    (n, 6) array
+        Positions in m and rotation vectors in rad, rounded.
+    """
     values: Array = (
         np.round(np.hstack([0.001 * position, ROTATION_VECTOR.numbers(rotation)]), DECIMALS) + 0.0
     )

@@ -66,7 +66,24 @@ def pulses(program: Program, joints: Array) -> Integers:
 
 
 def job(program: Program, name: str, head: Sequence[str], entries: Sequence[Piece]) -> bytes:
-    """A whole file. head: lines before the first instruction."""
+    """Return a complete file.
+
+    Parameters
+    ----------
+    program : Program
+        The program.
+    name : str
+        Name of the job.
+    head : sequence of str
+        Lines before the first instruction.
+    entries : sequence of Piece
+        Moves and instructions in order.
+
+    Returns
+    -------
+    bytes
+        The content of the file.
+    """
     runs = [entry for entry in entries if isinstance(entry, Run)]
     texts = [pulses(program, run.moves.joints[run.start : run.stop]) for run in runs]
     rows = np.concatenate(texts) if texts else np.zeros((0, len(program.slides)), dtype=np.int64)
