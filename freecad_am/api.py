@@ -137,11 +137,34 @@ def make_cell(
 ) -> Any:
     """Make a cell: machine, setup, platform and nozzle.
 
-    `am.make_cell(doc, machine="kuka-kr16-2", nozzle_length=80)`
-
     A robot other than the default one gets a suitable deposition point and branch, as a new job
-    does, unless they are given. external="urdf" uses the robot of the machine's URDF with its track
-    and positioner.
+    does, unless they are given.
+
+    Parameters
+    ----------
+    doc : App.Document
+        The document.
+    label : str, optional
+        Label of the cell.
+    parameters : CellParameters or None, optional
+        All parameters of the cell; None for the defaults.
+    **values : Any
+        Single parameters by key. external="urdf" uses the robot of the machine's URDF with
+        its track and positioner.
+
+    Returns
+    -------
+    App.DocumentObject
+        The cell.
+
+    Raises
+    ------
+    InputError
+        For wrong values.
+
+    Examples
+    --------
+    >>> am.make_cell(doc, machine="kuka-kr16-2", nozzle_length=80)
     """
     if values.get("external") == urdf_machine.WHOLE_CELL:
         values["machine"], values["external"] = urdf_cell.cell_values_of_machine(
@@ -168,13 +191,46 @@ def make_toolpath(
     fitting: ScanParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Make the layers and beads of a feature; the cell gives the nozzle to keep clear.
-    `am.make_toolpath(doc, doc.Feature)`
+    """Make the layers and beads of a feature.
 
-    further: features to print after it in the same program, `sequence="feature"` in this order or
-    `sequence="height"` with the lowest layer first. processes: the process of each feature, for the
-    settings that differ. `feature` may also be a list with all features. scan: from `make_scan`,
-    the surface that the first layers are fitted to.
+    Parameters
+    ----------
+    doc : App.Document
+        The document.
+    feature : App.DocumentObject or list
+        The feature, or all features.
+    cell : App.DocumentObject, optional
+        The cell; its nozzle is kept clear.
+    label : str, optional
+        Label of the toolpath.
+    further : sequence of Any, optional
+        Features to print after it in the same program.
+    sequence : str, optional
+        "feature" for their order, "height" for the lowest layer first.
+    processes : sequence of ProcessParameters, optional
+        Process of each feature, for the settings that differ.
+    scan : App.DocumentObject, optional
+        From `make_scan`: the surface that the first layers are fitted to.
+    process : ProcessParameters or None, optional
+        All parameters of the process; None for the defaults.
+    fitting : ScanParameters or None, optional
+        How layers are fitted to the scan; None for the defaults.
+    **values : Any
+        Single parameters by key.
+
+    Returns
+    -------
+    App.DocumentObject
+        The toolpath.
+
+    Raises
+    ------
+    InputError
+        For wrong values.
+
+    Examples
+    --------
+    >>> am.make_toolpath(doc, doc.Feature)
     """
     if "bead_width" in values:  # it is meant, even where it is the default
         values.setdefault("fill_width", "bead_width")
@@ -204,9 +260,37 @@ def make_joint_path(
     joints: JointParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Joint values of a toolpath in a cell. `am.make_joint_path(doc, doc.Toolpath, doc.Cell, method="constant")`
+    """Plan the joint values of a toolpath in a cell.
 
-    A sound job that cannot be carried out makes an object with the status 'infeasible' and its issues.
+    Parameters
+    ----------
+    doc : App.Document
+        The document.
+    toolpath : App.DocumentObject
+        The toolpath.
+    cell : App.DocumentObject
+        The cell.
+    label : str, optional
+        Label of the joint path.
+    joints : JointParameters or None, optional
+        All parameters of the plan; None for the defaults.
+    **values : Any
+        Single parameters by key.
+
+    Returns
+    -------
+    App.DocumentObject
+        The joint path. A sound job that cannot be carried out has the status 'infeasible'
+        and its issues.
+
+    Raises
+    ------
+    InputError
+        For wrong values.
+
+    Examples
+    --------
+    >>> am.make_joint_path(doc, doc.Toolpath, doc.Cell, method="constant")
     """
     return make_stage(
         doc, JointPath, "JointPath", label, {"Toolpath": toolpath, "Cell": cell}, [joints], values
@@ -222,9 +306,37 @@ def make_program(
     program: ProgramParameters | None = None,
     **values: Any,
 ) -> Any:
-    """The controller's files of a joint path, read back and checked: `am.make_program(doc, joint_path)`
+    """Write the controller's files of a joint path, read back and checked.
 
-    Without `motion` the program has the motion that its post writes: joint where it writes both.
+    Parameters
+    ----------
+    doc : App.Document
+        The document.
+    joint_path : App.DocumentObject
+        The joint path.
+    label : str, optional
+        Label of the program.
+    name : str, optional
+        Name on the controller; empty for the label.
+    program : ProgramParameters or None, optional
+        All parameters of the program; None for the defaults.
+    **values : Any
+        Single parameters by key. Without `motion` the program has the motion that its post
+        writes: joint where it writes both.
+
+    Returns
+    -------
+    App.DocumentObject
+        The program.
+
+    Raises
+    ------
+    InputError
+        For wrong values.
+
+    Examples
+    --------
+    >>> am.make_program(doc, joint_path)
     """
     if program is None and "motion" not in values:
         values = {**values, **usual_motion(joint_path, values.get("post"))}
@@ -241,12 +353,39 @@ def inspect(
     inspection: InspectionParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Compare measured points (CSV, TXT, XYZ, ASC; vertices of STL, OBJ, PLY) with a nominal shape.
+    """Compare measured points with a nominal shape.
 
-    `planned` is a feature, a toolpath, or an object with a shape or mesh. The points are registered
-    to it; the result has deviations, sphericity and circularity.
+    Parameters
+    ----------
+    doc : App.Document
+        The document.
+    planned : App.DocumentObject
+        A feature, a toolpath, or an object with a shape or mesh; the points are registered
+        to it.
+    file : str
+        Points in CSV, TXT, XYZ or ASC, or vertices of STL, OBJ or PLY.
+    label : str, optional
+        Label of the inspection.
+    inspection : InspectionParameters or None, optional
+        All parameters of the inspection; None for the defaults.
+    **values : Any
+        Single parameters by key.
 
-    `am.inspect(doc, doc.Feature, "cmm.csv", probe_radius=1.5, tolerance=0.3, heights="15 25 35")`
+    Returns
+    -------
+    App.DocumentObject
+        The inspection, with deviations, sphericity and circularity.
+
+    Raises
+    ------
+    InputError
+        For wrong values.
+
+    Examples
+    --------
+    >>> am.inspect(
+    ...     doc, doc.Feature, "cmm.csv", probe_radius=1.5, tolerance=0.3, heights="15 25 35"
+    ... )
     """
     from .objects.inspection import Inspection
 
@@ -279,31 +418,77 @@ def make_all(
     bead_spacing: Any = None,
     platform_diameter: Any = None,
 ) -> tuple[Any, ...]:
-    """Make all stages of a part at their defaults, in one step and one group: (cell, feature,
-    toolpath, joint path[, program]).
-
-    kind: revolution, surface (a wall of the source's faces on the substrate), developable (source
-    and further solids on the substrate, on its base_faces), solid (source and further solids, in
-    plane layers unless `layers` chooses others) or curves (edges of the source, named in faces).
-    mend: diameter, mm, of the largest hole of a mesh to close, 0 for the default. The program is
-    written by `post` if the machine's controller reads its format. No program is made without a
-    post for this setup, or with an infeasible toolpath or joint path. process: parameters of the
-    toolpath by key.
+    """Make all stages of a part at their defaults, in one step and one group.
 
     A robot other than the default one gets a suitable deposition point and branch, and another
-    branch if the job needs it. With `setup="tool-on-robot"` it gets a positioner if the torch would
-    lean more than max_from_vertical. `cell`, the path of a saved cell, replaces the machine.
-    `layers_otherwise` replaces the `layers` of the feature if they are infeasible. `layer_height`
-    and, for solids and cladding, `bead_spacing` belong to the feature, None for the defaults;
-    `platform_diameter` None fits the platform to the first layer.
+    branch if the job needs it. With `setup="tool-on-robot"` it gets a positioner if the torch
+    would lean more than max_from_vertical.
 
-    `am.make_all(doc, doc.Pot, layer_height="2 mm")`
+    Parameters
+    ----------
+    doc : App.Document
+        The document.
+    source : App.DocumentObject
+        The part.
+    faces : sequence of str, optional
+        Names of its faces or edges; empty for all.
+    kind : str, optional
+        revolution, surface (a wall of the source's faces on the substrate), developable
+        (source and further solids on the substrate, on its base_faces), solid (source and
+        further solids) or curves (edges of the source, named in faces).
+    layers : str, optional
+        Kind of the layers of solids; empty for planes.
+    substrate : App.DocumentObject, optional
+        The object below the part.
+    further : sequence of Any, optional
+        More objects to print.
+    base_faces : sequence of str, optional
+        Faces of the hub on which solids grow; empty for those that they touch.
+    name : str, optional
+        Name of the program; empty for a proposal.
+    machine : str, optional
+        Id or file of the machine; empty for the default one.
+    cell : str, optional
+        Path of a saved cell, which replaces the machine.
+    post : str, optional
+        Post that writes the program, if the machine's controller reads its format; empty
+        for the machine's own.
+    process : Mapping[str, Any] or None, optional
+        Parameters of the toolpath by key.
+    then : Sequence[Mapping[str, Any]], optional
+        Features to print after it, in this order and in one program, each with the keys of
+        the first one (`source`, `kind`, `layers`, `faces` ...).
+    mend : float, optional
+        Diameter of the largest hole of a mesh to close, mm; 0 for the default.
+    setup : str, optional
+        Set-up of the cell; empty for the usual one.
+    max_from_vertical : float or str, optional
+        Largest angle of the torch to the vertical; None for the default.
+    layers_otherwise : str, optional
+        Replaces the `layers` of the feature if they are infeasible.
+    layer_height : float or str, optional
+        Layer height of the feature; None for the default.
+    bead_spacing : float or str, optional
+        Bead spacing of solids and cladding; None for the default.
+    platform_diameter : float or str, optional
+        Diameter of the platform; None fits it to the first layer.
 
-    then: features to print after it, in this order and in one program, each with the keys of the
-    first one (`source`, `kind`, `layers`, `faces` ...); in the result they follow the feature.
+    Returns
+    -------
+    tuple of App.DocumentObject
+        Cell, feature, the features of `then`, toolpath, joint path and program. No program
+        is made without a post for this setup, or with an infeasible toolpath or joint path.
 
+    Raises
+    ------
+    InputError
+        For wrong values.
 
-    `am.make_all(doc, doc.Hub, then=[{"source": doc.Fins, "kind": "developable", "substrate": doc.Hub}])`
+    Examples
+    --------
+    >>> am.make_all(doc, doc.Pot, layer_height="2 mm")
+    >>> fins = {"source": doc.Fins, "kind": "developable", "substrate": doc.Hub}
+    >>> am.make_all(doc, doc.Hub, then=[fins])
     """
     process, then = checked_job(
         doc,
@@ -388,9 +573,26 @@ def _suited_path(doc: Any, toolpath: Any, cell: Any, setup: str, saved: bool) ->
 
 
 def read_cell(file: str) -> CellParameters:
-    """The cell in a file of its own, as `export_cell` writes it and jobs name it; paths in it are relative to it.
+    """Read a cell from a file of its own, as `export_cell` writes it and jobs name it.
 
-    `am.make_cell(doc, parameters=am.read_cell("my-cell.yaml"))` Raises InputError about a key of the file.
+    Parameters
+    ----------
+    file : str
+        Path of the file; paths in it are relative to it.
+
+    Returns
+    -------
+    CellParameters
+        The cell.
+
+    Raises
+    ------
+    InputError
+        About a key of the file.
+
+    Examples
+    --------
+    >>> am.make_cell(doc, parameters=am.read_cell("my-cell.yaml"))
     """
     from .sections import cell as saved
 
@@ -441,13 +643,35 @@ def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
 def place(path: Any, cell: Any = None, *, parameters: Any = None, **values: Any) -> Any:
     """Find poses for the part of a joint path or a toolpath, in its cell or in another one.
 
-    The candidates form a box of poses about the present one. Each has the share of points that the
-    machine serves, the least margin, the time, and the clearance of the arm. The result is a
-    `core.placement.place.Placed`. Keys are those of the job section `place`. The document does not
-    change.
+    The candidates form a box of poses about the present one. Each has the share of points that
+    the machine serves, the least margin, the time, and the clearance of the arm. The document
+    does not change.
 
-    `found = am.place(doc.JointPath, x=300, step=100); am.change(doc.Cell,
-    **found.entries(found.best))`; `found.best` is None if no pose serves.
+    Parameters
+    ----------
+    path : App.DocumentObject
+        The joint path or toolpath.
+    cell : App.DocumentObject, optional
+        Another cell; None for its own.
+    parameters : PlaceParameters, optional
+        All parameters; None for the defaults.
+    **values : Any
+        Single parameters by key, as in the job section `place`.
+
+    Returns
+    -------
+    core.placement.place.Placed
+        The poses; `best` is None if no pose serves.
+
+    Raises
+    ------
+    InputError
+        WRONG_KIND if `cell` is not a cell.
+
+    Examples
+    --------
+    >>> found = am.place(doc.JointPath, x=300, step=100)
+    >>> am.change(doc.Cell, **found.entries(found.best))
     """
     from .objects.checks.placed import change_parameters, placing_of
 
@@ -458,27 +682,82 @@ def place(path: Any, cell: Any = None, *, parameters: Any = None, **values: Any)
 
 
 def result(obj: Any) -> Any:
-    """What the core made: CellParameters, RevolvedWall or SurfaceWall, Toolpath, Planned (joint path and motion),
-    Written (files), Inspected (measured points).
+    """Return the data of a stage; it is read from the document, nothing is computed.
 
-    `am.result(doc.Toolpath).layers[0].beads[0].points`; read from the document, nothing is computed.
+    Parameters
+    ----------
+    obj : App.DocumentObject
+        The stage.
+
+    Returns
+    -------
+    object
+        CellParameters, RevolvedWall or SurfaceWall, Toolpath, Planned (joint path and
+        motion), Written (files) or Inspected (measured points).
+
+    Raises
+    ------
+    InputError
+        BAD_INPUT for any other object.
+
+    Examples
+    --------
+    >>> am.result(doc.Toolpath).layers[0].beads[0].points
     """
     return checked_stage(obj).value(obj)
 
 
 def issues(obj: Any) -> tuple[Issue, ...]:
-    """The findings about a stage. `[issue.message for issue in am.issues(doc.JointPath)]`"""
+    """Return the findings about a stage.
+
+    Parameters
+    ----------
+    obj : App.DocumentObject
+        The stage.
+
+    Returns
+    -------
+    tuple of Issue
+        Errors, warnings and notes.
+
+    Raises
+    ------
+    InputError
+        BAD_INPUT for any other object.
+
+    Examples
+    --------
+    >>> [issue.message for issue in am.issues(doc.JointPath)]
+    """
     checked_stage(obj)
     return issues_of(obj)
 
 
 def stages_of(doc: Any, kind: str = "") -> list[Any]:
-    """Return the stages of a document, inputs first; all, or those of one kind.
+    """Return the stages of a document, inputs first.
 
-    `am.stages_of(doc, "program")`
+    Stages that a FreeCAD without the workbench saved as plain objects become stages again.
 
-    Stages that a FreeCAD without the workbench saved as plain objects become stages again. Raises
-    InputError BAD_VALUE for an unknown kind.
+    Parameters
+    ----------
+    doc : App.Document
+        The document.
+    kind : str, optional
+        Kind of the stages; empty for all.
+
+    Returns
+    -------
+    list of App.DocumentObject
+        The stages.
+
+    Raises
+    ------
+    InputError
+        BAD_VALUE for an unknown kind.
+
+    Examples
+    --------
+    >>> am.stages_of(doc, "program")
     """
     revive(checked_document(doc))
     if checked_text(kind, "kind") not in ("", *STAGE_KINDS):

@@ -27,12 +27,31 @@ from .arguments import (
 
 
 def change(obj: Any, **values: Any) -> Any:
-    """Change parameters or inputs of a stage as its `make_...` takes them, recompute it and the
-    following stages, and return it.
+    """Change parameters or inputs of a stage, recompute it and the following stages.
 
-    `am.change(doc.Feature, layer_height=2)`. An error of a following stage appears in its own
-    Status. An error of the stage itself is raised and reverts the change, in documents with undo
-    (those with a window).
+    An error of a following stage appears in its own Status. An error of the stage itself is
+    raised and reverts the change, in documents with undo (those with a window).
+
+    Parameters
+    ----------
+    obj : App.DocumentObject
+        The stage.
+    **values : Any
+        Parameters or inputs by key, as its `make_...` takes them.
+
+    Returns
+    -------
+    App.DocumentObject
+        The stage.
+
+    Raises
+    ------
+    InputError
+        For wrong values.
+
+    Examples
+    --------
+    >>> am.change(doc.Feature, layer_height=2)
     """
     proxy = checked_stage(obj)
     with _unmarked_where_refused(obj), one_step(obj.Document, f"Edit {obj.Label}"):
@@ -79,9 +98,23 @@ def _unmarked_where_refused(obj: Any) -> Iterator[None]:
 
 
 def recompute(target: Any, force: bool = False) -> None:
-    """Renew a document, or a stage and its inputs, shapes and expressions too. Raises the first error met, at the end.
+    """Renew a document, or a stage and its inputs, shapes and expressions too.
 
-    force: compute even what fits its inputs. `am.recompute(doc)`
+    Parameters
+    ----------
+    target : App.Document or App.DocumentObject
+        The document or stage.
+    force : bool, optional
+        Whether to compute even stages that fit their inputs.
+
+    Raises
+    ------
+    AmError
+        The first error met, at the end.
+
+    Examples
+    --------
+    >>> am.recompute(doc)
     """
     document = checked_document(
         target if is_gone(target) else getattr(target, "Document", target), "target"

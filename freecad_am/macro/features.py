@@ -33,10 +33,42 @@ def make_feature(
     build_direction: BuildDirectionParameters | None = None,
     **values: Any,
 ) -> Any:
-    """A feature of revolution of an object with a shape, or of some of its faces.
+    """Make a feature of revolution of an object with a shape, or of some of its faces.
 
-    `am.make_feature(doc, doc.Revolve, ["Face1"], layer_height=1.5)`; axis: (object, "Edge1") where the shape has none.
-    fixtures: objects, solids or meshes, that the nozzle must not touch.
+    Parameters
+    ----------
+    doc : App.Document
+        The document.
+    source : App.DocumentObject
+        The object.
+    faces : sequence of str, optional
+        Names of its faces; empty for the complete object.
+    label : str, optional
+        Label of the feature.
+    axis : tuple, optional
+        (object, "Edge1") where the shape has no axis.
+    fixtures : sequence of Any, optional
+        Objects, solids or meshes, that the nozzle must not touch.
+    strategy : RevolutionParameters or None, optional
+        All parameters of the layers; None for the defaults.
+    build_direction : BuildDirectionParameters or None, optional
+        All parameters of the build direction; None for the defaults.
+    **values : Any
+        Single parameters by key.
+
+    Returns
+    -------
+    App.DocumentObject
+        The feature.
+
+    Raises
+    ------
+    InputError
+        For wrong values.
+
+    Examples
+    --------
+    >>> am.make_feature(doc, doc.Revolve, ["Face1"], layer_height=1.5)
     """
     links = {"Axis": axis, "Fixtures": fixtures}
     return make_feature_of(
@@ -64,8 +96,35 @@ def make_feature_of(
 ) -> Any:
     """Make a feature of any family, by its kind.
 
-    links: by property name; the feature uses those of its family. `StartEdges` and `BaseFaces` only
-    contain names. parameters: dataclasses of its sections; values: single parameters by key.
+    Parameters
+    ----------
+    doc : App.Document
+        The document.
+    kind : str
+        Kind of the family, such as "solid".
+    source : App.DocumentObject
+        The object.
+    faces : sequence of str, optional
+        Names of its faces or edges; empty for all.
+    label : str, optional
+        Label of the feature.
+    links : Mapping[str, Any] or None, optional
+        Links by property name; the feature uses those of its family. `StartEdges` and
+        `BaseFaces` only contain names.
+    parameters : sequence of Any, optional
+        Dataclasses of its sections.
+    values : Mapping[str, Any] or None, optional
+        Single parameters by key.
+
+    Returns
+    -------
+    App.DocumentObject
+        The feature.
+
+    Raises
+    ------
+    InputError
+        For wrong values.
     """
     checked_document(doc)
     proxy = proxy_of(checked_text(kind, "kind"))
@@ -108,10 +167,44 @@ def make_surface_feature(
     build_direction: BuildDirectionParameters | None = None,
     **values: Any,
 ) -> Any:
-    """A wall, of an object's faces, that grows on a solid or closed mesh, or from edges of its own (start_edges).
+    """Make a feature of a wall of an object's faces.
 
-    `am.make_surface_feature(doc, doc.Bend, ["Face1"], doc.Pipe, layer_height=1.5)`; fixtures: objects, solids or meshes,
-    that the nozzle must not touch either.
+    Parameters
+    ----------
+    doc : App.Document
+        The document.
+    source : App.DocumentObject
+        The object.
+    faces : sequence of str, optional
+        Names of the faces of the wall.
+    substrate : App.DocumentObject, optional
+        The solid or closed mesh on which the wall grows.
+    label : str, optional
+        Label of the feature.
+    start_edges : sequence of str, optional
+        Names of edges of its own on which the wall starts.
+    fixtures : sequence of Any, optional
+        Further objects, solids or meshes, that the nozzle must not touch.
+    strategy : SurfaceParameters or None, optional
+        All parameters of the layers; None for the defaults.
+    build_direction : BuildDirectionParameters or None, optional
+        All parameters of the build direction; None for the defaults.
+    **values : Any
+        Single parameters by key.
+
+    Returns
+    -------
+    App.DocumentObject
+        The feature.
+
+    Raises
+    ------
+    InputError
+        For wrong values.
+
+    Examples
+    --------
+    >>> am.make_surface_feature(doc, doc.Bend, ["Face1"], doc.Pipe, layer_height=1.5)
     """
     links = {"Substrate": substrate, "Fixtures": fixtures, "StartEdges": start_edges}
     return make_feature_of(
@@ -140,14 +233,47 @@ def make_developable_feature(
     build_direction: BuildDirectionParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Make a feature of solids, or closed meshes, on cylinders and cones of a hub (substrate).
+    """Make a feature of solids, or closed meshes, on cylinders and cones of a hub.
 
-    The solids grow on the hub's base_faces, by default on the faces that they touch.
-    `am.make_developable_feature(doc, doc.Blades, doc.Spindle, layer_height=2.5)`
+    Parameters
+    ----------
+    doc : App.Document
+        The document.
+    source : App.DocumentObject
+        The solids.
+    substrate : App.DocumentObject, optional
+        The hub.
+    base_faces : sequence of str, optional
+        Faces of the hub on which the solids grow; empty for those that they touch.
+    label : str, optional
+        Label of the feature.
+    faces : sequence of str, optional
+        Faces of the source itself, if hub and solids are one object.
+    further : sequence of Any, optional
+        More objects to print.
+    fixtures : sequence of Any, optional
+        Further objects, solids or meshes, that the nozzle must not touch.
+    strategy : DevelopableParameters or None, optional
+        All parameters of the layers; None for the defaults.
+    build_direction : BuildDirectionParameters or None, optional
+        All parameters of the build direction; None for the defaults.
+    **values : Any
+        Single parameters by key; `base_radius=60, base_height=200` gives the base by
+        numbers.
 
-    faces: of the source itself, if hub and solids are one object. further: more objects to print;
-    fixtures: objects, solids or meshes, that the nozzle must not touch either.
-    `base_radius=60, base_height=200` gives the base by numbers.
+    Returns
+    -------
+    App.DocumentObject
+        The feature.
+
+    Raises
+    ------
+    InputError
+        For wrong values.
+
+    Examples
+    --------
+    >>> am.make_developable_feature(doc, doc.Blades, doc.Spindle, layer_height=2.5)
     """
     links = {
         "Substrate": substrate,
@@ -183,12 +309,45 @@ def make_solid_feature(
 ) -> Any:
     """Make a feature of any solids, or closed meshes, in plane layers.
 
-    `am.make_solid_feature(doc, doc.Bracket, layer_height=2)`
+    Parameters
+    ----------
+    doc : App.Document
+        The document.
+    source : App.DocumentObject
+        The solids.
+    substrate : App.DocumentObject, optional
+        The object below them, if it is not a platform.
+    label : str, optional
+        Label of the feature.
+    further : sequence of Any, optional
+        More objects to print.
+    guide : App.DocumentObject or tuple, optional
+        For layers="along": an object or (object, ["Edge1"]).
+    start_faces : sequence of str or tuple, optional
+        For layers="geodesic" and "offset": names of the source's faces, or (object,
+        ["Face1"]), below the first layer.
+    fixtures : sequence of Any, optional
+        Further objects, solids or meshes, that the nozzle must not touch.
+    strategy : SolidParameters or None, optional
+        All parameters of the layers; None for the defaults.
+    build_direction : BuildDirectionParameters or None, optional
+        All parameters of the build direction; None for the defaults.
+    **values : Any
+        Single parameters by key.
 
-    further: more objects to print; substrate: the object below them, if it is not a platform;
-    guide: for layers="along", an object or (object, ["Edge1"]); start_faces: for layers="geodesic"
-    and "offset", names of the source's faces, or (object, ["Face1"]), below the first layer;
-    fixtures: objects, solids or meshes, that the nozzle must not touch either.
+    Returns
+    -------
+    App.DocumentObject
+        The feature.
+
+    Raises
+    ------
+    InputError
+        For wrong values.
+
+    Examples
+    --------
+    >>> am.make_solid_feature(doc, doc.Bracket, layer_height=2)
     """
     links = {
         "Substrate": substrate,
@@ -220,12 +379,43 @@ def make_curves_feature(
     build_direction: BuildDirectionParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Make a feature of curves: edges, a wire, a sketch, or a table of points from `open_part`,
-    printed as beads.
+    """Make a feature of curves that are printed as beads.
 
-    `am.make_curves_feature(doc, doc.Sketch, repeat=3, layer_height=2)`; faces: names of faces whose
-    normals are the directions, and of the edges to print if not all; substrate: the object below
-    the curves.
+    Parameters
+    ----------
+    doc : App.Document
+        The document.
+    source : App.DocumentObject
+        Edges, a wire, a sketch, or a table of points from `open_part`.
+    faces : sequence of str, optional
+        Names of faces whose normals are the directions, and of the edges to print if not
+        all.
+    substrate : App.DocumentObject, optional
+        The object below the curves.
+    label : str, optional
+        Label of the feature.
+    fixtures : sequence of Any, optional
+        Further objects, solids or meshes, that the nozzle must not touch.
+    strategy : CurvesParameters or None, optional
+        All parameters of the layers; None for the defaults.
+    build_direction : BuildDirectionParameters or None, optional
+        All parameters of the build direction; None for the defaults.
+    **values : Any
+        Single parameters by key.
+
+    Returns
+    -------
+    App.DocumentObject
+        The feature.
+
+    Raises
+    ------
+    InputError
+        For wrong values.
+
+    Examples
+    --------
+    >>> am.make_curves_feature(doc, doc.Sketch, repeat=3, layer_height=2)
     """
     return make_feature_of(
         doc,
@@ -251,10 +441,44 @@ def make_cladding_feature(
     build_direction: BuildDirectionParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Faces of an object, all of one that is not a solid, covered with layers of beads along their normals.
+    """Make a feature of faces covered with layers of beads along their normals.
 
-    `am.make_cladding_feature(doc, doc.Die, ["Face3"], layers=2, layer_height=2, bead_spacing=4)`; substrate, fixtures: what
-    else the nozzle must not touch.
+    Parameters
+    ----------
+    doc : App.Document
+        The document.
+    source : App.DocumentObject
+        The object.
+    faces : sequence of str, optional
+        Names of its faces; empty for all faces of an object that is not a solid.
+    substrate : App.DocumentObject, optional
+        A further object that the nozzle must not touch.
+    label : str, optional
+        Label of the feature.
+    fixtures : sequence of Any, optional
+        Further objects, solids or meshes, that the nozzle must not touch.
+    strategy : CladdingParameters or None, optional
+        All parameters of the layers; None for the defaults.
+    build_direction : BuildDirectionParameters or None, optional
+        All parameters of the build direction; None for the defaults.
+    **values : Any
+        Single parameters by key.
+
+    Returns
+    -------
+    App.DocumentObject
+        The feature.
+
+    Raises
+    ------
+    InputError
+        For wrong values.
+
+    Examples
+    --------
+    >>> am.make_cladding_feature(
+    ...     doc, doc.Die, ["Face3"], layers=2, layer_height=2, bead_spacing=4
+    ... )
     """
     return make_feature_of(
         doc,

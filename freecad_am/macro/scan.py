@@ -26,11 +26,30 @@ from .arguments import (
 
 @one_thread()
 def export(program: Any, folder: str) -> list[str]:
-    """Write the files of a program, or the figures of an inspection, into a folder, and return
-    their paths.
+    """Write the files of a program, or the figures of an inspection, into a folder.
 
-    The folder is created if needed. Parts that an earlier, longer program of this name left there
-    are removed. `am.export(doc.Program, "out")`
+    Parts that an earlier, longer program of this name left there are removed.
+
+    Parameters
+    ----------
+    program : App.DocumentObject
+        The program or inspection.
+    folder : str
+        Path of the folder, which is created if needed.
+
+    Returns
+    -------
+    list of str
+        Paths of the files.
+
+    Raises
+    ------
+    InputError
+        WRONG_KIND for any other stage, NOT_WRITABLE for the folder.
+
+    Examples
+    --------
+    >>> am.export(doc.Program, "out")
     """
     folder = checked_target(folder, "folder")
     kind = checked_stage(program).kind
@@ -52,9 +71,30 @@ def export(program: Any, folder: str) -> list[str]:
 
 @one_thread()
 def export_wires(obj: Any, path: str, *, rapids: bool = False) -> str:
-    """Write beads, and the rapid moves if wanted, of a toolpath, joint path or program as wires into a STEP or DXF file.
+    """Write beads as wires into a STEP or DXF file.
 
-    `am.export_wires(doc.JointPath, "path.step", rapids=True)`
+    Parameters
+    ----------
+    obj : App.DocumentObject
+        A toolpath, joint path or program.
+    path : str
+        Path of the file.
+    rapids : bool, optional
+        Whether to write the rapid moves too.
+
+    Returns
+    -------
+    str
+        Path of the file.
+
+    Raises
+    ------
+    InputError
+        BAD_INPUT for any other object.
+
+    Examples
+    --------
+    >>> am.export_wires(doc.JointPath, "path.step", rapids=True)
     """
     from ..interop import export as interop
 
@@ -66,7 +106,26 @@ def export_wires(obj: Any, path: str, *, rapids: bool = False) -> str:
 def export_cell(cell: Any, path: str) -> str:
     """Write a cell into a file of its own, which jobs name: `cell: my-cell.yaml`.
 
-    `am.export_cell(doc.Cell, "my-cell.yaml")`
+    Parameters
+    ----------
+    cell : App.DocumentObject
+        The cell.
+    path : str
+        Path of the file.
+
+    Returns
+    -------
+    str
+        Path of the file.
+
+    Raises
+    ------
+    InputError
+        BAD_INPUT for any other object.
+
+    Examples
+    --------
+    >>> am.export_cell(doc.Cell, "my-cell.yaml")
     """
     from ..interop import export as interop
 
@@ -76,9 +135,28 @@ def export_cell(cell: Any, path: str) -> str:
 
 
 def export_waypoints(obj: Any, path: str) -> str:
-    """Write the points of a toolpath, joint path or program as a table, as the commands write waypoints.csv.
+    """Write points as a table, as the commands write waypoints.csv.
 
-    `am.export_waypoints(doc.JointPath, "waypoints.csv")`
+    Parameters
+    ----------
+    obj : App.DocumentObject
+        A toolpath, joint path or program.
+    path : str
+        Path of the file.
+
+    Returns
+    -------
+    str
+        Path of the file.
+
+    Raises
+    ------
+    InputError
+        BAD_INPUT for any other object.
+
+    Examples
+    --------
+    >>> am.export_waypoints(doc.JointPath, "waypoints.csv")
     """
     from ..interop import export as interop
 
@@ -89,9 +167,28 @@ def export_waypoints(obj: Any, path: str) -> str:
 
 @one_thread()
 def export_report(obj: Any, path: str) -> str:
-    """Write the report of a toolpath, joint path or program as a page, as the commands write report.html; the path.
+    """Write a report as a page, as the commands write report.html.
 
-    `am.export_report(doc.Program, "report.html")`
+    Parameters
+    ----------
+    obj : App.DocumentObject
+        A toolpath, joint path or program.
+    path : str
+        Path of the file.
+
+    Returns
+    -------
+    str
+        Path of the file.
+
+    Raises
+    ------
+    InputError
+        BAD_INPUT for any other object.
+
+    Examples
+    --------
+    >>> am.export_report(doc.Program, "report.html")
     """
     from ..interop import export as interop
     from ..report.of_document import reported
@@ -103,8 +200,27 @@ def export_report(obj: Any, path: str) -> str:
 
 @one_thread()
 def make_cam_path(obj: Any) -> Any:
-    """The path of a toolpath, joint path or program as an object of the CAM workbench, to be inspected there; it does not
-    follow changes. `am.make_cam_path(doc.JointPath)`"""
+    """Make a path of the CAM workbench, to be inspected there; it does not follow changes.
+
+    Parameters
+    ----------
+    obj : App.DocumentObject
+        A toolpath, joint path or program.
+
+    Returns
+    -------
+    App.DocumentObject
+        The path.
+
+    Raises
+    ------
+    InputError
+        BAD_INPUT for any other object.
+
+    Examples
+    --------
+    >>> am.make_cam_path(doc.JointPath)
+    """
     from ..interop import export as interop
 
     checked_stage(obj)
@@ -114,9 +230,30 @@ def make_cam_path(obj: Any) -> Any:
 
 @one_thread()
 def make_trajectory(obj: Any, *, tolerance: float = 0.1, turn: float = 2.0) -> Any:
-    """The same as a trajectory of the Robot workbench, thinned: within `tolerance` mm and, for the tool axis, `turn` deg.
+    """Make a thinned trajectory of the Robot workbench; it does not follow changes.
 
-    `am.make_trajectory(doc.JointPath, tolerance=0.5)`
+    Parameters
+    ----------
+    obj : App.DocumentObject
+        A toolpath, joint path or program.
+    tolerance : float, optional
+        Largest distance of a removed point, mm.
+    turn : float, optional
+        Largest turn of the tool axis at a removed point, degrees.
+
+    Returns
+    -------
+    App.DocumentObject
+        The trajectory.
+
+    Raises
+    ------
+    InputError
+        BAD_INPUT for any other object.
+
+    Examples
+    --------
+    >>> am.make_trajectory(doc.JointPath, tolerance=0.5)
     """
     from ..interop import export as interop
 
@@ -127,14 +264,37 @@ def make_trajectory(obj: Any, *, tolerance: float = 0.1, turn: float = 2.0) -> A
 
 
 def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
-    """Open a part file as an object of the document. `am.open_part(doc, "cup.step")`
+    """Open a part file as an object of the document.
 
-    The file is STEP, IGES, BREP, or an object (Name or Label) in an FCStd file. It may also be a
-    mesh (STL, OBJ, 3MF): solids on a hub, the substrate of a wall, or a body that the nozzle must
-    not touch. Tables of points (CSV), G-code of a slicer and toolpaths of AdaOne (.ada3dp) are
+    The file is STEP, IGES, BREP, or an object in an FCStd file. It may also be a mesh (STL,
+    OBJ, 3MF): solids on a hub, the substrate of a wall, or a body that the nozzle must not
+    touch. Tables of points (CSV), G-code of a slicer and toolpaths of AdaOne (.ada3dp) are
     printed as beads.
 
-    scale: mm per unit of an STL or OBJ file, which has no unit.
+    Parameters
+    ----------
+    doc : App.Document
+        The document.
+    path : str
+        Path of the file.
+    object : str, optional
+        Name or Label of the object in an FCStd file.
+    scale : float, optional
+        Length of one unit of an STL or OBJ file, which has no unit, mm.
+
+    Returns
+    -------
+    App.DocumentObject
+        The object.
+
+    Raises
+    ------
+    InputError
+        For a file that cannot be read.
+
+    Examples
+    --------
+    >>> am.open_part(doc, "cup.step")
     """
     checked_document(doc)
     path = checked_target(path, "path")
@@ -162,13 +322,31 @@ def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
 
 
 def array_element(array: Any, index: int) -> Any:
-    """Return an element of a link array as an object for stages, numbered from 0 as in FreeCAD's
-    selection.
+    """Return an element of a link array as an object for stages.
 
     It is the element itself if FreeCAD shows elements as objects (`ShowElement`, of Draft
     `ExpandArray`), else a hidden link to it next to the array.
 
-    `am.make_solid_feature(doc, am.array_element(doc.Array, 1))`
+    Parameters
+    ----------
+    array : App.DocumentObject
+        The link array.
+    index : int
+        Number of the element, from 0 as in FreeCAD's selection.
+
+    Returns
+    -------
+    App.DocumentObject
+        The element.
+
+    Raises
+    ------
+    InputError
+        BAD_INPUT for a number that is not whole.
+
+    Examples
+    --------
+    >>> am.make_solid_feature(doc, am.array_element(doc.Array, 1))
     """
     from ..objects.shapes.places import object_of
 
@@ -194,15 +372,40 @@ def make_scan(
 ) -> Any:
     """Read the points of a file for `make_toolpath(..., scan=...)`.
 
-    `am.make_scan(doc, doc.Plate, "plate.ply")`
+    Parameters
+    ----------
+    doc : App.Document
+        The document.
+    substrate : App.DocumentObject
+        The scanned object, with a shape or mesh.
+    file : str
+        Points in CSV, TXT, XYZ or ASC, or vertices of STL, OBJ or PLY.
+    label : str, optional
+        Label of the inspection.
+    fit : str, optional
+        "best" registers the points to the object, "none" uses them in its coordinates;
+        "auto" uses them unchanged if they are within `within` mm of it.
+    unit : str, optional
+        Unit of the points; "auto" for the one that the file names, else mm.
+    pairs : str, optional
+        Three or more measured points and their positions on the object, as in an
+        inspection; they replace any other fit.
+    within : float, optional
+        Largest distance of points of the object, mm.
 
-    The file is CSV, TXT, XYZ, ASC, or STL, OBJ, PLY with its vertices. The result is an inspection
-    of an object with a shape or mesh.
+    Returns
+    -------
+    App.DocumentObject
+        An inspection of the object.
 
-    fit: "best" registers the points to the object, "none" uses them in its coordinates; "auto" uses
-    them unchanged if they are within `within` mm of it. pairs: three or more measured points and
-    their positions on the object, as in an inspection; they replace any other fit. Raises
-    InputError SCAN_UNIT, SCAN_OTHER, SCAN_AMBIGUOUS.
+    Raises
+    ------
+    InputError
+        SCAN_UNIT, SCAN_OTHER, SCAN_AMBIGUOUS.
+
+    Examples
+    --------
+    >>> am.make_scan(doc, doc.Plate, "plate.ply")
     """
     from ..core.inspection import planned, point_file, scan_heights
     from ..objects.inspection import Inspection

@@ -53,10 +53,27 @@ _NAME_LENGTH = 20
 
 
 def proposed_name(text: str) -> str:
-    """A program name that controllers take, from a label: letters A to Z, digits and underscores.
+    """Return a program name that controllers take: letters A to Z, digits and underscores.
 
-    `am.proposed_name("Hémisphère n° 1")` is "HEMISPHERE_N_1". Raises InputError BAD_VALUE for other
-    types.
+    Parameters
+    ----------
+    text : str
+        A label.
+
+    Returns
+    -------
+    str
+        The name.
+
+    Raises
+    ------
+    InputError
+        BAD_VALUE for other types.
+
+    Examples
+    --------
+    >>> am.proposed_name("Hémisphère n° 1")
+    'HEMISPHERE_N_1'
     """
     checked_words([text], "text")
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().upper()

@@ -44,8 +44,19 @@ def report_issue(issue: Issue) -> None:
 
 @contextlib.contextmanager
 def told_to(listener: Listener, findings: Findings | None = None) -> Iterator[None]:
-    """Within the context `listener(fraction, text)` receives the progress of the current thread,
-    and `findings(issue)` its findings. Raises InputError BAD_INPUT for an object that cannot be called.
+    """Report progress and findings of the current thread to functions, within a context.
+
+    Parameters
+    ----------
+    listener : Listener
+        Receives fraction and text; may raise to cancel.
+    findings : Findings or None, optional
+        Receives each issue; None for no function.
+
+    Raises
+    ------
+    InputError
+        BAD_INPUT for an object that cannot be called.
     """
     for called, where in ((listener, "listener"), (findings, "findings")):
         if not callable(called) and (called is not None or where == "listener"):
