@@ -98,17 +98,50 @@ def rotate_vector(poses: Array, vector: Array) -> Array:
 
 
 def about_x(angle: ArrayLike) -> Array:
-    """The rotation (..., 3, 3) by `angle` (...) about X."""
+    """Return rotations about X.
+
+    Parameters
+    ----------
+    angle : (...) array
+        Angles, rad.
+
+    Returns
+    -------
+    (..., 3, 3) array
+        Rotations.
+    """
     return rotation_about((1.0, 0.0, 0.0), angle)
 
 
 def about_y(angle: ArrayLike) -> Array:
-    """The rotation (..., 3, 3) by `angle` (...) about Y."""
+    """Return rotations about Y.
+
+    Parameters
+    ----------
+    angle : (...) array
+        Angles, rad.
+
+    Returns
+    -------
+    (..., 3, 3) array
+        Rotations.
+    """
     return rotation_about((0.0, 1.0, 0.0), angle)
 
 
 def about_z(angle: ArrayLike) -> Array:
-    """The rotation (..., 3, 3) by `angle` (...) about Z."""
+    """Return rotations about Z.
+
+    Parameters
+    ----------
+    angle : (...) array
+        Angles, rad.
+
+    Returns
+    -------
+    (..., 3, 3) array
+        Rotations.
+    """
     return rotation_about((0.0, 0.0, 1.0), angle)
 
 
@@ -272,7 +305,18 @@ def _reflection(normals: Array) -> Array:
 
 
 def unit(vectors: Array) -> Array:
-    """The vectors (..., 3) at unit length; a vector of no length stays."""
+    """Return vectors at unit length.
+
+    Parameters
+    ----------
+    vectors : (..., 3) array
+        Vectors; a vector of no length stays.
+
+    Returns
+    -------
+    (..., 3) array
+        Unit vectors.
+    """
     result: Array = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300)
     return result
 

@@ -203,25 +203,43 @@ def fit(
     lines: Sequence[int] = (),
     feeds: Array | None = None,
 ) -> BeadModel:
-    """Fit the model to a calibration table by least squares, linear in the three coefficients; two if every bead is straight.
+    """Fit the model to a calibration table by least squares.
+
+    The model is linear in its three coefficients; two if every bead is straight.
 
     Parameters
     ----------
-    radius, speed, width, height
-        (n,) columns in mm and mm/s; radii infinite for straight beads.
-    wire_feed
-        mm/s; the nominal one if `feeds` is given.
-    lines
-        Line number of each row in its file, for messages.
-    feeds
-        (n,) mm/s of beads deposited at several wire feeds.
+    radius : (n,) array
+        Radii of curvature, mm; infinite for straight beads.
+    speed : (n,) array
+        Travel speeds, mm/s.
+    width, height : (n,) array
+        Measured sizes, mm.
+    wire_feed : float
+        Wire feed, mm/s; the nominal one if `feeds` is given.
+    label : str, optional
+        Name of the table, for messages.
+    lines : sequence of int, optional
+        Line number of each row in its file, for messages; empty if unknown.
+    feeds : (n,) array or None, optional
+        Wire feeds of beads deposited at several ones, mm/s.
+
+    Returns
+    -------
+    BeadModel
+        The model.
 
     Raises
     ------
     InputError
-        'TOO_FEW_ROWS', 'BAD_TABLE' (values that are not beads: not positive, not finite), 'COLLINEAR_TABLE' (radii or speeds do
-        not vary, or only together), 'TABLE_CONTRADICTS' (rows do, so that width does not fall with speed) or 'NO_MODEL' (width
-        does not fall with speed).
+        TOO_FEW_ROWS, BAD_TABLE (values that are not positive or not finite),
+        COLLINEAR_TABLE (radii or speeds do not vary, or only together), TABLE_CONTRADICTS
+        (rows do, so that width does not fall with speed) or NO_MODEL (width does not fall
+        with speed).
+
+    References
+    ----------
+    Dai 2020, section 4.
     """
     columns = {
         "radius": (radius, "mm"),

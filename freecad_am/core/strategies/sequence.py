@@ -26,17 +26,29 @@ def join_toolpaths(
     up: Array,
     bodies: Sequence[Body],
 ) -> Toolpath:
-    """Join the toolpaths of several features, each with its label, in the order of deposit.
+    """Join the toolpaths of several features in the order of deposit.
 
     The frame is the frame of the first feature. Layers are numbered through, in issues too.
 
     Parameters
     ----------
-    sequence
-        BY_FEATURE, one after the other, or BY_HEIGHT: the next layer is always the one with the lowest point along up (3,), in a
-        tie the one of the feature named first; layers of one feature keep their order.
-    bodies
+    toolpaths : sequence of Toolpath
+        Toolpath of each feature.
+    labels : sequence of str
+        Label of each feature.
+    sequence : str
+        BY_FEATURE, one after the other, or BY_HEIGHT: the next layer is always the one with
+        the lowest point, in a tie the one of the feature named first; layers of one feature
+        keep their order.
+    up : (3,) array
+        Direction of the height.
+    bodies : sequence of Body
         Bodies that surround all features from the beginning.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath of all features.
     """
     order = [(k, i) for k, toolpath in enumerate(toolpaths) for i in range(len(toolpath.layers))]
     if sequence == BY_HEIGHT:

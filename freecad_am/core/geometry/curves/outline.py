@@ -136,6 +136,17 @@ def at_points(leaving: Array, arriving: Array) -> Array:
 
 
 def unit(vectors: Array) -> Array:
-    """The vectors (..., 3) at unit length; a vector of no length stays."""
+    """Return vectors at unit length.
+
+    Parameters
+    ----------
+    vectors : (..., 3) array
+        Vectors; a vector of no length stays.
+
+    Returns
+    -------
+    (..., 3) array
+        Unit vectors.
+    """
     result: Array = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)
     return result

@@ -188,7 +188,18 @@ def normals(surface: Surface, u: Array, v: Array) -> Array:
 
 
 def dot(a: Array, b: Array) -> Array:
-    """Scalar products (...,) of vectors (..., 3)."""
+    """Return the scalar products of vectors.
+
+    Parameters
+    ----------
+    a, b : (..., 3) array
+        Vectors.
+
+    Returns
+    -------
+    (...) array
+        Products.
+    """
     product: Array = np.einsum("...k,...k->...", a, b)
     return product
 

@@ -263,10 +263,13 @@ class Lattice:
 
     @cached_property
     def flat(self) -> Array:
-        """(m, COARSE, 2 axes) coordinates of the joints at each of COARSE rotations.
+        """Return coordinates of the joints whose distances bound the cost from below.
 
-        Their distance is at most the distance of the joints, so eq. 17 of a step is at least its
-        square.
+        Returns
+        -------
+        (m, COARSE, 2 axes) array
+            At each of COARSE rotations. Distances of rows are at most the distances of
+            the joints, so eq. 17 of a step is at least their square.
         """
         samples, scale = self.joints[:, :: self.count // COARSE], np.sqrt(self.weights)
         return np.concatenate(

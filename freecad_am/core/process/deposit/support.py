@@ -48,21 +48,31 @@ def find_unsupported(
     lowest: Mask,
     numbers: Index | None = None,
 ) -> tuple[dict[int, float], list[Issue]]:
-    """How much of the layers of a toolpath is unsupported, mm by layer, and issues for the ten longest.
+    """Return the unsupported length of the layers of a toolpath.
 
     Time grows little faster than the number of pieces, memory in proportion.
 
     Parameters
     ----------
-    ground
-        `ground(points (n, 3), build (n, 3), lowest (n,))`: whether something other than deposit supports each point; the last
-        argument marks points in layers deposited on the ground.
-    is_first_carried
-        Everything in the first layer of `numbers` is supported.
-    lowest
-        (layers,) whether a layer is deposited on the ground.
-    numbers
-        (k,) rising, the layers to check; every layer by default.
+    toolpath : Toolpath
+        The toolpath in part coordinates.
+    ground : Ground
+        Returns whether something other than deposit supports points (n, 3) with build
+        directions (n, 3); its last argument (n,) marks points in layers deposited on the
+        ground.
+    is_first_carried : bool
+        Whether everything in the first layer of `numbers` is supported.
+    lowest : (layers,) bool array
+        Layers deposited on the ground.
+    numbers : (k,) int array or None, optional
+        Layers to check, rising; None for every layer.
+
+    Returns
+    -------
+    lengths : dict of int to float
+        Unsupported length by layer, mm.
+    issues : list of Issue
+        Issues for the ten longest runs.
     """
     pieces = cut_beads(toolpath, PIECE)
     numbers = np.arange(len(toolpath.layers)) if numbers is None else numbers

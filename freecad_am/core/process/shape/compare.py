@@ -301,18 +301,26 @@ def issues(
     remedy: str,
     courses: Array | None = None,
 ) -> tuple[Issue, ...]:
-    """Issues: layers higher or lower than planned, and a part not inside the predicted deposit by the allowance.
+    """Return the issues of a predicted shape.
 
     Parameters
     ----------
-    layer_heights
-        (layers,) mm.
-    is_first
-        (layers,) layers with nothing of their feature below.
-    remedy
+    shape : PredictedShape
+        The figures of the comparison.
+    layer_heights : (layers,) array
+        Planned heights, mm.
+    is_first : (layers,) bool array
+        Layers with nothing of their feature below.
+    remedy : str
         The remedy for a deposit that is too small, with {} for the missing mm.
-    courses
-        (layers,) turns stacked within a layer, 1 except for spirals.
+    courses : (layers,) array or None, optional
+        Turns stacked within a layer, 1 except for spirals; None for 1.
+
+    Returns
+    -------
+    tuple of Issue
+        Layers higher or lower than planned, and a part not inside the predicted deposit by
+        the allowance.
     """
     courses = np.ones(len(layer_heights)) if courses is None else courses
     drifts, low = _drift(shape.drift, layer_heights, is_first, courses)

@@ -54,23 +54,35 @@ def keep_clear(
     watch: Watch | None = None,
     remedy: bool = True,
 ) -> Toolpath:
-    """The toolpath with tool axes tilted where the nozzle would touch bodies or deposit, and issues that say so.
+    """Return the toolpath with tool axes tilted where the nozzle would touch bodies or deposit.
 
-    If no tilt of up to 90 deg helps, the axes stay, with an issue CLEARANCE. Beads get points halfway between clear ones where the
-    nozzle would touch.
+    If no tilt of up to 90 deg helps, the axes stay, with an issue CLEARANCE. Beads get points
+    halfway between clear ones where the nozzle would touch.
 
     Parameters
     ----------
-    bodies
+    toolpath : Toolpath
+        The toolpath in part coordinates.
+    bodies : sequence of Body
         Every body that counts, with the platform.
-    plane
-        Unit normal (3,) of the plane that the tool must stay in.
-    feature
-        Of several features, the one whose beads are kept clear, of earlier deposit of the others too.
-    watch
+    nozzle : NozzleParameters
+        The nozzle.
+    build : BuildDirectionParameters
+        Build direction with the largest tilt and turn.
+    plane : (3,) array or None, optional
+        Unit normal of the plane that the tool must stay in; None for any direction.
+    feature : int or None, optional
+        Number of the feature whose beads are kept clear, of earlier deposit of the others
+        too; None for all.
+    watch : Watch or None, optional
         Receives the progress of the search for tilts.
-    remedy
-        Add a remedy to the issue CLEARANCE.
+    remedy : bool, optional
+        Whether to add a remedy to the issue CLEARANCE.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath with issues about tilts and contacts.
     """
     earlier: list[_Way | None] = [None for _ in toolpath]
     for turn in range(HALVINGS + 1):

@@ -52,22 +52,44 @@ def plan(
     platform_frame: Array | None = None,
     progress: Progress = silent,
 ) -> Toolpath:
-    """The toolpath of a wall of revolution, in part coordinates.
+    """Return the toolpath of a wall of revolution.
 
-    Layers by arc length or height; points per bead from the chord error; build directions from the mode, capped and
-    tilted back until the nozzle is clear. A spiral is one layer with one open bead.
+    Layers are spaced by arc length or height; points per bead follow from the chord error;
+    build directions from the mode, capped and tilted back until the nozzle is clear. A spiral
+    is one layer with one open bead.
 
     Parameters
     ----------
-    platform_diameter
-        mm, 0 without a platform.
-    platform_frame
-        (4, 4) pose of the platform in part coordinates; None if the feature frame is on it.
+    wall : RevolvedWall
+        The wall.
+    strategy : RevolutionParameters
+        Layer height, spacing, path and chord error.
+    build : BuildDirectionParameters
+        Build direction and its limits.
+    process : ProcessParameters
+        Speeds, seam and direction.
+    nozzle : NozzleParameters
+        The nozzle to keep clear.
+    platform_diameter : float
+        Diameter of the platform, mm; 0 without one.
+    platform_frame : (4, 4) array or None, optional
+        Pose of the platform in part coordinates; None if the feature frame is on it.
+    progress : callable, optional
+        Receives share and text; may raise to cancel.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath in part coordinates.
 
     Raises
     ------
     InputError
-        'BAD_VALUE', 'LAYER_HEIGHT', 'NOT_FOR_FAMILY', 'OFF_PLATFORM', 'PARTIAL_TURN', 'TOO_MANY'.
+        BAD_VALUE, LAYER_HEIGHT, NOT_FOR_FAMILY, OFF_PLATFORM, PARTIAL_TURN, TOO_MANY.
+
+    References
+    ----------
+    Chalvin 2020, sections 2.1 and 6.1.
     """
     if build.mode == "symmetry-plane":
         raise InputError(

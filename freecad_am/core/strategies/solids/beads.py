@@ -307,22 +307,38 @@ def volumes(
     within: Array | None = None,
     numbers: Sequence[int] = (),
 ) -> tuple[float, float, float]:
-    """mm3 of the part, of its missed volume, and of stray deposit.
+    """Return the volumes of the part, of its missed places, and of stray deposit.
 
-    The cut solids count as high as their layers, so that the volume above the last cut is missed, and layers beyond the part are
-    stray.
+    The cut solids count as high as their layers, so that the volume above the last cut is
+    missed, and layers beyond the part are stray.
 
     Parameters
     ----------
-    part_volume
-        mm3; None, with a margin or an open part, for a part as large as its layers.
-    uncut
-        mm3 of solids without a layer cut, which are missed, whatever layers of others reach beyond them.
-    within
-        (k,) mm3 of the part within each layer, so that missed volume of one layer is not balanced by stray deposit of another.
-        None: only the sum over the layers is compared.
-    numbers
+    part_volume : float or None
+        Volume of the part, mm3; None, with a margin or an open part, for a part as large as
+        its layers.
+    strategy : FilledParameters
+        Layer height.
+    covers : sequence of Cover
+        Areas of the layers.
+    uncut : float, optional
+        Volume of solids without a layer cut, which are missed, whatever layers of others
+        reach beyond them, mm3.
+    within : (k,) array or None, optional
+        Volume of the part within each layer, mm3, so that missed volume of one layer is not
+        balanced by stray deposit of another. None: only the sum over the layers is
+        compared.
+    numbers : sequence of int, optional
         Layer numbers of the covers.
+
+    Returns
+    -------
+    part : float
+        Volume of the part, mm3.
+    missed : float
+        Volume that no bead covers, mm3.
+    stray : float
+        Deposit outside the part, mm3.
     """
     layer_volume, missed, outside = layer_volumes(strategy, covers)
     if part_volume is None:
